@@ -5,6 +5,8 @@ import json
 import math
 import pathlib
 import sys
+import tempfile
+import unittest
 
 import jsonschema
 
@@ -75,8 +77,47 @@ def pixel(camera, point):
     return camera["cx"] + camera["fx"] * x / divisor, camera["cy"] - camera["fy"] * y / divisor
 
 
-class CameraFacts:
-    """Assertions for a unittest.TestCase."""
+class CameraFacts(unittest.TestCase):
+    """Of a host whose `script` writes the cameras of `node`. It has change(settings) and host_pixel(frame), which gives the host's
+    own formulas for the pixel of a point."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="alcove-hosts-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.path = str(self.folder / "cameras.json")
+
+    def camera(self, frame=4, **settings):
+        self.change(settings)
+        self.script.write_cameras(self.path, self.node, frame, frame)
+        return self.entry(self.path, frame)
+
+    def assert_sees(self, frame=4, **settings):
+        """With these settings, points of the world land where the host's own formulas put them."""
+        camera = self.camera(frame, **settings)
+        self.assert_sees_as(camera, self.host_pixel(frame))
+        return camera
+
+    def assert_exports(self, frames):
+        self.script.export()
+        self.assertEqual([entry["frame"] for entry in self.entries(self.path)], frames)
+        for frame in (frames[0], frames[-1]):
+            self.assert_sees_as(self.entry(self.path, frame), self.host_pixel(frame))
+
+    def assert_refused(self, words, **settings):
+        with self.subTest(words=words), self.assertRaisesRegex(ValueError, words):
+            self.camera(**settings)
+        self.assertFalse(pathlib.Path(self.path).exists())
+
+    def assert_needs_a_selection(self, select, leave_dialog):
+        """select(False) selects no camera, select(True) one."""
+        select(False)
+        with self.assertRaisesRegex(ValueError, "Select"):
+            self.script.export()
+        select(True)
+        leave_dialog()
+        self.script.export()
+        self.assertFalse(pathlib.Path(self.path).exists())
 
     def entries(self, path):
         """The cameras of a file that the schema takes."""

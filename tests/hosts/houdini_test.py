@@ -1,8 +1,6 @@
 # The camera exporter of Houdini against a stub of hou, and against the lens and the screen window of Houdini's documentation.
 # SPDX-License-Identifier: BSD-3-Clause
-import os
 import sys
-import tempfile
 import types
 import unittest
 
@@ -51,26 +49,22 @@ class Camera:
         return Matrix(transposed(stand_at(time * FRAMES_PER_SECOND + 1, self.scale)))
 
 
-class Houdini(camera_facts.CameraFacts, unittest.TestCase):
+class Houdini(camera_facts.CameraFacts):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="alcove-houdini-")
-        self.addCleanup(folder.cleanup)
-        self.path = os.path.join(folder.name, "cameras.json")
+        super().setUp()
         self.node = Camera()
         hou = types.ModuleType("hou")
         hou.frameToTime = lambda frame: (frame - 1) / FRAMES_PER_SECOND
         hou.selectedNodes = lambda: (self.node,)
         hou.fileChooserMode = types.SimpleNamespace(Write="write")
         hou.ui = types.SimpleNamespace(selectFile=lambda title, pattern, chooser_mode: "$HIP/cameras.json")
-        hou.text = types.SimpleNamespace(expandString=lambda text: text.replace("$HIP", folder.name))
+        hou.text = types.SimpleNamespace(expandString=lambda text: text.replace("$HIP", str(self.folder)))
         hou.playbar = types.SimpleNamespace(frameRange=lambda: (2.0, 4.0))
         self.hou = sys.modules["hou"] = hou
         self.script = camera_facts.script("houdini/alcove_houdini.py")
 
-    def camera(self, frame=4, **parms):
+    def change(self, parms):
         self.node.parms.update(parms)
-        self.script.write_cameras(self.path, self.node, frame, frame)
-        return self.entry(self.path, frame)
 
     def host_pixel(self, frame=4):
         """Houdini's picture is 0 to 1 wide and high, upwards; the aperture is its width, and its height follows from resolution
@@ -87,62 +81,39 @@ class Houdini(camera_facts.CameraFacts, unittest.TestCase):
             return window[0] * at["resx"], (1 - window[1]) * at["resy"]
         return see
 
-    def test_lens_and_resolution(self):
-        self.assert_sees_as(self.camera(), self.host_pixel())
-        self.assert_sees_as(self.camera(resx=300, resy=500, focal=24.0), self.host_pixel())
+    def test_cameras_see_as_houdini_does(self):
+        for parms in ({}, {"resx": 300, "resy": 500, "focal": 24.0}, {"aspect": 2.0, "winsizex": 0.5}):
+            with self.subTest(parms=parms):
+                self.assert_sees(**parms)
+        camera = self.assert_sees(projection="ortho", winx=0.1, winsizey=0.5, aspect=1.5)
+        self.assertEqual(camera["projection"], "orthographic")
 
     def test_screen_window(self):
-        camera = self.camera(winx=0.1, winy=-0.05, winsizex=0.8, winsizey=0.6)
-        self.assert_sees_as(camera, self.host_pixel())
+        camera = self.assert_sees(winx=0.1, winy=-0.05, winsizex=0.8, winsizey=0.6)
         self.assertLess(camera["cx"], 320)  # the window moves to the right, and what it shows to the left
         self.assertLess(camera["cy"], 180)
 
-    def test_pixels_that_are_not_square(self):
-        camera = self.camera(aspect=2.0, winsizex=0.5)
-        self.assert_sees_as(camera, self.host_pixel())
-
-    def test_orthographic_cameras(self):
-        camera = self.camera(projection="ortho", winx=0.1, winsizey=0.5, aspect=1.5)
-        self.assertEqual(camera["projection"], "orthographic")
-        self.assert_sees_as(camera, self.host_pixel())
-
-    def test_scale_of_parents_takes_no_part(self):
+    def test_scale_of_parents_takes_no_part_and_clip_planes_do(self):
         self.node.scale = 0.25
-        self.assert_sees_as(self.camera(), self.host_pixel())
-
-    def test_clip_planes(self):
-        camera = self.camera(near=0.5, far=80.0)
+        camera = self.assert_sees(near=0.5, far=80.0)
         self.assertEqual((camera["near"], camera["far"]), (0.5, 80))
 
     def test_every_frame_has_its_lens_and_place(self):
         self.node.parms["focal"] = lambda frame: 40 + frame
-        self.script.export()
-        self.assertEqual([entry["frame"] for entry in self.entries(self.path)], [2, 3, 4])
-        for frame in (2, 4):
-            self.assert_sees_as(self.entry(self.path, frame), self.host_pixel(frame))
+        self.assert_exports([2, 3, 4])
 
     def test_what_is_not_taken_is_told(self):
-        with self.assertRaisesRegex(ValueError, "/obj/cam1 is sphere"):
-            self.camera(projection="sphere")
-        self.assertFalse(os.path.exists(self.path))
-        self.node.worldTransformAtTime = lambda time: Matrix([[1, 0, 0, 0], [0.5, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
-        with self.assertRaisesRegex(ValueError, "sheared"):
-            self.camera(projection="perspective")
-        self.node.worldTransformAtTime = lambda time: Matrix([[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
-        with self.assertRaisesRegex(ValueError, "mirrored"):
-            self.camera()
-        self.node.worldTransformAtTime = lambda time: Matrix([[0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
-        with self.assertRaisesRegex(ValueError, "nothing"):
-            self.camera()
+        self.assert_refused("/obj/cam1 is sphere", projection="sphere")
+        for words, x, y in (("sheared", [1, 0, 0, 0], [0.5, 1, 0, 0]), ("mirrored", [-1, 0, 0, 0], [0, 1, 0, 0]),
+                            ("nothing", [0, 0, 0, 0], [0, 1, 0, 0])):
+            self.node.worldTransformAtTime = lambda time: Matrix([x, y, [0, 0, 1, 0], [0, 0, 0, 1]])
+            self.assert_refused(words, projection="perspective")
 
     def test_a_camera_must_be_selected(self):
-        self.hou.selectedNodes = lambda: ()
-        with self.assertRaisesRegex(ValueError, "Select"):
-            self.script.export()
-        self.hou.selectedNodes = lambda: (self.node,)
-        self.hou.ui.selectFile = lambda **asked: ""  # the dialog is left
-        self.script.export()
-        self.assertFalse(os.path.exists(self.path))
+        def select(is_camera):
+            self.hou.selectedNodes = lambda: (self.node,) if is_camera else ()
+
+        self.assert_needs_a_selection(select, lambda: setattr(self.hou.ui, "selectFile", lambda **asked: ""))
 
     def test_all_hosts_take_scale_away_by_the_same_lines(self):
         """Each script is one file, so that it is easy to install; what they share must not drift apart."""

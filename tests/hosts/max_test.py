@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import contextlib
 import math
-import os
 import sys
-import tempfile
 import types
 import unittest
 
@@ -50,12 +48,10 @@ class Camera:
         return Matrix(stand_at(self.stub.frame, self.scale))
 
 
-class Max(camera_facts.CameraFacts, unittest.TestCase):
+class Max(camera_facts.CameraFacts):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="alcove-max-")
-        self.addCleanup(folder.cleanup)
-        self.path = os.path.join(folder.name, "cameras.json")
-        self.frame = 0
+        super().setUp()
+        self.frame, self.width_at_target = 0, None
         pymxs = types.ModuleType("pymxs")
 
         @contextlib.contextmanager
@@ -74,63 +70,49 @@ class Max(camera_facts.CameraFacts, unittest.TestCase):
         sys.modules.update({"pymxs": pymxs, "pymxs.runtime": pymxs.runtime})
         self.script = camera_facts.script("max/alcove_max.py")
 
-    def camera(self, frame=4, **properties):
+    def change(self, properties):
         self.node.__dict__.update(properties)
-        self.script.write_cameras(self.path, self.node, frame, frame)
-        return self.entry(self.path, frame)
 
-    def host_pixel(self, frame=4, width_at_target=None):
+    def host_pixel(self, frame=4):
         """fov is the horizontal angle in degrees; pixels are as wide by their height as the renderer's settings say."""
         width, height = self.rt.renderWidth, self.rt.renderHeight
 
         def see(point):
             x, y, z, _ = applied(inverse(stand_at(frame, self.node.scale)), point)
-            visible_width = width_at_target or 2 * -z * math.tan(math.radians(self.node.fov / 2))
+            visible_width = self.width_at_target or 2 * -z * math.tan(math.radians(self.node.fov / 2))
             visible_height = visible_width * height / (width * self.rt.renderPixelAspect)
             return width * (0.5 + x / visible_width), height * (0.5 - y / visible_height)
         return see
 
     def test_field_of_view(self):
-        self.assert_sees_as(self.camera(), self.host_pixel())
+        self.assert_sees()
         self.rt.renderWidth, self.rt.renderHeight = 300, 500
-        self.assert_sees_as(self.camera(fov=70.0), self.host_pixel())
+        self.assert_sees(fov=70.0)
 
-    def test_pixels_that_are_not_square(self):
+    def test_pixels_that_are_not_square_and_scale_that_takes_no_part(self):
         self.rt.renderPixelAspect = 1.5
-        self.assert_sees_as(self.camera(), self.host_pixel())
-
-    def test_scale_takes_no_part(self):
-        self.node.scale = 2.54
-        self.assert_sees_as(self.camera(), self.host_pixel())
+        self.assert_sees(scale=2.54)
 
     def test_orthographic_cameras_see_as_wide_as_the_angle_is_at_the_target(self):
-        wide = 2 * 7 * math.tan(math.radians(22.5))
-        self.assert_sees_as(self.camera(orthoProjection=True, target=Target(self, 7.0)), self.host_pixel(width_at_target=wide))
-        self.assert_sees_as(self.camera(target=None, targetDistance=7.0), self.host_pixel(width_at_target=wide))
+        self.width_at_target = 2 * 7 * math.tan(math.radians(22.5))
+        self.assert_sees(orthoProjection=True, target=Target(self, 7.0))
+        self.assert_sees(target=None, targetDistance=7.0)
 
     def test_every_frame_is_evaluated_at_its_time(self):
-        self.script.export()
-        self.assertEqual([entry["frame"] for entry in self.entries(self.path)], [10, 11, 12])
-        for frame in (10, 12):
-            self.assert_sees_as(self.entry(self.path, frame), self.host_pixel(frame))
+        self.assert_exports([10, 11, 12])
 
     def test_what_is_not_taken_is_told(self):
         for name in ("horizontal_shift", "vertical_shift", "vertical_tilt_correction", "auto_vertical_tilt_correction"):
             self.node = Camera(self)
-            with self.subTest(name=name), self.assertRaisesRegex(ValueError, "Camera001 has " + name):
-                self.camera(**{name: 0.1})
-        self.assertFalse(os.path.exists(self.path))
+            self.assert_refused("Camera001 has " + name, **{name: 0.1})
         self.node = Camera(self)
         self.camera(horizontal_shift=0.0, auto_vertical_tilt_correction=False)
 
     def test_a_camera_must_be_selected(self):
-        self.rt.superClassOf = lambda node: "light"
-        with self.assertRaisesRegex(ValueError, "Select"):
-            self.script.export()
-        self.rt.superClassOf = lambda node: "camera"
-        self.rt.getSaveFileName = lambda caption, types: None  # the dialog is left
-        self.script.export()
-        self.assertFalse(os.path.exists(self.path))
+        def select(is_camera):
+            self.rt.superClassOf = lambda node: "camera" if is_camera else "light"
+
+        self.assert_needs_a_selection(select, lambda: setattr(self.rt, "getSaveFileName", lambda caption, types: None))
 
 
 unittest.main(argv=sys.argv[:1])
