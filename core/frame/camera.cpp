@@ -309,7 +309,7 @@ bool truth(const CameraFile& file, const char* field) {
 /// The meaning of a text that begins with a word of an option; automatic where it begins with none.
 template <class T>
 T meaning_of(const std::string& text) {
-  for (const auto& [word, meaning] : names_of<T>())
+  for (const auto& [word, meaning] : kWordsOf<T>)
     if (meaning != T::automatic && text.starts_with(word)) return meaning;
   return T::automatic;
 }

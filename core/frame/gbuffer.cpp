@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
 #include "core/frame/behind.h"

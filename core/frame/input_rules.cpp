@@ -15,8 +15,9 @@ namespace {
 /// What a word of an option stands for; none where it is no word of it, or leaves open what it means.
 template <class T>
 std::optional<T> known_meaning(const std::string& word) {
-  const auto found = names_of<T>().find(word);
-  return found == names_of<T>().end() || found->second == T::automatic ? std::nullopt : std::optional(found->second);
+  for (const auto& [known, meaning] : kWordsOf<T>)
+    if (meaning != T::automatic && word == known) return meaning;
+  return std::nullopt;
 }
 
 std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {

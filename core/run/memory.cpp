@@ -15,12 +15,9 @@
 #include "core/frame/channels.h"
 #include "core/run/frame_files.h"
 #include "core/run/shot.h"
-<<<<<<< HEAD:core/run/shot_memory.cpp
 #include "kernels/accumulate.h"
-=======
 #include "kernels/estimate.h"
 #include "kernels/exact_search.h"
->>>>>>> work-c:core/run/memory.cpp
 
 namespace alcove {
 namespace {
