@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/chain/compute.h"
+#include "core/frame/gbuffer.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 

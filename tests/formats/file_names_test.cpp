@@ -52,35 +52,27 @@ TEST_F(FileNames, in_reports_of_a_run) {
   EXPECT_TRUE(is_logged) << read_bytes(log);
 }
 
-TEST_F(FileNames, in_errors) {
+TEST_F(FileNames, in_the_plan_of_a_dry_run_and_in_errors) {
+  const Finished plan = run_on_name({"--dry-run"});
+  ASSERT_EQ(plan.code, 0) << plan;
+  expect_shown(plan.out);
   write_bytes(input, "no picture");
-  const Finished finished = run_on_name({});
-  EXPECT_EQ(finished.code, 3);
-  expect_shown(finished.err);
+  const Finished error = run_on_name({});
+  EXPECT_EQ(error.code, 3);
+  expect_shown(error.err);
 }
 
-TEST_F(FileNames, in_the_plan_of_a_dry_run) {
-  const Finished finished = run_on_name({"--dry-run"});
-  ASSERT_EQ(finished.code, 0) << finished;
-  expect_shown(finished.out);
-}
-
-TEST_F(FileNames, in_what_inspect_says) {
-  const Finished text = run_program({"inspect", input, "--camera", camera}),
-                 quoted = run_program({"inspect", input, "--camera", camera, "--json"});
-  ASSERT_EQ(quoted.code, 0) << quoted;
-  expect_shown(text.out);
-  EXPECT_EQ(json::parse(quoted.out)["files"][0]["path"], folder / (kShown + ".exr"));
-}
-
-TEST_F(FileNames, in_what_inspect_says_of_channels_and_attributes) {
+TEST_F(FileNames, in_what_inspect_says_of_them_and_of_channels_and_attributes) {
   FrameFile file = wall_frame();
   file.attributes = {{"note \xff", "caf\xe9"}};
   file.planes["odd\xff.R"] = file.planes["ViewLayer.Depth.Z"];
   file.write(input);
-  const Finished quoted = run_program({"inspect", input, "--camera", camera, "--json"});
+  const Finished text = run_program({"inspect", input, "--camera", camera}),
+                 quoted = run_program({"inspect", input, "--camera", camera, "--json"});
+  expect_shown(text.out);
   ASSERT_EQ(quoted.code, 0) << quoted;
-  const json part = json::parse(quoted.out)["files"][0]["parts"][0];
+  const json found = json::parse(quoted.out)["files"][0], part = found["parts"][0];
+  EXPECT_EQ(found["path"], folder / (kShown + ".exr"));
   EXPECT_EQ(part["attributes"]["note \\xff"], "caf\\xe9");
   EXPECT_THAT(part["channels"].dump(), HasSubstr("odd\\\\xff.R"));
 }

@@ -95,7 +95,7 @@ TEST_F(OpenImage, it_is_said_what_a_file_is_that_a_run_does_not_read_and_what_it
                                                                       {"empty.exr", "", "empty"}}) {
     write_bytes(folder / name, bytes);
     for (const char* option : {"INPUT", "--normal"}) {
-      const std::string said = error_of(ErrorKind::input, [&] { red_of(folder / name, option); });
+      const std::string path = folder / name, said = error_of(ErrorKind::input, [&] { red_of(path, option); });
       for (const auto& part : {name, word, std::string(option)}) EXPECT_THAT(said, HasSubstr(part));
       for (const auto& format : formats) EXPECT_THAT(said, HasSubstr(format)) << name;
     }

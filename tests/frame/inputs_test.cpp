@@ -184,8 +184,8 @@ TEST(Depth, of_every_sentinel_is_sky) {
       frame.depth_range = range;
       const HostResult result = compute_ao(recorder(), frame, with(0.6, ThicknessKind::automatic));
       EXPECT_LE(difference(result.ao, planar.near).rmse, kind == DepthKind::planar ? 0 : 1e-4)
-          << name_of(kind) << " " << sentinel;
-      EXPECT_EQ(result.sky_pixels, planar.sky_pixels) << name_of(kind) << " " << sentinel;
+          << word_of(kind) << " " << sentinel;
+      EXPECT_EQ(result.sky_pixels, planar.sky_pixels) << word_of(kind) << " " << sentinel;
     }
   };
   const auto distance = [](const test::Hit& hit) { return hit.distance; };

@@ -27,17 +27,12 @@ std::optional<double> radius_of(const FrameSource& source) {
   return proposed_radius(source.camera, source.median_depth);
 }
 
-TEST(Radius, is_a_tenth_of_the_distance_by_one_figure) {
+TEST(Radius, is_a_tenth_of_the_distance_by_one_figure_but_no_more_than_a_quarter_of_what_is_seen) {
   EXPECT_EQ(radius_of(frame_at(6.2, 100)), 0.6);
   EXPECT_EQ(radius_of(frame_at(843, 100)), 80);
-}
-
-TEST(Radius, is_no_more_than_a_quarter_of_what_a_long_lens_shows) {
-  EXPECT_EQ(radius_of(frame_at(1000, 10000)), 2);  // 10 units are seen, and the quarter is rounded to even
-}
-
-TEST(Radius, of_an_orthographic_camera_hangs_on_its_width_and_not_on_its_place) {
-  for (const double distance : {1.0, 1e6}) EXPECT_EQ(radius_of(frame_at(distance, 10, true)), 1) << distance;
+  EXPECT_EQ(radius_of(frame_at(1000, 10000)), 2) << "10 units are seen, and the quarter is rounded to even";
+  for (const double distance : {1.0, 1e6})
+    EXPECT_EQ(radius_of(frame_at(distance, 10, true)), 1) << "of a parallel view";
 }
 
 TEST(Radius, needs_a_surface) {

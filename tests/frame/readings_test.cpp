@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/base/option_words.h"
 #include "core/frame/evidence.h"
 #include "tests/support/source_frame.h"
 

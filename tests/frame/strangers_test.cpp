@@ -12,6 +12,7 @@
 #include <numbers>
 #include <regex>
 
+#include "core/base/half.h"
 #include "core/formats/exr.h"
 #include "core/frame/camera.h"
 #include "core/frame/linear.h"
@@ -75,7 +76,7 @@ class Surfaces {
   Camera camera_;
 };
 
-double half(double value) { return from_half(halves_of(std::vector{float(value)})[0]); }
+double half(double value) { return from_half(to_half(float(value))); }
 
 /// What Movie Render Queue says of the camera, in centimetres, z up; the lens is told for a pass.
 Texts unreal(const std::string& pass) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/chain.h"
 
+#include "core/frame/gbuffer.h"
+
 #include <fmt/format.h>
 
 namespace alcove::test {

@@ -14,14 +14,13 @@
 // reference guess in two ways: the kernels by the plane of the normal at a sample and only where it rises by a tenth of
 // the radius, the reference by the mean of that plane and of the line through 4 pixels. The exact search joins pixels
 // to strokes first. Where most of the sphere is beyond the border, a bound of its own says how far they may differ.
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 
 #include "core/base/estimator_facts.h"
 #include "core/chain/compute.h"
-#include "core/frame/radius.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"
 #include "tests/bench/stability/cases.h"
@@ -32,7 +31,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::Contains, testing::HasSubstr, testing::Not;
 
 /// Of 16 slices with a sample at every pixel, or 64 samples. With a constant thickness gtao takes the receiver's own
 /// surface for endless, and its reference does not.
@@ -140,15 +138,6 @@ void expect_precise(Spec spec) {
     }
 }
 
-/// What a run says of it.
-std::vector<std::string> notes_on(const Spec& spec) {
-  const Case made = test::made(spec);
-  DepthSample sample;
-  const FrameInputs inputs = upload(recorder(), made.frame);
-  sample.add(inputs.view, inputs.depth_map, inputs.depth_precision, inputs[RawPlane::depth]->as<float>());
-  return texts_of(sample.notes(made.radius, made.radius, spec.width, spec.height));
-}
-
 TEST(Accuracy, of_the_room) { expect({}); }
 
 // The picture's border cuts all spheres. The worst that was measured where surfaces are completed is 0.0310.
@@ -230,15 +219,11 @@ TEST(Accuracy, of_few_bits_and_small_pixels_is_better_than_its_bound) {
             << estimator << " storage " << int(storage) << " completion " << int(complete);
 }
 
-TEST(Accuracy, that_is_lost_is_noted) {
-  const auto lost = Contains(HasSubstr("times the depth's precision"));
-  EXPECT_THAT(notes_on({.fov = 1.5, .storage = Storage::half_float}), lost);
-  EXPECT_THAT(notes_on({.fov = 3, .storage = Storage::half_float}), Not(lost));
-  // Of positions too far off to tell any height nothing is feigned.
-  const Spec far{.width = 48, .height = 36, .storage = Storage::far_positions};
-  EXPECT_THAT(notes_on(far), lost);
+// That it is lost is noted: see scale_notes_test.
+TEST(Accuracy, of_positions_too_far_off_to_tell_any_height_feigns_nothing) {
   for (const Completion completion : kCompletions)
-    for (const auto& [estimator, complete, rmse, bound, occlusion] : measured(far, completion))
+    for (const auto& [estimator, complete, rmse, bound, occlusion] :
+         measured({.storage = Storage::far_positions}, completion))
       EXPECT_NEAR(rmse, occlusion, 1e-6) << estimator << ", completion " << int(complete);
 }
 

@@ -48,6 +48,18 @@ TEST(ScaleNotes, name_a_radius_within_the_depths_precision) {
               ElementsAre(AllOf(HasSubstr("times the depth's precision"), HasSubstr("more bits"))));
 }
 
+TEST(ScaleNotes, name_the_precision_that_is_lost_by_storage) {
+  for (const auto& [spec, is_lost] : {std::pair{Spec{.fov = 1.5, .storage = Storage::half_float}, true},
+                                      {Spec{.fov = 3, .storage = Storage::half_float}, false},
+                                      {Spec{.width = 48, .height = 36, .storage = Storage::far_positions}, true}}) {
+    const Case made = test::made(spec);
+    EXPECT_EQ(
+        testing::Matches(testing::Contains(HasSubstr("times the depth's precision")))(said(made.frame, made.radius)),
+        is_lost)
+        << to_string(spec);
+  }
+}
+
 TEST(ScaleNotes, know_positions_that_are_far_from_their_origin_in_any_direction) {
   HostFrame frame = room(55, 1, 0, 96, 72).frame;
   frame.depth_kind = DepthKind::position;
