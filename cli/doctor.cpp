@@ -14,7 +14,6 @@
 #include "cli/version_text.h"
 #include "core/base/error.h"
 #include "core/base/json_text.h"
-#include "core/base/memory_limit.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"

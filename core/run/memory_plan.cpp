@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/base/memory_limit.h"
 #include "core/base/system.h"
 
 namespace alcove {

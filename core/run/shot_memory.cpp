@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "core/base/error.h"
-#include "core/base/memory_limit.h"
+#include "core/base/system.h"
 #include "core/chain/aov.h"
 #include "core/frame/views.h"
 #include "core/run/shot.h"

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
-#include "core/base/memory_limit.h"
+#include "core/base/system.h"
 #include "kernels/profile.h"
 
 namespace alcove {
