@@ -12,7 +12,6 @@
 #include "cli/options.h"
 #include "core/base/error.h"
 #include "core/base/json_text.h"
-#include "core/base/memory_limit.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"

@@ -3,7 +3,7 @@
 //
 // Sources: Linux's Documentation/admin-guide/cgroup-v2.rst ("Memory Interface Files") and cgroup-v1/memory.rst, the
 // manual pages cgroups(7) and proc_pid_mountinfo(5), and sbatch(1) for Slurm's variables.
-#include "core/base/memory_limit.h"
+#include "core/base/system.h"
 
 #include <algorithm>
 #include <charconv>

@@ -154,10 +154,6 @@ std::error_code may_make_files_in(const std::string& folder) {
   return ::access(folder.c_str(), W_OK | X_OK) == 0 ? std::error_code() : last_error();
 }
 
-std::error_code make_unique_folder(std::string& path) {
-  return ::mkdtemp(path.data()) ? std::error_code() : last_error();
-}
-
 void sync_folder(const std::string& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;

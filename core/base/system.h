@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <system_error>
@@ -55,15 +56,33 @@ int caught_signal();
 /// The address of a symbol in a library, which is loaded if it is not yet; null where there is none, and why in `why`.
 void* symbol_of(const char* library, const char* symbol, std::string& why);
 
+// How much memory the process may still take, after the limits of containers, systemd and batch systems:
+// memory_limit.cpp.
+
+constexpr std::uint64_t kMebibyte = 1 << 20;  // bytes
+constexpr std::uint64_t kNoMemoryLimit = std::numeric_limits<std::uint64_t>::max();
+
+/// The bytes that the control groups of this process leave it: the least that is left in its own group or in any group
+/// above it. kNoMemoryLimit where there is no limit, or none that can be read. Both versions of control groups are
+/// read. `root` is a folder that stands for the whole file system.
+std::uint64_t memory_left_in_groups(const std::string& root = "/");
+
+/// The bytes that the machine can still give away, after Linux's own estimate (MemAvailable of /proc/meminfo).
+std::uint64_t memory_left_on_machine(const std::string& root = "/");
+
+/// The bytes of memory on this node that a Slurm job has asked for, by the variables of its environment. Slurm need not
+/// enforce them by control groups, and ends jobs that take more all the same.
+std::uint64_t memory_of_slurm_job();
+
+/// The least of the three.
+std::uint64_t free_memory();
+
 // Files and folders.
 
 /// Empty where the process may read the file, else why it may not.
 std::error_code may_read(const std::string& path);
 /// Empty where the process may make files in the folder, else why it may not.
 std::error_code may_make_files_in(const std::string& folder);
-
-/// Makes a folder of a name that nobody else has, and writes the name: the six X at the end of `path` are replaced.
-std::error_code make_unique_folder(std::string& path);
 
 /// Puts a folder's names on the disk, so that they outlive a loss of power. File systems that cannot do it pass it by.
 void sync_folder(const std::string& folder);

@@ -14,7 +14,7 @@
 
 #include "core/base/error.h"
 #include "core/base/half.h"
-#include "core/base/memory_limit.h"
+#include "core/base/system.h"
 #include "core/base/windows.h"
 #include "core/formats/deep_chunk.h"
 #include "core/formats/exr_shared.h"

@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
-#include "core/base/memory_limit.h"
 #include "core/base/system.h"
 #include "core/chain/chain.h"
 #include "core/chain/margin.h"

@@ -1,6 +1,6 @@
 // Memory limits of control groups, read from folders that look like /proc and /sys/fs/cgroup.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/memory_limit.h"
+#include "core/base/system.h"
 
 #include <gtest/gtest.h>
 
