@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "tests/support/scenes.h"
@@ -43,17 +42,6 @@ inline void add_solid_peels(Rendering& rendering, const Scene& scene, int count,
       depth = onward + hit.distance;
     }
   }
-}
-
-/// The planes of the frame's hidden surfaces in another order.
-inline void turn_solid_peels(HostFrame& frame) {
-  const std::size_t pixels = frame.data.pixels();
-  std::ranges::reverse(frame.behind);
-  std::vector<float> turned;
-  for (std::size_t plane = frame.behind.size(); plane-- > 0;)
-    turned.insert(turned.end(), frame.behind_depth.begin() + std::ptrdiff_t(plane * pixels),
-                  frame.behind_depth.begin() + std::ptrdiff_t((plane + 1) * pixels));
-  frame.behind_depth = std::move(turned);
 }
 
 }  // namespace alcove::test
