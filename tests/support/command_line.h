@@ -1,30 +1,60 @@
-// What the tests of the command line share: a folder with the frame of the wall and its camera, and a run on them.
+// Folders with rendered frames and their cameras, and runs on them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/formats/exr.h"
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
 
 namespace alcove::test {
 
-class CommandLine : public testing::Test {
+/// Whatever `run` runs on.
+class Runs : public testing::Test {
  protected:
-  CommandLine() {
-    wall_frame().write(frame);
-    write_bytes(camera, wall_camera().dump());
-  }
+  Runs() { write_bytes(camera, wall_camera().dump()); }
 
-  /// `run` on the frame with its camera, a radius of 1 and these arguments.
-  Finished run(const std::vector<std::string>& more, const Surroundings& surroundings = {}) const {
-    std::vector<std::string> arguments{"run", frame, "-o", ao, "--camera", camera, "--radius", "1"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments, surroundings);
+  virtual Finished run(const Options& more, const Surroundings& surroundings = {}) const = 0;
+
+  /// A run that must succeed.
+  Finished done(const Options& more = {}, const Surroundings& surroundings = {}) const {
+    const Finished finished = run(more, surroundings);
+    EXPECT_EQ(finished.code, 0) << testing::PrintToString(more) << finished;
+    return finished;
+  }
+  /// What such a run's statistics say.
+  nlohmann::json stats_of(const Options& more, const Surroundings& surroundings = {}) const {
+    done(joined(more, {"--stats", folder / "stats.json"}), surroundings);
+    return nlohmann::json::parse(read_bytes(folder / "stats.json"));
+  }
+  /// A run that must end with this code and one line that holds these texts.
+  void expect_refused(int code, const Options& more, const Options& texts,
+                      const Surroundings& surroundings = {}) const {
+    SCOPED_TRACE(testing::PrintToString(more));
+    test::expect_refused(run(more, surroundings), code, texts);
   }
 
   TemporaryFolder folder;
-  const std::string frame = folder / "wall.0042.exr", camera = folder / "camera.json", ao = folder / "ao.exr";
+  const std::string camera = folder / "camera.json";
+};
+
+/// The frame of the wall.
+class CommandLine : public Runs {
+ protected:
+  CommandLine() { wall_frame().write(frame); }
+
+  /// `run` on the frame with its camera, a radius of 1 and these arguments.
+  Finished run(const Options& more, const Surroundings& surroundings = {}) const override {
+    return run_program(joined({"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, more), surroundings);
+  }
+  /// What a run that must succeed writes as floats: all channels of the AO's file.
+  Image computed(const Options& more) const {
+    return done(joined({"--type", "float"}, more)).code == 0 ? read_exr_image(ao) : Image();
+  }
+
+  const std::string frame = folder / "wall.0042.exr", ao = folder / "ao.exr";
 };
 
 }  // namespace alcove::test
