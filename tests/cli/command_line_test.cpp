@@ -24,30 +24,16 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-std::string config(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"run", "--print-config"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  const Finished finished = run_program(arguments);
+std::string config(const Options& more) {
+  const Finished finished = run_program(joined({"run", "--print-config"}, more));
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(finished.err, IsEmpty());
   return finished.out;
 }
 
-void expect_usage_error(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
-  const Finished finished = run_program(arguments);
-  EXPECT_EQ(finished.code, 2) << testing::PrintToString(arguments) << " " << finished;
-  EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
-  for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word)) << testing::PrintToString(arguments);
-}
-
-TEST_F(CommandLine, a_configuration_says_what_it_was_made_from) {
-  for (const std::vector<std::string>& options :
-       {std::vector<std::string>{"--accumulate", "4", "--radius", "0.5"}, {"--preset", "reference", "--radius", "2"}}) {
-    const std::string printed = config(options);
-    const std::string preset = folder / "printed.toml";
-    write_bytes(preset, printed);
-    EXPECT_EQ(config({"--preset", preset}), printed) << testing::PrintToString(options);
-  }
+void expect_usage_error(const Options& arguments, const Options& texts) {
+  SCOPED_TRACE(testing::PrintToString(arguments));
+  expect_refused(run_program(arguments), 2, texts);
 }
 
 TEST_F(CommandLine, no_arguments_give_the_help_and_code_2) {
@@ -58,26 +44,15 @@ TEST_F(CommandLine, no_arguments_give_the_help_and_code_2) {
 }
 
 TEST_F(CommandLine, help_and_version_give_code_0) {
-  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
-                                                    {"run", "--help"},
-                                                    {"run", "-h"},
-                                                    {"presets", "--help"},
-                                                    {"devices", "-h"}}) {
-    const Finished finished = run_program(arguments);
-    EXPECT_EQ(finished.code, 0) << testing::PrintToString(arguments) << finished;
-    EXPECT_THAT(finished.out, HasSubstr("Usage")) << testing::PrintToString(arguments);
+  for (const char* arguments : {"--help", "run --help", "run -h", "presets --help", "devices -h"}) {
+    const Finished finished = run_program(typed(arguments));
+    EXPECT_EQ(finished.code, 0) << arguments << finished;
+    EXPECT_THAT(finished.out, HasSubstr("Usage")) << arguments;
     EXPECT_THAT(finished.err, IsEmpty());
   }
   const Finished finished = run_program({"--version"});
   EXPECT_EQ(finished.code, 0);
   EXPECT_THAT(finished.out, testing::MatchesRegex("alcove [0-9]+\\.[0-9]+\\.[0-9]+\n.+, .+\nOpenEXR 3\\..+\n"));
-}
-
-TEST_F(CommandLine, help_all_of_run_prints_every_default) {
-  const std::string help = run_program({"run", "--help-all"}).out;
-  for (const char* text : {"=auto", "=1000000000", "=none", "=half",
-                           "--slices NUMBER=", "--steps NUMBER=", "--seed NUMBER=0", "--threads NUMBER=0"})
-    EXPECT_THAT(help, HasSubstr(text));
 }
 
 TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
@@ -95,6 +70,8 @@ TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
     EXPECT_THAT(all, HasSubstr(row.long_name()));
     if (row.is_common) EXPECT_THAT(help, HasSubstr(row.long_name()));
   }
+  for (const char* text : {"=auto", "=1000000000", "=none", "=half", "--slices NUMBER=", "--seed NUMBER=0"})
+    EXPECT_THAT(all, HasSubstr(text)) << "defaults";
   EXPECT_THAT(all, testing::Not(HasSubstr("filter-width")));
   EXPECT_LE(options_in(all), 75);
   EXPECT_EQ(run_program({"compare", "--help"}).out, run_program({"compare", "--help-all"}).out);
@@ -108,86 +85,76 @@ TEST_F(CommandLine, help_of_a_command_is_what_its_option_prints) {
     EXPECT_EQ(finished.out, run_program({command, "--help"}).out) << command;
     EXPECT_THAT(finished.out, HasSubstr(command));
   }
-  expect_usage_error({"help", "rnu"}, {"rnu", "did you mean run?"});
-  expect_usage_error({"help", "run", "bench"}, {"one command"});
 }
 
 TEST_F(CommandLine, an_input_without_a_command_is_run) {
-  ASSERT_EQ(run({}).code, 0);
+  done();
   const std::string expected = read_bytes(ao);
-  const std::vector<std::string> options{"-o", ao, "--camera", camera, "--radius", "1"};
-  std::vector<std::string> first{frame}, last = options;
-  first.insert(first.end(), options.begin(), options.end());
-  last.push_back(frame);
-  for (const auto& arguments : {first, last}) {
+  const Options options{"-o", ao, "--camera", camera, "--radius", "1"};
+  for (const auto& arguments : {joined({frame}, options), joined(options, {frame})}) {
     fs::remove(ao);
     const Finished finished = run_program(arguments);
     EXPECT_EQ(finished.code, 0) << finished;
     EXPECT_EQ(read_bytes(ao), expected) << testing::PrintToString(arguments);
   }
   for (const std::string name : {"/none/shot.0001.EXR", "/none/shot.tif", "/none/shot.####", "/none/shot.$F4.exr"}) {
-    const Finished finished = run_program({name, "-o", ao, "--camera", camera, "--radius", "1"});
+    const Finished finished = run_program(joined({name}, options));
     EXPECT_EQ(finished.code, 3) << finished;
     EXPECT_THAT(finished.err, HasSubstr("/none/")) << "not: there is no command";
   }
-  expect_usage_error({"--radius", "1"}, {"--radius", "command"});
-  expect_usage_error({"frame"}, {"there is no command frame", "alcove FILE.exr"});
 }
 
-TEST_F(CommandLine, complaints_are_sentences_of_ours) {
-  const std::pair<std::vector<std::string>, const char*> cases[] = {
-      {{"run", frame, "--radius"},
-       "--radius needs a value: auto|NUMBER[,NUMBER...] (scene units, above 0 and at most 1e+18)"},
-      {{"run", frame, "--layer="}, "--layer needs a value: NAME"},
-      {{"run", frame, "--radius", "-1"}, "--radius: -1 is out of range: above 0 and at most 1e+18"},
-      {{"run", frame, "--slices", "65"}, "--slices: 65 is out of range: 1 to 64"},
-      {{"run", frame, "--slices", "1,5"}, "--slices: 1,5 is no single number; decimals are written with a point"},
-      {{"run", frame, "--slices", "1", "--slices", "2"}, "--slices is given more than once"},
-      {{"run", frame, "--set", "denoise-kernel=1,,2"}, "--set denoise-kernel: \"\" is no weight of 0 or more"},
-      {{"run", frame, "shot.0002.exr"},
+TEST_F(CommandLine, complaints_are_sentences_of_ours_and_name_the_nearest_words) {
+  const std::string run = "run " + frame + " ";
+  const std::pair<std::string, std::string> rows[] = {
+      {run + "--radius", "--radius needs a value: auto|NUMBER[,NUMBER...] (scene units, above 0 and at most 1e+18)"},
+      {run + "--layer=", "--layer needs a value: NAME"},
+      {run + "--radius -1", "--radius: -1 is out of range: above 0 and at most 1e+18"},
+      {run + "--slices 65", "--slices: 65 is out of range: 1 to 64"},
+      {run + "--slices 1,5", "--slices: 1,5 is no single number; decimals are written with a point"},
+      {run + "--slices 1 --slices 2", "--slices is given more than once"},
+      {run + "--set denoise-kernel=1,,2", "--set denoise-kernel: \"\" is no weight of 0 or more"},
+      {run + "shot.0002.exr",
        "shot.0002.exr: alcove run takes one INPUT; a sequence is one name with a pattern: write shot.####.exr"},
-      {{"run", frame, "shot.7.exr"}, "write shot.%d.exr"},
-      {{"run", frame, "shot.0007_v002.exr"}, "write shot.####_v002.exr"},
-      {{"run", frame, "shot_V002.exr"}, "shot_V002.exr: alcove run takes one INPUT; see"},
-      {{"run", frame, "v2.exr"}, "v2.exr: alcove run takes one INPUT; see"},
-      {{"inspect", frame, "--slcies", "2"}, "there is no option --slcies (did you mean --slices?); see alcove inspect"},
-      {{"run", frame, "--", "-x"}, "there is no option -x"},
-      {{"compare", "a.exr"}, "REFERENCE is missing: what it should be"},
-      {{"compare", "a.exr", "b.exr", "c.exr"}, "c.exr: alcove compare takes one RESULT and one REFERENCE; see"},
-      {{"compare", "a.exr", "b.exr", "--max-rmse", "-1"}, "--max-rmse: -1 is out of range: 0 or more"},
-      {{"bench", "a.toml", "--repeats", "1.5"}, "--repeats: 1.5 is no whole number"},
-      {{"bench", "a.toml", "--json"}, "--json needs a value: FILE.json"},
-      {{"bench", "a.toml", "--stability"}, "SUITE does not apply with --stability"},
-      {{"bench", "--stability", "--limits", "l.toml"}, "--limits does not apply with --stability"},
-      {{"devices", "first"}, "first: alcove devices takes options only"},
-      {{"presets", "draft", "standard"}, "standard: alcove presets takes one NAME; see alcove presets --help"},
+      {run + "shot.7.exr", "write shot.%d.exr"},
+      {run + "shot.0007_v002.exr", "write shot.####_v002.exr"},
+      {run + "shot_V002.exr", "shot_V002.exr: alcove run takes one INPUT; see"},
+      {run + "v2.exr", "v2.exr: alcove run takes one INPUT; see"},
+      {run + "-- -x", "there is no option -x"},
+      {run + "-o", "-o"},
+      {run + "--radis 1", "there is no option --radis (did you mean --radius"},
+      {run + "--preset prodction", "prodction (did you mean production?"},
+      {run + "--falloff quadradic", "--falloff: quadradic"},
+      {run + "--falloff quadradic", "did you mean quadratic?"},
+      {run + "--set compression=zipp", "--set compression: zipp"},
+      {run + "--set compression=zipp", "did you mean zip"},
+      {run + "--depth-kind plannar", "did you mean planar?"},
+      {"--radius 1", "command"},
+      {"frame", "there is no command frame"},
+      {"frame", "alcove FILE.exr"},
+      {"rnu", "did you mean run?"},
+      {"preset", "did you mean presets"},
+      {"help rnu", "did you mean run?"},
+      {"help run bench", "one command"},
+      {"inspect " + frame + " --slcies 2", "there is no option --slcies (did you mean --slices?); see alcove inspect"},
+      {"compare a.exr", "REFERENCE is missing: what it should be"},
+      {"compare a.exr b.exr c.exr", "c.exr: alcove compare takes one RESULT and one REFERENCE; see"},
+      {"compare a.exr b.exr --max-rmse -1", "--max-rmse: -1 is out of range: 0 or more"},
+      {"bench a.toml --repeats 1.5", "--repeats: 1.5 is no whole number"},
+      {"bench a.toml --json", "--json needs a value: FILE.json"},
+      {"bench a.toml --stability", "SUITE does not apply with --stability"},
+      {"bench --stability --limits l.toml", "--limits does not apply with --stability"},
+      {"devices first", "first: alcove devices takes options only"},
+      {"devices --jsn", "--jsn"},
+      {"presets standrad", "did you mean standard?"},
+      {"presets draft standard", "standard: alcove presets takes one NAME; see alcove presets --help"},
   };
-  for (const auto& [arguments, sentence] : cases) expect_usage_error(arguments, {sentence});
-}
-
-TEST_F(CommandLine, misspelt_words_are_answered_with_the_nearest) {
-  expect_usage_error({"rnu"}, {"rnu", "did you mean run?"});
-  expect_usage_error({"preset"}, {"preset", "did you mean presets"});
-  expect_usage_error({"presets", "standrad"}, {"standrad", "did you mean standard?"});
-  expect_usage_error({"run", frame, "--radis", "1"}, {"--radis", "did you mean --radius"});
-  expect_usage_error({"run", frame, "--preset", "prodction"}, {"prodction", "did you mean production?"});
-  expect_usage_error({"run", frame, "--falloff", "quadradic"}, {"--falloff", "quadradic", "did you mean quadratic?"});
-  expect_usage_error({"run", frame, "--set", "compression=zipp"}, {"--set compression", "zipp", "did you mean zip"});
-  expect_usage_error({"run", frame, "--depth-kind", "plannar"}, {"--depth-kind", "plannar", "did you mean planar?"});
-}
-
-TEST_F(CommandLine, unexpected_words_are_usage_errors) {
-  expect_usage_error({"run", frame, "another.exr", "-o", ao}, {"another.exr"});
-  expect_usage_error({"presets", "draft", "standard"}, {"presets"});
-  expect_usage_error({"devices", "--jsn"}, {"--jsn"});
-  expect_usage_error({"run", frame, "-o"}, {"-o"});
+  for (const auto& [arguments, sentence] : rows) expect_usage_error(typed(arguments), {sentence});
 }
 
 TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
-  for (const char* value : {"0", "-1", "nan", "inf", "wide"})
-    expect_usage_error({"run", frame, "-o", ao, "--radius", value}, {"--radius"});
   const std::pair<const char*, std::vector<std::string>> cases[] = {
-      {"radius", {"1e400", "", "1,", "1 2", "2e18", "-inf"}},
+      {"radius", {"0", "-1", "nan", "inf", "wide", "1e400", "", "1,", "1 2", "2e18", "-inf"}},
       {"fov", {"0", "180", "nan"}},
       {"slices", {"0", "65", "2.5"}},
       {"steps", {"0", "4097"}},
@@ -269,56 +236,25 @@ TEST_F(CommandLine, later_presets_win_and_options_win_over_presets) {
 }
 
 TEST_F(CommandLine, printed_config_is_a_preset_that_gives_itself) {
-  const std::string odd_name = "a b/\"cam\" = ü.json";
-  const std::string printed = config({"--radius",    "0.1234567890123",
-                                      "--camera",    odd_name,
-                                      "--falloff",   "smooth",
-                                      "--set",       "falloff-start=0.25",
-                                      "--seed",      "4294967295",
-                                      "--sky",       "1e10",
-                                      "--device",    "cpu",
-                                      "--set",       "require-gpu=true",
-                                      "--set",       "no-pipeline-cache=true",
-                                      "--set",       "denoise-kernel=0.5,0.25,0.125",
-                                      "-v",          "--normal-channels",
-                                      "a.X,b.Y,c.Z", "--type",
-                                      "float",       "-o",
-                                      "out put.exr", "--preset",
-                                      "draft"});
-  EXPECT_THAT(printed, AllOf(HasSubstr(odd_name), HasSubstr("0.1234567890123"), HasSubstr("out put.exr"),
-                             HasSubstr("a.X,b.Y,c.Z"), HasSubstr("0.5,0.25,0.125"), HasSubstr("require-gpu")));
-  const std::string preset = folder / "printed.toml";
-  write_bytes(preset, printed);
-  EXPECT_EQ(config({"--preset", preset}), printed);
-  write_bytes(preset, config({}));
-  EXPECT_EQ(config({"--preset", preset}), config({}));
+  const std::string preset = folder / "printed.toml", odd_name = "a b/\"cam\" = ü.json";
+  const Options odd = joined(
+      {"--camera", odd_name, "-o", "out put.exr"},
+      typed("--radius 0.1234567890123 --falloff smooth --set falloff-start=0.25 --seed 4294967295 --sky 1e10 --device "
+            "cpu --set require-gpu=true --set no-pipeline-cache=true --set denoise-kernel=0.5,0.25,0.125 -v "
+            "--normal-channels a.X,b.Y,c.Z --type float --preset draft"));
+  EXPECT_THAT(config(odd), AllOf(HasSubstr(odd_name), HasSubstr("0.1234567890123"), HasSubstr("out put.exr"),
+                                 HasSubstr("a.X,b.Y,c.Z"), HasSubstr("0.5,0.25,0.125"), HasSubstr("require-gpu")));
+  for (const Options& options :
+       {odd, Options(), typed("-v -v"), typed("--accumulate 4 --radius 0.5"), typed("--preset reference --radius 2")}) {
+    const std::string printed = config(options);
+    write_bytes(preset, printed);
+    EXPECT_EQ(config({"--preset", preset}), printed) << testing::PrintToString(options);
+  }
 }
 
 TEST_F(CommandLine, a_hash_within_a_name_begins_no_comment_of_a_preset) {
   write_bytes(folder / "shot.toml", "camera = \"shot #1.json\"  # the first\n");
   EXPECT_THAT(lines_of(config({"--preset", folder / "shot.toml"})), Contains("camera=\"shot #1.json\""));
-}
-
-TEST_F(CommandLine, a_switch_given_twice_is_printed_as_a_preset_can_hold_it) {
-  const std::string printed = config({"-v", "-v"});
-  write_bytes(folder / "printed.toml", printed);
-  EXPECT_EQ(config({"--preset", folder / "printed.toml"}), printed);
-}
-
-TEST_F(CommandLine, a_wrong_preset_is_a_usage_error_that_names_it) {
-  const std::string preset = folder / "shot.toml";
-  const std::pair<const char*, const char*> cases[] = {{"radios = 1\n", "radios"},
-                                                       {"radius = -1\n", "radius"},
-                                                       {"falloff = \"cubic\"\n", "cubic"},
-                                                       {"[radius]\nx = 1\n", "radius"}};
-  for (const auto& [text, word] : cases) {
-    write_bytes(preset, text);
-    expect_usage_error({"run", frame, "-o", ao, "--preset", preset}, {word, "shot.toml"});
-  }
-  write_bytes(preset, "radios = 1\n");
-  expect_usage_error({"run", frame, "-o", ao, "--preset", preset}, {"there is no setting radios (did you mean radius"});
-  expect_usage_error({"run", frame, "-o", ao, "--preset", folder / "missing.toml"}, {"missing.toml", "--preset"});
-  expect_usage_error({"run", frame, "-o", ao, "--preset", folder.path()}, {folder.path(), "--preset"});
 }
 
 TEST_F(CommandLine, a_file_in_the_working_directory_is_not_taken_for_a_preset_of_that_name) {

@@ -27,9 +27,7 @@ using Names = std::vector<std::string>;
 const Names kCommands{"run", "inspect", "compare", "bench", "presets", "devices", "doctor"};
 
 std::string generated(const Names& what) {
-  Names arguments{"--generate"};
-  arguments.insert(arguments.end(), what.begin(), what.end());
-  const Finished finished = run_program(arguments);
+  const Finished finished = run_program(joined({"--generate"}, what));
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(finished.err, IsEmpty());
   return finished.out;
@@ -173,12 +171,13 @@ TEST_F(Generated, zsh_completes) {
     const std::size_t begin = shown.rfind("LINE<");
     return begin == shown.npos ? shown : shown.substr(begin + 5, shown.find('>', begin) - begin - 5);
   };
-  EXPECT_THAT(completed("alcove pres"), StartsWith("alcove presets"));
-  EXPECT_THAT(completed("alcove run --normal-sp"), StartsWith("alcove run --normal-space"));
-  EXPECT_THAT(completed("alcove run --normal-space w"), StartsWith("alcove run --normal-space world"));
-  EXPECT_THAT(completed("alcove frame.exr --rad"), StartsWith("alcove frame.exr --radius"));
-  EXPECT_THAT(completed("alcove run --preset produ"), StartsWith("alcove run --preset production"));
-  EXPECT_THAT(completed("alcove compare --max-r"), StartsWith("alcove compare --max-rmse"));
+  for (const auto& [words, line] : {std::pair("alcove pres", "alcove presets"),
+                                    {"alcove run --normal-sp", "alcove run --normal-space"},
+                                    {"alcove run --normal-space w", "alcove run --normal-space world"},
+                                    {"alcove frame.exr --rad", "alcove frame.exr --radius"},
+                                    {"alcove run --preset produ", "alcove run --preset production"},
+                                    {"alcove compare --max-r", "alcove compare --max-rmse"}})
+    EXPECT_THAT(completed(words), StartsWith(line));
 }
 
 TEST_F(Generated, fish_completes) {
@@ -202,13 +201,8 @@ TEST_F(Generated, fish_completes) {
 }
 
 TEST_F(Generated, other_words_are_refused) {
-  for (const Names& arguments : {Names{}, {"html"}, {"man", "rnu"}, {"bash", "run"}, {"man", "run", "more"}}) {
-    Names all{"--generate"};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    const Finished finished = run_program(all);
-    EXPECT_EQ(finished.code, 2) << finished;
-    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
-  }
+  for (const char* more : {"", "html", "man rnu", "bash run", "man run more"})
+    expect_refused(run_program(joined({"--generate"}, typed(more))), 2, {});
 }
 
 }  // namespace

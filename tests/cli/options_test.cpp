@@ -107,11 +107,14 @@ TEST_F(Options, refuse_what_hidden_surfaces_cannot_be) {
   };
   EXPECT_THAT(refusal("--behind", Words(9, "a.exr")), HasSubstr("there are 9 files; a run takes at most 8"));
   EXPECT_EQ(refusal("--behind", Words(8, "a.exr")), "");
-  EXPECT_THAT(refusal("--behind-kind", {"fronts,back"}), HasSubstr("--behind-kind: back is none of"));
-  EXPECT_THAT(refusal("--around", {"33"}), HasSubstr("neither all nor a whole number from 0 to 32"));
-  for (const char* length : {"-1", "inf", "nan", "near"})
-    EXPECT_THAT(refusal("--set separation", {length}), HasSubstr("neither auto nor a length")) << length;
-  EXPECT_THAT(refusal("--set hidden", {"4"}), HasSubstr("out of range: 0 to 3"));
+  for (const auto& [option, word, said] : {std::tuple("--behind-kind", "fronts,back", "--behind-kind: back is none of"),
+                                           {"--around", "33", "neither all nor a whole number from 0 to 32"},
+                                           {"--set separation", "-1", "neither auto nor a length"},
+                                           {"--set separation", "inf", "neither auto nor a length"},
+                                           {"--set separation", "nan", "neither auto nor a length"},
+                                           {"--set separation", "near", "neither auto nor a length"},
+                                           {"--set hidden", "4", "out of range: 0 to 3"}})
+    EXPECT_THAT(refusal(option, {word}), HasSubstr(said));
   read("--around", {"ALL"});
   EXPECT_TRUE(options.settings.input.around_all);
   read("--around", {"4"});
@@ -119,15 +122,6 @@ TEST_F(Options, refuse_what_hidden_surfaces_cannot_be) {
   read("--set separation", {"0.5"});
   read("--set separation", {"auto"});
   EXPECT_FALSE(options.settings.estimator.separation);
-}
-
-TEST_F(Options, count_how_often_an_input_is_given_in_the_digest) {
-  options.settings.input.behind = {"a.exr"};
-  const std::string one = digest();
-  options.settings.input.behind = {"b.exr"};
-  EXPECT_EQ(digest(), one);
-  options.settings.input.behind = {"a.exr", "b.exr"};
-  EXPECT_NE(digest(), one);
 }
 
 TEST_F(Options, say_numbers_to_the_last_bit) {
@@ -244,18 +238,21 @@ TEST_F(Options, of_the_display_count_where_a_preview_shows_a_composite) {
   });
 }
 
-TEST_F(Options, that_are_not_set_are_not_those_that_are_zero) {
+TEST_F(Options, that_are_zero_or_given_twice_or_run_into_each_other_have_digests_of_their_own) {
   const std::string plain = digest();
   options.settings.estimator.fade_start = 0;
-  EXPECT_NE(digest(), plain);
-}
-
-TEST_F(Options, run_into_each_other_in_no_digest) {
+  EXPECT_NE(digest(), plain) << "not those that are not set";
   options.settings.input.layer = "a\n--view 1 b";
-  const std::string one = digest();
+  const std::string one_text = digest();
   options.settings.input.layer = "a";
   options.settings.input.view = "b";
-  EXPECT_NE(digest(), one);
+  EXPECT_NE(digest(), one_text);
+  options.settings.input.behind = {"a.exr"};
+  const std::string one_file = digest();
+  options.settings.input.behind = {"b.exr"};
+  EXPECT_EQ(digest(), one_file);
+  options.settings.input.behind = {"a.exr", "b.exr"};
+  EXPECT_NE(digest(), one_file);
 }
 
 TEST_F(Options, as_a_preset_are_what_they_are) {
@@ -276,7 +273,7 @@ TEST_F(Options, as_a_preset_are_what_they_are) {
 
 TEST_F(Options, of_the_camera_count_by_what_it_says_and_not_where_it_lies) {
   const auto digest_in_file = [&] {
-    EXPECT_EQ(run({}).code, 0);
+    done();
     return text_in(read_header(ao), "alcove/options");
   };
   const std::string before = digest_in_file();
@@ -292,17 +289,16 @@ TEST_F(Options, of_the_camera_count_by_what_it_says_and_not_where_it_lies) {
 
 /// A configuration whose only view multiplies by `factor`.
 std::string display_config(const char* factor) {
-  const std::string row = std::string("from_reference: !<MatrixTransform> {matrix: [") + factor + ", 0, 0, 0, 0, " +
-                          factor + ", 0, 0, 0, 0, " + factor + ", 0, 0, 0, 0, 1]}";
-  return "ocio_profile_version: 1\n"
-         "roles: {default: scene, scene_linear: scene}\n"
-         "displays:\n"
-         "  screen:\n"
-         "    - !<View> {name: darker, colorspace: dark}\n"
-         "colorspaces:\n"
-         "  - !<ColorSpace> {name: scene}\n"
-         "  - !<ColorSpace> {name: dark, " +
-         row + "}\n";
+  constexpr const char* kText = R"(ocio_profile_version: 1
+roles: {{default: scene, scene_linear: scene}}
+displays:
+  screen:
+    - !<View> {{name: darker, colorspace: dark}}
+colorspaces:
+  - !<ColorSpace> {{name: scene}}
+  - !<ColorSpace> {{name: dark, from_reference: !<MatrixTransform> {{matrix: [{0}, 0, 0, 0, 0, {0}, 0, 0, 0, 0, {0}, 0, 0, 0, 0, 1]}}}}
+)";
+  return fmt::format(kText, factor);
 }
 
 class Previews : public CommandLine {
@@ -316,10 +312,9 @@ class Previews : public CommandLine {
   }
 
   /// The preview after a run with --resume; the variable OCIO has this value, or none.
-  std::string preview_of(std::vector<std::string> more, std::optional<std::string> variable = {}) {
-    more.insert(more.end(), {"--preview", preview, "--resume", "--progress", "plain"});
-    const Finished finished = run(more, {.environment = {{"OCIO", variable}}});
-    EXPECT_EQ(finished.code, 0) << finished;
+  std::string preview_of(const Words& more, std::optional<std::string> variable = {}) {
+    const Finished finished = done(joined(more, {"--preview", preview, "--resume", "--progress", "plain"}),
+                                   {.environment = {{"OCIO", variable}}});
     is_kept = finished.err.find("whole, kept") != std::string::npos;
     return read_bytes(preview);
   }
@@ -330,8 +325,8 @@ class Previews : public CommandLine {
 };
 
 TEST_F(Previews, are_made_again_for_another_configuration_of_the_display) {
-  const Words by_half{shown[0], shown[1], "--set", "ocio=" + half};
-  const Words by_quarter{shown[0], shown[1], "--set", "ocio=" + quarter};
+  const Words by_half = joined(shown, {"--set", "ocio=" + half}),
+              by_quarter = joined(shown, {"--set", "ocio=" + quarter});
   const std::string halved = preview_of(by_half);
   EXPECT_EQ(preview_of(by_half), halved);
   EXPECT_TRUE(is_kept);
@@ -343,11 +338,8 @@ TEST_F(Previews, are_made_again_for_another_configuration_of_the_display) {
   EXPECT_NE(preview_of(shown), halved) << "the built-in configuration";
   write_bytes(half, display_config("0.25"));
   EXPECT_NE(preview_of(by_half), halved) << "another text in the same file";
-}
-
-TEST_F(Previews, are_made_again_where_the_composite_is_not_asked_for_any_more) {
   const std::string of_composite = preview_of(shown);
-  EXPECT_NE(preview_of({}), of_composite);
+  EXPECT_NE(preview_of({}), of_composite) << "the composite is not asked for any more";
   preview_of({});
   EXPECT_TRUE(is_kept);
 }

@@ -9,7 +9,6 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
@@ -29,9 +28,7 @@ TEST_F(CommandLine, ao_is_one_half_channel_with_the_windows_and_attributes_of_th
       input.attributes = {{"owner", "a studio"}, {"sceneTimeCode", "01:02:03:04"}, {"comments", "ü"}};
       input.write(frame);
       write_bytes(camera, wall_camera(display, aspect).dump());
-      const Finished finished = run({});
-      ASSERT_EQ(finished.code, 0) << to_string(data) << finished;
-
+      done();
       ExrHeader header = read_header(ao);
       const ExrHeader before = read_header(frame);
       EXPECT_THAT(channels_in(header), ElementsAre(HeaderChannel{"Y", 1}));
@@ -51,9 +48,7 @@ TEST_F(CommandLine, ao_is_one_half_channel_with_the_windows_and_attributes_of_th
 TEST_F(CommandLine, ao_is_open_above_and_dark_in_the_corner_whatever_the_data_window) {
   for (const Window& data : {kWallWindow, Window{-8, -4, 80, 44}, Window{10, 6, 40, 26}}) {
     wall_frame(data).write(frame);
-    const Finished finished = run({"--type", "float"});
-    ASSERT_EQ(finished.code, 0) << finished;
-    const Image image = read_exr_image(ao);
+    const Image image = computed({});
     const auto at = [&](int x, int y) {
       return image.pixels[std::size_t(y - data.y) * std::size_t(data.width) + std::size_t(x - data.x)];
     };
@@ -65,12 +60,11 @@ TEST_F(CommandLine, ao_is_open_above_and_dark_in_the_corner_whatever_the_data_wi
 }
 
 TEST_F(CommandLine, type_and_compression_are_as_asked) {
-  ASSERT_EQ(run({"--type", "float", "--set", "compression=none"}).code, 0);
+  const Image exact = computed({"--set", "compression=none"});
   ExrHeader header = read_header(ao);
   EXPECT_THAT(channels_in(header), ElementsAre(HeaderChannel{"Y", 2}));
   EXPECT_EQ(header["compression"].bytes, std::string(1, 0));
-  const Image exact = read_exr_image(ao);
-  ASSERT_EQ(run({"--set", "compression=piz"}).code, 0);
+  done({"--set", "compression=piz"});
   EXPECT_EQ(read_header(ao)["compression"].bytes, std::string(1, 4));
   const Image rounded = read_exr_image(ao);
   for (std::size_t i = 0; i < exact.pixels.size(); i++) ASSERT_NEAR(rounded.pixels[i], exact.pixels[i], 0x1p-12) << i;
@@ -82,11 +76,10 @@ struct Composite {
   std::span<const float> in(const std::string& name) const { return input.plane("ViewLayer." + name); }
 };
 
-/// The largest error of the composite against `ambient`, in units of what half precision allows; alpha must be the same
-/// bits.
-void expect_composite(const Composite& frame,
-                      const std::function<double(const std::string& component, std::size_t pixel)>& ambient,
-                      double precision) {
+using Ambient = std::function<double(const std::string& component, std::size_t pixel)>;
+/// The composite must be the beauty without what occlusion takes of `ambient`, as precise as that; alpha must be the
+/// same bits.
+void expect_composite(const Composite& frame, const Ambient& ambient, double precision = 1e-6) {
   const auto alpha = frame.in("Combined.A"), ao = frame.ao.plane("Y"), alpha_after = frame.result.plane("A");
   EXPECT_EQ(std::memcmp(alpha.data(), alpha_after.data(), alpha.size_bytes()), 0) << "alpha has changed";
   for (const std::string component : {"R", "G", "B"}) {
@@ -102,84 +95,70 @@ void expect_composite(const Composite& frame,
 
 class Composites : public CommandLine {
  protected:
-  Composite compute(const FrameFile& input, std::vector<std::string> more = {}) {
+  Composites() { add_beauty(input); }
+  Composite compute(const Options& more = {}) {
     input.write(frame);
-    const std::string composite = folder / "composite.exr";
-    more.insert(more.end(), {"--set", "composite-layers=rgba", "--composite", composite, "--type", "float", "--set",
-                             "compression=none"});
-    const Finished finished = run(more);
-    EXPECT_EQ(finished.code, 0) << finished;
+    done(joined(typed("--set composite-layers=rgba --type float --set compression=none --composite " + composite),
+                more));
     return {read_exr_image(frame), read_exr_image(ao), read_exr_image(composite)};
   }
-  std::string how() const { return text_in(read_header(folder / "composite.exr"), "alcove/composite"); }
+  /// What is stored as half but for the depth.
+  void make_half() {
+    for (const auto& [name, plane] : input.planes)
+      if (!name.ends_with("Depth.Z")) input.halves.insert(name);
+  }
+  std::string how() const { return text_in(read_header(composite), "alcove/composite"); }
+
+  FrameFile input = wall_frame();
+  const std::string composite = folder / "composite.exr";
 };
 
 TEST_F(Composites, composite_dims_only_the_ambient_part) {
-  FrameFile input = wall_frame();
-  add_beauty(input);
   for (const bool is_half : {false, true}) {
-    if (is_half)
-      for (const auto& [name, plane] : input.planes)
-        if (!name.ends_with("Depth.Z")) input.halves.insert(name);
-    const Composite frame = compute(input);
-    expect_composite(
-        frame,
-        [&](const std::string& c, std::size_t i) {
-          return double(frame.in("DiffInd." + c)[i]) * frame.in("DiffCol." + c)[i];
-        },
-        is_half ? 0x1p-11 : 1e-6);
+    if (is_half) make_half();
+    const Composite frame = compute();
+    const Ambient indirect = [&](const std::string& c, std::size_t i) {
+      return double(frame.in("DiffInd." + c)[i]) * frame.in("DiffCol." + c)[i];
+    };
+    expect_composite(frame, indirect, is_half ? 0x1p-11 : 1e-6);
     EXPECT_THAT(how(), StartsWith("ambient"));
     const int type = is_half ? 1 : 2;
-    EXPECT_THAT(channels_in(read_header(folder / "composite.exr")),
-                ElementsAre(HeaderChannel{"A", type}, HeaderChannel{"B", type}, HeaderChannel{"G", type},
-                            HeaderChannel{"R", type}));
+    EXPECT_THAT(channels_in(read_header(composite)), ElementsAre(HeaderChannel{"A", type}, HeaderChannel{"B", type},
+                                                                 HeaderChannel{"G", type}, HeaderChannel{"R", type}));
   }
 }
 
 TEST_F(Composites, blender_5_names_mean_the_same_light) {
-  FrameFile input = wall_frame();
-  add_beauty(input);
-  const Composite old_names = compute(input);
+  const Composite old_names = compute();
   for (const std::string c : {".R", ".G", ".B"}) {
     input.rename("ViewLayer.DiffInd" + c, "ViewLayer.Diffuse Indirect" + c);
     input.rename("ViewLayer.DiffCol" + c, "ViewLayer.Diffuse Color" + c);
   }
-  const Composite new_names = compute(input);
+  const Composite new_names = compute();
   EXPECT_EQ(old_names.result.pixels, new_names.result.pixels)
       << "the indirect light of Blender is without the surface's colour, under either name";
 }
 
 TEST_F(Composites, arnold_indirect_light_holds_the_colour_already) {
-  FrameFile input = wall_frame();
-  add_beauty(input);
   for (const std::string c : {".R", ".G", ".B"})
     input.rename("ViewLayer.DiffInd" + c, "ViewLayer.diffuse_indirect" + c);
-  const Composite frame = compute(input);
-  expect_composite(
-      frame, [&](const std::string& c, std::size_t i) { return double(frame.in("diffuse_indirect." + c)[i]); }, 1e-6);
+  const Composite frame = compute();
+  expect_composite(frame,
+                   [&](const std::string& c, std::size_t i) { return double(frame.in("diffuse_indirect." + c)[i]); });
 }
 
 TEST_F(Composites, composite_without_parts_is_a_multiply_and_says_so) {
-  FrameFile input = wall_frame();
-  add_beauty(input);
-  std::erase_if(input.planes, [](const auto& plane) { return plane.first.find(".Diff") != std::string::npos; });
-  const Composite frame = compute(input);
-  expect_composite(
-      frame, [&](const std::string& c, std::size_t i) { return double(frame.in("Combined." + c)[i]); }, 1e-6);
+  input.erase(".Diff");
+  const Composite frame = compute();
+  expect_composite(frame, [&](const std::string& c, std::size_t i) { return double(frame.in("Combined." + c)[i]); });
   EXPECT_THAT(how(), StartsWith("multiply"));
 }
 
 TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {
-  FrameFile beauty = wall_frame();
-  add_beauty(beauty);
-  std::erase_if(beauty.planes, [](const auto& plane) { return plane.first.find("Combined") == std::string::npos; });
-  for (const std::string c : {"R", "G", "B", "A"}) beauty.rename("ViewLayer.Combined." + c, c);
-  beauty.attributes = {{"grade", "none"}};
+  FrameFile beauty{kWallWindow, kWallWindow, 1, {}, {}, {{"grade", "none"}}};
+  for (const std::string c : {"R", "G", "B", "A"}) beauty.planes[c] = input.planes.at("ViewLayer.Combined." + c);
   beauty.write(folder / "beauty.exr");
-  const std::string composite = folder / "composite.exr";
-  const Finished finished =
-      run({"--beauty", folder / "beauty.exr", "--composite", composite, "--set", "composite-layers=rgba"});
-  ASSERT_EQ(finished.code, 0) << finished;
+  done({"--beauty", folder / "beauty.exr", "--composite", composite, "--set", "composite-layers=rgba"});
   EXPECT_EQ(text_in(read_header(composite), "grade"), "none");
   EXPECT_EQ(text_in(read_header(ao), "grade"), "(none)");
   const Image before = read_exr_image(folder / "beauty.exr", {"A"}), after = read_exr_image(composite, {"A"});
@@ -187,8 +166,6 @@ TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {
 }
 
 TEST_F(Composites, nothing_that_leaves_is_nan_or_infinite_and_repairs_are_counted) {
-  FrameFile input = wall_frame();
-  add_beauty(input);
   const float nan = std::nanf(""), inf = INFINITY;
   const auto spoil = [&](const char* name, std::size_t pixel, float value) {
     input.planes.at(std::string("ViewLayer.") + name)[pixel] = value;
@@ -200,7 +177,7 @@ TEST_F(Composites, nothing_that_leaves_is_nan_or_infinite_and_repairs_are_counte
   spoil("Combined.G", 1901, inf);
   spoil("DiffInd.B", 1902, -inf);
   spoil("Combined.A", 1903, nan);
-  const Composite frame = compute(input, {"--stats", folder / "stats.json"});
+  const Composite frame = compute({"--stats", folder / "stats.json"});
   for (const Image* image : {&frame.ao, &frame.result})
     for (std::size_t i = 0; i < image->pixels.size(); i++)
       EXPECT_TRUE(std::isfinite(image->pixels[i]))
@@ -211,19 +188,16 @@ TEST_F(Composites, nothing_that_leaves_is_nan_or_infinite_and_repairs_are_counte
 }
 
 TEST_F(Composites, a_composite_beyond_half_stays_finite) {
-  FrameFile input = wall_frame();
-  add_beauty(input);
   for (const char* name : {"ViewLayer.DiffInd.R", "ViewLayer.DiffCol.R"})
     input.planes[name].assign(kWallWindow.pixels(), 60000);
-  for (const auto& [name, plane] : input.planes)
-    if (!name.ends_with("Depth.Z")) input.halves.insert(name);
-  const Composite frame = compute(input);
+  make_half();
+  const Composite frame = compute();
   for (const float value : frame.result.pixels) ASSERT_TRUE(std::isfinite(value)) << value;
 }
 
 TEST_F(CommandLine, preview_is_a_png_of_the_display_windows_size) {
   wall_frame({-8, -4, 80, 44}).write(frame);
-  ASSERT_EQ(run({"--preview", folder / "preview.png"}).code, 0);
+  done({"--preview", folder / "preview.png"});
   const std::string png = read_bytes(folder / "preview.png");
   ASSERT_GT(png.size(), 33);
   EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
@@ -232,15 +206,11 @@ TEST_F(CommandLine, preview_is_a_png_of_the_display_windows_size) {
 }
 
 TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
-  const std::string stats_file = folder / "stats.json";
   FrameFile input = wall_frame();
   for (std::size_t i = 0; i < 64; i++) input.planes["ViewLayer.Depth.Z"][i] = 1e10f;  // one line of 36 is sky
   input.write(frame);
-  ASSERT_EQ(run({"--stats", stats_file, "--slices", "2", "--steps", "5", "--set", "stride=2", "--set",
-                 "density=uniform", "--set", "power=1.5"})
-                .code,
-            0);
-  const json stats = json::parse(read_bytes(stats_file)), one = stats.at("frames").at(0), totals = stats.at("totals");
+  const json stats = stats_of(typed("--slices 2 --steps 5 --set stride=2 --set density=uniform --set power=1.5"));
+  const json one = stats.at("frames").at(0), totals = stats.at("totals");
   EXPECT_TRUE(stats.at("device").is_string());
   EXPECT_EQ(stats.at("options"), text_in(read_header(ao), "alcove/options"));
   EXPECT_EQ(stats.at("frames").size(), 1);

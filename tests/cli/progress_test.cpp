@@ -35,15 +35,16 @@ std::vector<std::string> told_to_farm(const std::string& kind, int frames, const
   return lines_of(testing::internal::GetCapturedStdout());
 }
 
-/// What is printed while one frame in 17 parts is in work for so many seconds, and then for so many.
-std::string printed(const std::string& kind, bool is_quiet, const std::vector<double>& seconds) {
+/// What is printed while one frame is in work for so many seconds, and then for so many.
+std::string printed(const std::string& kind, bool is_quiet, const std::vector<double>& seconds,
+                    FrameProgress frame = {.frame = 1, .input = "shot.exr", .part = 3, .parts = 17}) {
   ProgressOptions options;
   options.kind = kind;
   options.quiet = is_quiet;
   Progress progress(options, "");
   testing::internal::CaptureStderr();
   for (const double s : seconds) {
-    const FrameProgress frame{.frame = 1, .input = "shot.exr", .seconds = s, .part = 3, .parts = 17};
+    frame.seconds = s;
     progress.working({&frame, 1});
   }
   return testing::internal::GetCapturedStderr();
@@ -54,25 +55,14 @@ TEST(Progress, tells_a_terminal_of_a_frame_from_two_seconds_on) {
   EXPECT_THAT(printed("bar", false, {2.5}), AllOf(HasSubstr("shot.exr: 0:02"), HasSubstr("part 3 of 17")));
 }
 
-TEST(Progress, tells_logs_of_a_frame_ever_more_seldom) {
+TEST(Progress, tells_logs_of_a_frame_ever_more_seldom_and_at_least_every_five_minutes) {
   EXPECT_THAT(printed("plain", false, {2.5, 9.5}), IsEmpty());
   const auto lines = lines_of(printed("plain", false, {10, 11, 19, 20, 21, 39, 40}));
   ASSERT_EQ(lines.size(), 3);
   EXPECT_THAT(lines[1], AllOf(HasSubstr("shot.exr: 0:20"), HasSubstr("part 3 of 17")));
-}
-
-TEST(Progress, tells_how_much_of_a_frame_is_computed) {
-  ProgressOptions options;
-  options.kind = "plain";
-  Progress progress(options, "");
-  testing::internal::CaptureStderr();
-  const FrameProgress frame{.frame = 1, .input = "shot.exr", .seconds = 10, .part = 1, .done = 0.377};
-  progress.working({&frame, 1});
-  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("shot.exr: 0:10 so far, 37 % of it computed"));
-}
-
-TEST(Progress, tells_logs_of_a_frame_at_least_every_five_minutes) {
   EXPECT_EQ(lines_of(printed("plain", false, {2000, 2001, 2299, 2300, 2301, 2599, 2600})).size(), 3);
+  EXPECT_THAT(printed("plain", false, {10}, {.frame = 1, .input = "shot.exr", .part = 1, .done = 0.377}),
+              HasSubstr("shot.exr: 0:10 so far, 37 % of it computed"));
 }
 
 TEST(Progress, tells_farms_how_far_a_frame_is_and_never_goes_back) {

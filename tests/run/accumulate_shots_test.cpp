@@ -1,17 +1,13 @@
-// --accumulate where frames differ: turned cameras, other windows, damaged files, outputs without AO, and a shot that
-// grows; how many estimates are kept; and runs that stop.
+// --accumulate where frames differ: turned cameras, other windows, damaged files, and a shot that grows; how many
+// estimates are kept; and runs that stop.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "cli/options.h"
-#include "core/formats/exr.h"
-#include "core/run/batch.h"
 #include "core/run/frame_files.h"
 #include "core/run/memory.h"
 #include "core/run/plan.h"
 #include "core/run/shot.h"
 #include "tests/support/device.h"
-#include "tests/support/difference.h"
 #include "tests/support/walked_shot.h"
 
 namespace alcove {
@@ -23,11 +19,15 @@ using nlohmann::json;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 
-using Options = std::vector<std::string>;
+const Room kMuchRoom{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
 
 class AccumulatedShots : public WalkedShot {
  protected:
-  std::vector<float> planes(int frame) const { return read_exr_image(output(frame)).pixels; }
+  /// What a run that must succeed writes for a frame.
+  std::vector<float> planes(int frame, const Options& more) const {
+    done(joined({"--type", "float"}, more));
+    return read_exr_image(output(frame)).pixels;
+  }
 };
 
 TEST_F(AccumulatedShots, directions_of_a_turned_camera_are_turned_back) {
@@ -46,16 +46,11 @@ TEST_F(AccumulatedShots, directions_of_a_turned_camera_are_turned_back) {
   for (auto& [name, plane] : file.planes) std::ranges::reverse(plane);
   file.write(input(2));
 
-  const Options smooth{"--set", "stride=1", "--denoise",   "none",   "--slices", "32",    "--steps",
-                       "32",    "--aov",    "bent-normal", "--type", "float",    "--set", "complete=none"};
   for (const char* space : {"world", "view"}) {
-    Options alone = smooth, mean = smooth;
-    alone.insert(alone.end(), {"--set", std::string("aov-space=") + space});
-    mean.insert(mean.end(), {"--set", std::string("aov-space=") + space, "--accumulate", "1"});
-    ASSERT_EQ(run(alone).code, 0);
-    const auto truth = planes(1);
-    ASSERT_EQ(run(mean).code, 0);
-    const auto found = planes(1);
+    const Options alone = typed(std::string("--set stride=1 --denoise none --slices 32 --steps 32 --aov bent-normal "
+                                            "--set complete=none --set aov-space=") +
+                                space);
+    const auto truth = planes(1, alone), found = planes(1, joined(alone, {"--accumulate", "1"}));
     EXPECT_NE(found, truth) << "nothing of the other frame counts";
     EXPECT_LT(difference(found, truth).rmse, 0.01) << space;
   }
@@ -76,50 +71,32 @@ TEST_F(AccumulatedShots, frames_of_other_windows_have_the_bits_that_they_have_al
           plane[std::size_t(y * 48 + x)] = whole.planes.at(name)[std::size_t((y + 4) * 64 + x + 8)];
     part.write(input(frame));
   }
-  const Options options{"--accumulate", "1", "--threads", "1", "--type", "float"};
-  ASSERT_EQ(run(options).code, 0);
-  std::vector<std::vector<float>> together;
-  for (int frame = 1; frame <= kFrames; frame++) together.push_back(planes(frame));
+  const Options options = typed("--accumulate 1 --threads 1");
+  planes(1, options);
+  const auto together = outputs();
   for (int frame = 1; frame <= kFrames; frame++) {
-    Options one = options;
-    one.insert(one.end(), {"--frames", std::to_string(frame)});
-    ASSERT_EQ(run(one).code, 0);
-    EXPECT_TRUE(planes(frame) == together[std::size_t(frame - 1)]) << frame;
+    planes(frame, joined(options, {"--frames", std::to_string(frame)}));
+    EXPECT_TRUE(outputs() == together) << frame;
   }
 }
 
 TEST_F(AccumulatedShots, sets_at_the_same_place_do_not_move_each_other) {
   constexpr int kCut = 3;
   write_shot(2 * kCut);
-  const Options options{"--accumulate", "2", "--radius", "1.5", "--type", "float"};
-  const auto stats = [&](const Options& more) {
-    Options all = options;
-    all.insert(all.end(), more.begin(), more.end());
-    all.insert(all.end(), {"--stats", folder / "stats.json"});
-    const Finished finished = run(all);
-    EXPECT_EQ(finished.code, 0) << finished;
-    return json::parse(read_bytes(folder / "stats.json"))["frames"];
-  };
-  ASSERT_GT(stats({"--frames", "3"})[0]["frames_per_pixel"], 3) << "without a cut";
+  const Options options = typed("--accumulate 2 --radius 1.5");
+  ASSERT_GT(stats_of(joined(options, {"--frames", "3"}))["frames"][0]["frames_per_pixel"], 3) << "without a cut";
   // A set with the same floor, but another wall, and without the board.
   for (int frame = kCut + 1; frame <= 2 * kCut; frame++) {
     FrameFile file = wall_frame();
     put_board(file, kStep * frame, {-20, 20, 20, 5});
     file.write(input(frame));
   }
-  const json frames = stats({});
+  const json frames = stats_of(options)["frames"];
   for (int frame = 1; frame <= 2 * kCut; frame++) {
     const auto of = attribute_of_whole_exr(output(frame), "alcove/accumulated");
     EXPECT_EQ(of, frame <= kCut ? "frames 1-3" : "frames 4-6") << frame;
     EXPECT_GT(frames[std::size_t(frame - 1)]["frames_per_pixel"], 2) << frame;
   }
-}
-
-TEST_F(AccumulatedShots, outputs_without_ao_take_no_estimates) {
-  write_shot(3);
-  EXPECT_EQ(run({"--accumulate", "1", "--aov", "normal"}).code, 0);
-  EXPECT_EQ(run({"--accumulate", "1", "--aov", "depth", "--set", "debug=count", "--frames", "2"}).code, 0);
-  EXPECT_TRUE(fs::exists(out + "/ao.0002.count.png"));
 }
 
 TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_the_order) {
@@ -131,7 +108,6 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
   const FrameSource source = open_frame(plan.at(4), 4);
   // Depth, normal and AO of an estimate, and what was read: depth and three of a normal.
   const std::uint64_t bytes = (3 + 4) * sizeof(float) * source.file_data.pixels();
-  const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
   std::vector<std::weak_ptr<const EstimatedFrame>> all;
   const auto most_kept = [&](std::span<const int> frames, std::size_t lanes) {
     SharedFrames shot(plan, nullptr, frames);
@@ -141,9 +117,9 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
     for (std::size_t i = 0; i < frames.size(); i++) {
       PreparedOthers took;
       shot.begin(frames[i]);
-      const TakenEstimates taken = shot.estimates_of({gpu, room}, frames[i], took);
+      const TakenEstimates taken = shot.estimates_of({gpu, kMuchRoom}, frames[i], took);
       EXPECT_EQ(taken.of.size(), 3u);
-      slots.filled(gpu, plan, taken, frames[i], room.buffer_bytes);
+      slots.filled(gpu, plan, taken, frames[i], kMuchRoom.buffer_bytes);
       all.insert(all.end(), taken.of.begin(), taken.of.end());
       most = std::max(most, shot.estimated_count());
       if (i + 1 >= lanes) shot.done(frames[i + 1 - lanes]);
@@ -174,14 +150,13 @@ TEST_F(AccumulatedShots, where_fewer_frames_count_as_many_are_listed) {
   const FramePlan plan(settings);
   SharedFrames shot(plan, nullptr, plan.frames());
   gpu::Recorder gpu(device());
-  const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
   PreparedOthers took;
   EstimateSlots slots;
-  TakenEstimates taken = shot.estimates_of({gpu, room}, 3, took);
+  TakenEstimates taken = shot.estimates_of({gpu, kMuchRoom}, 3, took);
   for (const uint count : {4u, 3u, 1u}) {
     const auto is_other = [](const auto& estimated) { return estimated->frame != 3; };
     while (taken.of.size() > count + 1) taken.of.erase(std::ranges::find_if(taken.of, is_other));
-    const EstimateSet set = slots.filled(gpu, plan, taken, 3, room.buffer_bytes);
+    const EstimateSet set = slots.filled(gpu, plan, taken, 3, kMuchRoom.buffer_bytes);
     ASSERT_EQ(set.groups.size(), 1u);
     EXPECT_EQ(set.groups[0].count, count);
     EXPECT_EQ(set.groups[0].listed, 4u);
@@ -205,11 +180,10 @@ TEST_F(AccumulatedShots, no_more_of_what_estimates_see_is_kept_than_is_counted) 
   const FramePlan plan(settings);
   SharedFrames shot(plan, nullptr, plan.frames());
   gpu::Recorder gpu(device());
-  const Room room{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
   for (const int frame : plan.frames()) {
     PreparedOthers took;
     shot.begin(frame);
-    shot.estimates_of({gpu, room}, frame, took);
+    shot.estimates_of({gpu, kMuchRoom}, frame, took);
     EXPECT_LE(shot.seen_count(), counted()) << frame;
     shot.done(frame);
   }
@@ -232,53 +206,39 @@ TEST_F(AccumulatedShots, a_damaged_frame_fails_all_that_take_it_by_name) {
 TEST_F(AccumulatedShots, a_run_that_stops_ends_among_the_estimates_of_its_first_frame) {
   constexpr int kFrames = 9, kStop = 8;
   write_shot(kFrames);
-  RunOptions options;
-  ASSERT_TRUE(parse_run_options({in + "/f.%04d.exr", "-o", out + "/ao.%04d.exr", "--camera", camera, "--radius", "1",
-                                 "--accumulate", "4", "--threads", "1"},
-                                options));
   int asked = 0;
   RunWatch watch;
   watch.stop = [&] { return ++asked >= kStop; };
-  const RunReport report = run_frames(options.settings, watch);
+  const RunReport report = run_here(arguments(typed("--accumulate 4 --threads 1")), 0, watch);
   EXPECT_EQ(report.done, 0);
   EXPECT_EQ(report.dropped, kFrames);
   EXPECT_LE(asked, kStop + 1) << "once more, before the next frame";
   EXPECT_TRUE(outputs().empty());
 }
 
-TEST_F(AccumulatedShots, a_shot_that_grows_at_its_beginning_is_computed_again) {
-  write_shot(8);
+TEST_F(AccumulatedShots, resume_redoes_all_that_take_a_frame_that_is_new_or_was_written_again) {
+  write_shot(6);
   const std::string first = read_bytes(input(1));
   fs::remove(input(1));
-  const Options options{"--accumulate", "1"};
-  ASSERT_EQ(run(options).code, 0);
+  done({"--accumulate", "1"});
   write_bytes(input(1), first);
-  ASSERT_EQ(run({"--accumulate", "1", "--resume"}).code, 0);
+  const Options options = typed("--accumulate 1 --resume");
+  done(options);
   const auto resumed = outputs();
-  expect_same_outputs(resumed, {options});
-}
-
-TEST_F(AccumulatedShots, resume_redoes_all_that_take_a_frame_that_was_written_again) {
-  write_shot(6);
-  const Options options{"--accumulate", "1", "--resume"};
-  ASSERT_EQ(run(options).code, 0);
-  EXPECT_THAT(run(options).err, HasSubstr("6 kept"));
+  expect_same_outputs(resumed, {{"--accumulate", "1"}});
+  EXPECT_THAT(done(options).err, HasSubstr("6 kept"));
   // As large as it was, and the same at both ends: the time alone tells it.
   fs::last_write_time(input(1), fs::last_write_time(output(6)) + std::chrono::seconds(1));
-  const Finished finished = run(options);
+  const Finished finished = done(options);
   for (const int frame : {1, 2}) EXPECT_THAT(finished.err, HasSubstr(input(frame) + " -> ")) << frame;
   EXPECT_THAT(finished.err, HasSubstr(output(6) + ": whole, kept")) << "which does not take it";
 }
 
 TEST_F(AccumulatedShots, a_folder_of_stats_that_another_run_has_taken_away_is_made_again) {
   write_shot(2);
-  RunOptions options;
-  ASSERT_TRUE(parse_run_options({in + "/f.%04d.exr", "-o", out + "/ao.%04d.exr", "--camera", camera, "--radius", "1",
-                                 "--stats", folder / "new/stats.json"},
-                                options));
   RunWatch watch;
   watch.frame = [&](const FrameReport&) { fs::remove(folder / "new"); };
-  EXPECT_EQ(run_frames(options.settings, watch).done, 2);
+  EXPECT_EQ(run_here(arguments({"--stats", folder / "new/stats.json"}), 0, watch).done, 2);
   EXPECT_TRUE(fs::exists(folder / "new/stats.json"));
 }
 

@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "cli/options.h"
-#include "core/formats/exr.h"
-#include "core/run/batch.h"
-#include "core/run/plan.h"
-#include "tests/support/difference.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/walked_shot.h"
 
@@ -16,25 +11,16 @@ namespace {
 namespace fs = std::filesystem;
 using namespace test;
 using nlohmann::json;
-using testing::AllOf;
-using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::Not;
-
-using Options = std::vector<std::string>;
 
 constexpr int kFrames = 9;
-constexpr Window kWindow{0, 0, 96, 54}, kLarge{0, 0, 512, 288};
+constexpr Window kWindow{0, 0, 96, 54};
 
 /// Every pixel has an estimate, of as much noise as there may be.
-const Options kNoisy{"--set", "stride=1", "--denoise", "none", "--slices", "1", "--steps", "8", "--type", "float"};
+const Options kNoisy = typed("--set stride=1 --denoise none --slices 1 --steps 8 --type float");
 /// As much as makes no noise.
-const Options kSmooth{"--set", "stride=1", "--denoise", "none", "--slices", "32", "--steps", "32", "--type", "float"};
-
-Options joined(Options options, const Options& more) {
-  options.insert(options.end(), more.begin(), more.end());
-  return options;
-}
+const Options kSmooth = typed("--set stride=1 --denoise none --slices 32 --steps 32 --type float");
+const Options kAlone{"--noise", "animated"}, kByOne{"--accumulate", "1"}, kByFour{"--accumulate", "4"};
 
 /// A thing on its way to the right, px.
 struct Mover {
@@ -62,23 +48,13 @@ class Accumulated : public WalkedShot {
   /// The AO of all frames, the first one first.
   Frames ao_of(const Options& options, int frames = kFrames) const {
     remove_outputs();
-    const Finished finished = run(options);
-    EXPECT_EQ(finished.code, 0) << finished;
     Frames ao;
-    for (int frame = 1; finished.code == 0 && frame <= frames; frame++)
-      ao.push_back(read_exr_image(output(frame)).pixels);
+    if (done(options).code != 0) return Frames(std::size_t(frames), std::vector<float>(kWindow.pixels(), -1));
+    for (int frame = 1; frame <= frames; frame++) ao.push_back(ao_of_frame(frame));
     return ao;
   }
-
-  json stats_of(const Options& options) const {
-    const Finished finished = run(joined(options, {"--stats", folder / "stats.json"}));
-    EXPECT_EQ(finished.code, 0) << finished;
-    return json::parse(read_bytes(folder / "stats.json"))["frames"];
-  }
-
-  std::string header(int frame) const {
-    return attribute_of_whole_exr(output(frame), "alcove/accumulated").value_or("");
-  }
+  std::vector<float> ao_of_frame(int frame) const { return read_exr_image(output(frame), {"Y"}).pixels; }
+  json frames_of(const Options& options) const { return stats_of(options)["frames"]; }
 
   /// A camera that stands still, before a board that jumps to the right.
   void write_still_shot(double step) const {
@@ -115,12 +91,10 @@ class Accumulated : public WalkedShot {
     constexpr int kMiddle = 5;
     write_mover(mover);
     const Options options = joined(kSmooth, {"--radius", "0.3", "--frames", std::to_string(kMiddle)});
-    const auto middle_of = [&](const Options& with) {
-      const Finished finished = run(joined(options, with));
-      EXPECT_EQ(finished.code, 0) << finished;
-      return read_exr_image(output(kMiddle)).pixels;
-    };
-    const auto alone = middle_of({}), mean = middle_of(joined({"--accumulate", "4"}, more));
+    done(options);
+    const auto alone = ao_of_frame(kMiddle);
+    done(joined(joined(options, kByFour), more));
+    const auto mean = ao_of_frame(kMiddle);
     for (int frame = 1; frame <= kFrames; frame++) {
       // It and what it darkens most.
       const Window place{left_of(frame) - 2, mover.top - 2, mover.width + 4, mover.height + 4};
@@ -145,16 +119,9 @@ double rmse_of(const std::vector<std::vector<float>>& frames, const std::vector<
   return sum / double(frames.size());
 }
 
-TEST_F(Accumulated, of_no_frames_has_the_bits_of_one) {
-  write_shot(3);
-  ASSERT_EQ(run({}).code, 0);
-  const auto before = outputs();
-  expect_same_outputs(before, {{"--accumulate", "0"}});
-}
-
 TEST_F(Accumulated, noise_falls_with_the_root_of_the_count) {
   write_still_shot(0);
-  const Frames truth = ao_of(kSmooth), alone = ao_of(joined(kNoisy, {"--noise", "animated"}));
+  const Frames truth = ao_of(kSmooth), alone = ao_of(joined(kNoisy, kAlone));
   for (const int count : {1, 4}) {
     const Frames mean = ao_of(joined(kNoisy, {"--accumulate", std::to_string(count)}));
     EXPECT_LT(rmse_of(mean, truth), 1.2 * rmse_of(alone, truth) / std::sqrt(2 * count + 1)) << count;
@@ -170,19 +137,19 @@ TEST_F(Accumulated, what_stands_still_does_not_change) {
 
 TEST_F(Accumulated, a_moving_camera_gains_as_much) {
   write_shot(kFrames, kWindow);
-  const Frames truth = ao_of(kSmooth), alone = ao_of(joined(kNoisy, {"--noise", "animated"}));
-  EXPECT_LT(rmse_of(ao_of(joined(kNoisy, {"--accumulate", "4"})), truth), 0.6 * rmse_of(alone, truth));
+  const Frames truth = ao_of(kSmooth), alone = ao_of(joined(kNoisy, kAlone));
+  EXPECT_LT(rmse_of(ao_of(joined(kNoisy, kByFour)), truth), 0.6 * rmse_of(alone, truth));
 }
 
 TEST_F(Accumulated, what_moves_leaves_no_trail) {
   write_still_shot(0.35);
   // With so little noise all that differs from the single frame by more is a trail.
   const Frames truth = ao_of(kSmooth);
-  const Frames mean = ao_of(joined(kSmooth, {"--accumulate", "4"}));
+  const Frames mean = ao_of(joined(kSmooth, kByFour));
   const Window swept{9, 10, 66, 34};
   for (std::size_t frame = 0; frame < truth.size(); frame++)
     EXPECT_LT(rmse_within(swept, mean[frame], truth[frame]), 0.01) << frame + 1;
-  const json frames = stats_of(joined(kSmooth, {"--accumulate", "4"}));
+  const json frames = frames_of(joined(kSmooth, kByFour));
   EXPECT_GT(frames[4]["frames_per_pixel"], 3) << "what is far from the board counts all the same";
 }
 
@@ -201,7 +168,7 @@ TEST_F(Accumulated, what_lifts_slowly_off_a_wall_takes_its_shadow_along) {
     file.write(input(frame));
   }
   const Options options = joined(kSmooth, {"--radius", "0.5"});
-  const Frames alone = ao_of(options), mean = ao_of(joined(options, {"--accumulate", "4"}));
+  const Frames alone = ao_of(options), mean = ao_of(joined(options, kByFour));
   for (std::size_t frame = 0; frame < alone.size(); frame++)
     EXPECT_LT(rmse_within(kAround, mean[frame], alone[frame]), 0.01) << frame + 1;
 }
@@ -210,91 +177,37 @@ TEST_F(Accumulated, vectors_tell_of_what_is_as_thin_as_a_pixel) {
   expect_no_trails({std::pair(1, 12), {2, 12}, {12, 1}, {2, 2}}, {"--motion", in + "/f.%04d.exr"});
 }
 
-TEST_F(Accumulated, threads_chunks_and_order_change_no_bit) {
-  write_shot(kFrames);
-  for (const Options& options : {Options{"--accumulate", "2"}, Options{"--accumulate", "1", "--around", "1"},
-                                 Options{"--accumulate", "1", "--preset", "reference", "--aov", "ao,bent-normal"}}) {
-    remove_outputs();
-    ASSERT_EQ(run(joined(options, {"--threads", "1"})).code, 0);
-    const auto before = outputs();
-    EXPECT_EQ(before.size(), kFrames);
-    expect_same_outputs(before, {joined(options, {"--threads", "3", "--frames", "9-1"})});
-    expect_same_outputs(before, {joined(options, {"--threads", "2", "--frames", "1-9x2,2-8x2"})});
-    expect_same_outputs(before, {joined(options, {"--chunk", "2/2", "--threads", "1"}),
-                                 joined(options, {"--chunk", "1/2", "--threads", "2"})});
-  }
-}
-
-TEST_F(Accumulated, tiles_have_the_bits_of_the_whole) {
-  write_shot(3, kLarge);
-  expect_tiles_as_the_whole({"--accumulate", "1", "--aov", "ao,bent-normal"}, 48);
-}
-
-TEST_F(Accumulated, tiles_know_what_moves_after_those_of_sky) {
-  constexpr Window kTall{0, 0, 512, 400};
-  write_bytes(camera, wall_camera(kTall).dump());
-  for (int frame = 1; frame <= 3; frame++) {
-    FrameFile file = wall_frame(kTall, kTall);
-    put_board(file, 0, {0.3 * frame - 0.5, 0.3 * frame, 0.9, 5});
-    const auto begin = file.planes.at("ViewLayer.Depth.Z").begin();
-    std::fill(begin, begin + 190 * kTall.width, 1e10f);
-    file.write(input(frame));
-  }
-  expect_tiles_as_the_whole({"--accumulate", "1"}, 42);
-}
-
-TEST_F(Accumulated, a_region_has_the_bits_of_the_whole) {
-  // Where floor and wall meet, so far from all borders that less than the whole frame is computed.
-  constexpr Window kRegion{300, 214, 41, 17};
-  write_shot(3, kLarge);
-  const Options options{"--accumulate", "1", "--radius", "0.3", "--frames", "2", "--type", "float"};
-  ASSERT_EQ(run(options).code, 0);
-  const Image whole = read_exr_image(output(2), {"Y"});
-  const Finished finished = run(joined(options, {"--roi", "300,214,41,17"}));
-  ASSERT_EQ(finished.code, 0) << finished;
-  const Image region = read_exr_image(output(2), {"Y"});
-  ASSERT_EQ(region.data, kRegion);
-  EXPECT_LT(*std::ranges::min_element(region.pixels), 0.9f) << "or else there is nothing to compare";
-  for (int y = 0; y < kRegion.height; y++)
-    for (int x = 0; x < kRegion.width; x++) {
-      const auto place = std::size_t((kRegion.y + y) * kLarge.width + kRegion.x + x);
-      ASSERT_EQ(region.pixels[std::size_t(y * kRegion.width + x)], whole.pixels[place]) << x << " " << y;
-    }
-}
-
 TEST_F(Accumulated, samples_of_a_pixel_are_filtered_behind_the_mean) {
   write_shot(3, {0, 0, 128, 72});
-  const Options options{"--accumulate", "1", "--frames", "2", "--type", "float"};
-  ASSERT_EQ(run(options).code, 0);
-  const Image full = read_exr_image(output(2));
-  const Finished finished = run(joined(options, {"--set", "supersampling=2", "--set", "filter=box"}));
-  ASSERT_EQ(finished.code, 0) << finished;
-  const Image small = read_exr_image(output(2));
-  ASSERT_EQ(small.data, (Window{0, 0, 64, 36}));
-  for (std::size_t i = 0; i < small.pixels.size(); i++) {
+  const Options options = typed("--accumulate 1 --frames 2 --type float");
+  done(options);
+  const std::vector<float> full = ao_of_frame(2);
+  done(joined(options, typed("--set supersampling=2 --set filter=box")));
+  const std::vector<float> small = ao_of_frame(2);
+  ASSERT_EQ(small.size(), 64 * 36);
+  for (std::size_t i = 0; i < small.size(); i++) {
     const std::size_t at = i / 64 * 2 * 128 + i % 64 * 2;
-    const float mean = (full.pixels[at] + full.pixels[at + 1] + full.pixels[at + 128] + full.pixels[at + 129]) / 4;
-    ASSERT_NEAR(small.pixels[i], mean, 1e-6) << i;
+    ASSERT_NEAR(small[i], (full[at] + full[at + 1] + full[at + 128] + full[at + 129]) / 4, 1e-6) << i;
   }
 }
 
 TEST_F(Accumulated, what_does_not_count_blocks_in_no_frame_of_a_mean) {
   constexpr int kShort = 5;
   write_shot(kShort, kWindow);
-  const std::string board = folder / "board.%04d.exr", everything = folder / "everything.exr";
+  const std::string everything = folder / "everything.exr";
   for (int frame = 1; frame <= kShort; frame++) {
     std::vector<float> is_board;
     for (const float z : with_board(frame, kWindow).planes.at("ViewLayer.Depth.Z"))
       is_board.push_back(z == kBoard.depth ? 1.0f : 0.0f);
-    FrameFile{kWindow, kWindow, 1, {{"Y", is_board}}, {}, {}}.write(folder / fmt::format("board.{:04}.exr", frame));
+    write_plane(folder / fmt::format("board.{:04}.exr", frame), "Y", is_board, kWindow);
   }
-  FrameFile{kWindow, kWindow, 1, {{"Y", std::vector<float>(kWindow.pixels(), 1)}}, {}, {}}.write(everything);
-  for (const auto& plane : ao_of({"--accumulate", "2", "--set", std::string("ignore=") + everything}, kShort))
+  write_plane(everything, "Y", std::vector<float>(kWindow.pixels(), 1), kWindow);
+  for (const auto& plane : ao_of(typed("--accumulate 2 --set ignore=" + everything), kShort))
     EXPECT_THAT(plane, testing::Each(1.0f));
-  const Options ignored{"--set", std::string("ignore=") + board};
+  const Options ignored = typed("--set ignore=" + folder.path() + "/board.%04d.exr");
   const Frames with = ao_of(kSmooth, kShort), truth = ao_of(joined(kSmooth, ignored), kShort);
   EXPECT_GT(rmse_of(with, truth), 0.02) << "the board blocks";
-  const Frames alone = ao_of(joined(joined(kNoisy, ignored), {"--noise", "animated"}), kShort);
+  const Frames alone = ao_of(joined(joined(kNoisy, ignored), kAlone), kShort);
   const Frames mean = ao_of(joined(joined(kNoisy, ignored), {"--accumulate", "2"}), kShort);
   EXPECT_LT(rmse_of(mean, truth), 0.7 * rmse_of(alone, truth));
 }
@@ -314,7 +227,7 @@ TEST_F(Accumulated, nothing_is_taken_from_beyond_a_cut) {
   write_bytes(camera, cameras.dump());
   const Frames mean = ao_of(options, 2 * kCut);
   // The last frame before the cut has one neighbour less, and nothing of the other side.
-  const json frames = stats_of(options);
+  const json frames = frames_of(options);
   EXPECT_GT(frames[1]["frames_per_pixel"], 2.2);
   EXPECT_LT(frames[2]["frames_per_pixel"], 2.01);
   EXPECT_TRUE(mean[1] == before[1]);
@@ -338,39 +251,19 @@ TEST_F(Accumulated, frames_of_another_focal_length_count_where_they_see_the_same
     write_bytes(folder / fmt::format("camera.{}.json", frame), one.dump());
   }
   const Options own{"--camera", folder / "camera.%d.json", "--frames", "3"};
-  const json frames = stats_of(joined(joined(kNoisy, own), {"--accumulate", "1"}));
+  const json frames = frames_of(joined(joined(kNoisy, own), kByOne));
   EXPECT_GT(frames[0]["frames_per_pixel"], 2);
   const auto of_third = [&](const Options& options) {
-    EXPECT_EQ(run(joined(options, own)).code, 0);
-    return read_exr_image(output(3)).pixels;
+    done(joined(options, own));
+    return ao_of_frame(3);
   };
-  const auto truth = of_third(kSmooth), alone = of_third(kNoisy),
-             mean = of_third(joined(kNoisy, {"--accumulate", "1"}));
+  const auto truth = of_third(kSmooth), alone = of_third(kNoisy), mean = of_third(joined(kNoisy, kByOne));
   EXPECT_LT(difference(mean, truth).rmse, 0.9 * difference(alone, truth).rmse);
-}
-
-TEST_F(Accumulated, headers_name_the_frames) {
-  write_shot(6);
-  ASSERT_EQ(run({"--accumulate", "1"}).code, 0);
-  EXPECT_EQ(header(1), "frames 1-3") << "near its ends more of the other side";
-  EXPECT_EQ(header(4), "frames 3-5");
-  ASSERT_EQ(run({}).code, 0);
-  EXPECT_EQ(header(4), "");
-}
-
-TEST_F(Accumulated, missing_frames_are_an_error_or_left_out) {
-  write_shot(6);
-  fs::remove(input(4));
-  const Finished refused = run({"--accumulate", "2", "--frames", "3"});
-  EXPECT_EQ(refused.code, 3);
-  EXPECT_THAT(refused.err, AllOf(HasSubstr("f.0004.exr"), HasSubstr("--accumulate"), HasSubstr("--set missing=skip")));
-  ASSERT_EQ(run({"--accumulate", "1", "--set", "missing=skip"}).code, 0);
-  EXPECT_EQ(header(3), "frames 2-3; missing 4");
 }
 
 TEST_F(Accumulated, each_frame_is_estimated_once) {
   write_shot(kFrames);
-  const json frames = stats_of({"--accumulate", "2", "--threads", "1"});
+  const json frames = frames_of({"--accumulate", "2", "--threads", "1"});
   int estimated = 0;
   for (const auto& frame : frames)
     for (const auto& pass : frame["passes"]) estimated += pass["name"] == "others horizon";
@@ -380,73 +273,54 @@ TEST_F(Accumulated, each_frame_is_estimated_once) {
 
 TEST_F(Accumulated, works_with_all_that_is_made_of_an_estimate) {
   write_shot(3);
-  for (const Options& options :
-       {Options{"--aov", "ao,bent-normal,specular-occlusion"}, Options{"--radius", "1,0.3", "--aov", "ao,ao-scales"},
-        Options{"--resolution", "half"}, Options{"--estimator", "hbao"}, Options{"--around", "1", "--aov", "ao,hidden"},
-        Options{"--motion", in + "/f.%04d.exr", "--set", "motion-channels=ViewLayer.Normal.X,ViewLayer.Normal.Y"}}) {
-    const Finished finished = run(joined(options, {"--accumulate", "1"}));
-    if (options.front() == "--motion")
-      EXPECT_THAT(finished.err, HasSubstr("motion vectors")) << "normals are no motion vectors";
-    else
-      EXPECT_EQ(finished.code, 0) << finished;
-  }
+  for (const char* more : {"--aov ao,bent-normal,specular-occlusion", "--radius 1,0.3 --aov ao,ao-scales",
+                           "--resolution half", "--estimator hbao", "--around 1 --aov ao,hidden"})
+    done(joined(typed(more), kByOne));
+  EXPECT_THAT(run(typed("--accumulate 1 --set motion-channels=ViewLayer.Normal.X,ViewLayer.Normal.Y --motion " + in +
+                        "/f.%04d.exr"))
+                  .err,
+              HasSubstr("motion vectors"))
+      << "normals are no motion vectors";
 }
 
 TEST_F(Accumulated, refusals_say_what_to_do) {
   write_shot(3);
-  const auto refused = [&](const Options& options, int code) {
-    const Finished finished = run(options);
-    EXPECT_EQ(finished.code, code) << finished;
-    return finished.err;
-  };
-  EXPECT_THAT(refused({"--accumulate", "all"}, 2), HasSubstr("number of frames to each side"));
-  EXPECT_THAT(refused({"--accumulate", "17"}, 2), HasSubstr("16"));
-  EXPECT_THAT(refused({"--accumulate", "1", "--search", "exact", "--tolerance", "0.01"}, 2), HasSubstr("--tolerance"));
-  EXPECT_THAT(refused({"--accumulate", "1", "--set", "debug=raw-ao"}, 2), HasSubstr("mean of many"));
-  EXPECT_THAT(refused({"--set", "debug=count"}, 2), HasSubstr("--accumulate"));
+  const std::pair<const char*, const char*> rows[] = {{"--accumulate all", "number of frames to each side"},
+                                                      {"--accumulate 17", "16"},
+                                                      {"--accumulate 1 --search exact --tolerance 0.01", "--tolerance"},
+                                                      {"--accumulate 1 --set debug=raw-ao", "mean of many"}};
+  for (const auto& [more, text] : rows) expect_refused(2, typed(more), {text});
   json cameras = json::parse(read_bytes(camera));
   cameras.erase("world_to_camera");
   for (auto& frame : cameras["frames"]) frame.erase("world_to_camera");
   write_bytes(camera, cameras.dump());
-  EXPECT_THAT(refused({"--accumulate", "1", "--normal", "none"}, 3), HasSubstr("world_to_camera"));
+  expect_refused(3, typed("--accumulate 1 --normal none"), {"world_to_camera"});
 }
 
 TEST_F(Accumulated, a_frame_beside_it_that_lacks_its_place_is_refused_by_the_option_that_takes_it) {
   write_shot(3);
-  json lacking = wall_camera();
   for (const int frame : {1, 2, 3}) {
-    if (frame == 2) lacking.erase("world_to_camera");
-    write_bytes(folder / fmt::format("camera.{}.json", frame), (frame == 2 ? lacking : wall_camera()).dump());
+    json one = wall_camera();
+    if (frame == 2) one.erase("world_to_camera");
+    write_bytes(folder / fmt::format("camera.{}.json", frame), one.dump());
   }
-  const Options options{"--camera",  folder / "camera.%d.json",
-                        "--motion",  in + "/f.%04d.exr",
-                        "--normal",  "none",
-                        "--frames",  "1",
-                        "--threads", "1"};
-  const Finished of_mean = run(joined(options, {"--accumulate", "1"})),
-                 of_around = run(joined(options, {"--around", "1"}));
-  EXPECT_EQ(of_mean.code, 3) << of_mean;
-  EXPECT_THAT(of_mean.err, AllOf(HasSubstr("f.0002.exr"), HasSubstr("--accumulate needs"), Not(HasSubstr("--around"))));
-  EXPECT_THAT(of_around.err, HasSubstr("--around needs"));
+  for (const auto& [option, other] : {std::pair("--accumulate", "--around"), {"--around", "--accumulate"}}) {
+    const Finished finished = run(typed("--normal none --frames 1 --threads 1 --camera " + folder.path() +
+                                        "/camera.%d.json --motion " + in + "/f.%04d.exr " + option + " 1"));
+    EXPECT_EQ(finished.code, 3) << finished;
+    EXPECT_THAT(finished.err, testing::AllOf(HasSubstr("f.0002.exr"), HasSubstr(std::string(option) + " needs"),
+                                             testing::Not(HasSubstr(other))));
+  }
 }
 
 TEST_F(Accumulated, views_show_how_many_frames_count) {
   write_shot(3);
-  ASSERT_EQ(run({"--accumulate", "1", "--set", "debug=count", "--frames", "2"}).code, 0);
-  EXPECT_TRUE(fs::exists(out + "/ao.0002.count.png"));
-}
-
-TEST_F(Accumulated, means_have_as_many_frames_wherever_they_lie) {
-  write_shot(6);
-  Settings settings;
-  settings.input.input = in + "/f.####.exr";
-  settings.input.accumulate = 1;
-  const FramePlan plan(settings);
-  EXPECT_THAT(plan.accumulated(1).there, ElementsAre(1, 2, 3));
-  EXPECT_THAT(plan.accumulated(4).there, ElementsAre(3, 4, 5));
-  EXPECT_THAT(plan.accumulated(6).there, ElementsAre(4, 5, 6));
-  EXPECT_EQ(plan.turn_of(2), plan.turn_of(5));
-  EXPECT_NE(plan.turn_of(2), plan.turn_of(3));
+  for (const char* aov : {"ao", "depth"}) {  // outputs without AO take no estimates
+    remove_outputs();
+    done(typed(std::string("--accumulate 1 --set debug=count --frames 2 --aov ") + aov));
+    EXPECT_TRUE(fs::exists(out + "/ao.0002.count.png"));
+  }
+  done(typed("--accumulate 1 --aov normal"));
 }
 
 }  // namespace

@@ -18,7 +18,17 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-using Batch = SequenceFolder;
+class Batch : public SequenceFolder {
+ protected:
+  /// A run on other files with the camera and a radius of 1.
+  Finished run_alone(const Options& more) const {
+    return run_program(joined({"run", "--camera", camera, "--radius", "1"}, more));
+  }
+  void done_alone(const Options& more) const {
+    const Finished finished = run_alone(more);
+    EXPECT_EQ(finished.code, 0) << finished;
+  }
+};
 
 /// What is behind a file's header, which has the digest of the options and the warnings, and behind its 3 offsets.
 std::string pixels(const std::string& bytes) {
@@ -29,29 +39,15 @@ std::string pixels(const std::string& bytes) {
 
 TEST_F(Batch, a_sequence_is_its_frames_one_by_one) {
   write_frames(8, 12);
-  ASSERT_EQ(run({"--noise", "animated"}).code, 0);
+  done({"--noise", "animated"});
   const auto together = outputs();
   EXPECT_EQ(together.size(), 5);
   EXPECT_NE(pixels(together.at("ao.0008.exr")), pixels(together.at("ao.0009.exr")))
       << "or else frames share their noise";
   for (int frame = 8; frame <= 12; frame++) {
-    const std::string alone = folder / "alone.exr";
-    ASSERT_EQ(
-        run_program({"run", input(frame), "-o", alone, "--camera", camera, "--radius", "1", "--noise", "animated"})
-            .code,
-        0);
-    EXPECT_TRUE(read_bytes(alone) == read_bytes(output(frame))) << frame;
+    done_alone({input(frame), "-o", folder / "alone.exr", "--noise", "animated"});
+    EXPECT_TRUE(read_bytes(folder / "alone.exr") == read_bytes(output(frame))) << frame;
   }
-}
-
-TEST_F(Batch, threads_chunks_and_order_change_no_bit) {
-  write_frames(1, 7);
-  ASSERT_EQ(run({"--threads", "1"}).code, 0);
-  const auto one_thread = outputs();
-  expect_same_outputs(one_thread, {{"--threads", "5"}});
-  expect_same_outputs(one_thread, {{"--chunk", "3/3"}, {"--chunk", "1/3"}, {"--chunk", "2/3"}});
-  expect_same_outputs(one_thread, {{"--frames", "7-1"}});
-  expect_same_outputs(one_thread, {{"--frames", "1-7x2"}, {"--frames", "2-6:2"}});
 }
 
 TEST(Chunks, share_the_frames_evenly) {
@@ -67,45 +63,39 @@ TEST(Chunks, share_the_frames_evenly) {
   EXPECT_THAT(chunk_of({1}, 2, 2), ElementsAre(1));
 }
 
-TEST_F(Batch, every_file_has_a_pattern_of_its_own) {
+TEST_F(Batch, every_file_has_a_pattern_of_its_own_and_a_static_one_serves_all_frames) {
   FrameFile depth = wall_frame(), normal = depth;
-  std::erase_if(depth.planes, [](const auto& plane) { return plane.first.find("Depth") == std::string::npos; });
-  std::erase_if(normal.planes, [](const auto& plane) { return plane.first.find("Normal") == std::string::npos; });
+  depth.erase("Normal");
+  normal.erase("Depth");
   for (const char* frame : {"-02", "-01", "000"}) depth.write(in + "/d" + frame + ".exr");
   for (const char* frame : {"-2", "-1", "0"}) normal.write(in + "/n." + frame + ".exr");
-  const Finished finished =
-      run_program({"run", "--depth", in + "/d@@@.exr", "--normal", in + "/n.$F.exr", "-o", out + "/<f4>.exr", "--set",
-                   "output-offset=100", "--camera", camera, "--radius", "1", "--frames", "-2-0"});
-  EXPECT_EQ(finished.code, 0) << finished;
+  done_alone(typed("--depth " + in + "/d@@@.exr --normal " + in + "/n.$F.exr -o " + out +
+                   "/<f4>.exr --set output-offset=100 --frames -2-0"));
   EXPECT_THAT(names_in(out), ElementsAre("0098.exr", "0099.exr", "0100.exr"));
-}
-
-TEST_F(Batch, a_static_input_serves_all_frames) {
+  remove_outputs();
   wall_frame().write(folder / "still.exr");
-  const Finished finished = run_program(
-      {"run", folder / "still.exr", "-o", out + "/ao.#.exr", "--camera", camera, "--radius", "1", "--frames", "3,5"});
-  EXPECT_EQ(finished.code, 0) << finished;
+  done_alone({folder / "still.exr", "-o", out + "/ao.#.exr", "--frames", "3,5"});
   EXPECT_THAT(names_in(out), ElementsAre("ao.0003.exr", "ao.0005.exr"));
 }
 
 TEST_F(Batch, every_frame_has_its_camera) {
   write_frames(1, 2);
-  json moving = wall_camera();
+  json moving = wall_camera(), zoomed = moving;
   moving["frames"] = {{{"frame", 1}}, {{"frame", 2}, {"fx", 80.0}, {"fy", 80.0}}};
   write_bytes(folder / "moving.json", moving.dump());
-  ASSERT_EQ(run({"--camera", folder / "moving.json"}).code, 0);
-  json zoomed = wall_camera();
   zoomed["fx"] = zoomed["fy"] = 80.0;
   write_bytes(folder / "zoom.0002.json", zoomed.dump());
   write_bytes(folder / "zoom.0001.json", wall_camera().dump());
+  done({"--camera", folder / "moving.json"});
   const auto moved = read_bytes(output(2));
-  ASSERT_EQ(run({"--camera", folder / "zoom.####.json"}).code, 0);
+  done({"--camera", folder / "zoom.####.json"});
   EXPECT_EQ(pixels(read_bytes(output(2))), pixels(moved)) << "headers differ by the digest of the camera file";
-  ASSERT_EQ(run().code, 0);
+  done();
   EXPECT_NE(pixels(read_bytes(output(2))), pixels(moved));
 }
 
 TEST_F(Batch, missing_frames_are_listed_before_any_work) {
+  expect_refused(3, {}, {"f.0001.exr", "INPUT"});
   write_frames(1, 8);
   for (const int frame : {3, 5, 6}) fs::remove(input(frame));
   const Finished finished = run({"--frames", "1-8"});
@@ -113,105 +103,74 @@ TEST_F(Batch, missing_frames_are_listed_before_any_work) {
   EXPECT_THAT(finished.err, AllOf(HasSubstr("3 of 8 frames are missing: 3, 5-6"), HasSubstr("f.0003.exr"),
                                   HasSubstr("--set missing=skip")));
   EXPECT_THAT(names_in(out), IsEmpty());
-  const Finished skipped = run({"--frames", "1-8", "--set", "missing=skip"});
-  EXPECT_EQ(skipped.code, 0) << skipped;
-  EXPECT_THAT(skipped.err, HasSubstr("3 missing (3, 5-6)"));
+  EXPECT_THAT(done(typed("--frames 1-8 --set missing=skip")).err, HasSubstr("3 missing (3, 5-6)"));
   EXPECT_THAT(names_in(out), ElementsAre("ao.0001.exr", "ao.0002.exr", "ao.0004.exr", "ao.0007.exr", "ao.0008.exr"));
-  EXPECT_EQ(run({"--frames", "3,5", "--set", "missing=skip"}).code, 3) << "nothing is left";
-}
-
-TEST_F(Batch, no_frame_at_all_is_an_error) {
-  const Finished finished = run();
-  EXPECT_EQ(finished.code, 3);
-  EXPECT_THAT(finished.err, AllOf(HasSubstr("f.0001.exr"), HasSubstr("INPUT")));
+  EXPECT_EQ(run(typed("--frames 3,5 --set missing=skip")).code, 3) << "nothing is left";
 }
 
 TEST_F(Batch, files_that_frames_would_share_are_refused) {
   write_frames(1, 3);
-  const Finished one =
-      run_program({"run", in + "/f.%04d.exr", "-o", out + "/ao.exr", "--camera", camera, "--radius", "1"});
-  EXPECT_EQ(one.code, 2) << one;
-  EXPECT_THAT(one.err, AllOf(HasSubstr("ao.exr"), HasSubstr("all 3 frames"), HasSubstr("%04d")));
-  const Finished over = run_program({"run", in + "/f.%04d.exr", "-o", in + "/f.%04d.exr", "--set", "output-offset=2",
-                                     "--camera", camera, "--radius", "1"});
-  EXPECT_EQ(over.code, 2) << over;
-  EXPECT_THAT(over.err, AllOf(HasSubstr("f.0003.exr"), HasSubstr("overwrite an input")));
+  expect_refused(2, {"-o", out + "/ao.exr"}, {"ao.exr", "all 3 frames", "%04d"});
+  expect_refused(2, {"-o", in + "/f.%04d.exr", "--set", "output-offset=2"}, {"f.0003.exr", "overwrite an input"});
 }
 
 TEST_F(Batch, a_dry_run_tells_the_plan_and_does_nothing) {
   write_frames(1, 4);
-  const Finished finished = run({"--dry-run", "--frames", "1-4"});
-  EXPECT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(finished.out, AllOf(HasSubstr("4: 1-4"), HasSubstr("f.0001.exr to "), HasSubstr("ao.0004.exr"),
-                                  HasSubstr("64x36"), HasSubstr("Depth"), HasSubstr("MiB")));
-  EXPECT_THAT(names_in(out), IsEmpty());
+  const auto before = names_in(folder.path());
+  EXPECT_THAT(done(typed("--dry-run --frames 1-4 --device 99")).out,
+              AllOf(HasSubstr("4: 1-4"), HasSubstr("f.0001.exr to "), HasSubstr("ao.0004.exr"), HasSubstr("64x36"),
+                    HasSubstr("Depth"), HasSubstr("MiB")));
+  EXPECT_EQ(names_in(folder.path()), before);
+  done();
+  fs::remove(output(2));
+  EXPECT_THAT(lines_of(run({"--dry-run", "--resume"}).out), testing::Contains(testing::MatchesRegex("kept +3: .*")));
 }
 
 TEST_F(Batch, guesses_are_made_once_by_the_first_frame_that_shows_anything) {
-  const auto change = [](FrameFile frame, const char* planes, const auto& function) {
-    for (auto& [name, values] : frame.planes)
-      if (name.find(planes) != name.npos) std::ranges::transform(values, values.begin(), function);
-    return frame;
-  };
-  const FrameFile coded = change(wall_frame(), "Normal", [](float n) { return 0.5f + 0.5f * n; });
-  change(coded, "Depth", [](float) { return 1e10f; }).write(input(1));
+  FrameFile coded = wall_frame();
+  coded.change("Normal", [](float n) { return 0.5f + 0.5f * n; });
   coded.write(input(2));
+  FrameFile sky = coded, odd = coded;
+  sky.change("Depth", [](float) { return 1e10f; });
+  sky.write(input(1));
   // By itself it would be taken for signed; every normal of it is of unit length either way.
-  change(coded, "Normal", [](float n) { return n > 0.9f ? 1.0f : 0.0f; }).write(input(3));
-  ASSERT_EQ(run({"--frames", "1-3", "--normal-space", "world"}).code, 0);
+  odd.change("Normal", [](float n) { return n > 0.9f ? 1.0f : 0.0f; });
+  odd.write(input(3));
+  done(typed("--frames 1-3 --normal-space world"));
   const auto guessed = outputs();
-  ASSERT_EQ(run({"--frames", "1-3", "--normal-space", "world", "--normal-encoding", "unorm"}).code, 0);
+  done(typed("--frames 1-3 --normal-space world --normal-encoding unorm"));
   for (const auto& [name, bytes] : outputs()) EXPECT_EQ(pixels(bytes), pixels(guessed.at(name))) << name;
-  ASSERT_EQ(run({"--frames", "3", "--normal-space", "world"}).code, 0);
+  done(typed("--frames 3 --normal-space world"));
   EXPECT_NE(pixels(read_bytes(output(3))), pixels(guessed.at("ao.0003.exr")))
       << "or else the frames of this test show nothing";
 }
 
-TEST_F(Batch, what_is_refused_is_refused_behind_sky_too) {
-  FrameFile sky = wall_frame();
-  for (float& depth : sky.planes["ViewLayer.Depth.Z"]) depth = 1e10f;
+TEST_F(Batch, sky_at_the_beginning_decides_nothing_however_long_it_is) {
+  FrameFile sky = wall_frame(), coded = wall_frame();
+  sky.change("Depth", [](float) { return 1e10f; });
+  coded.change("Normal", [](float n) { return 0.5f + 0.5f * n; });
+  write_frames(1, 11, sky);
+  write_frames(12, 13, coded);
+  done({"--frames", "12"});
+  const std::string alone = read_bytes(output(12));
+  remove_outputs();
+  const Finished finished = done();
+  EXPECT_EQ(pixels(read_bytes(output(12))), pixels(alone)) << finished;
+  done(typed("--frames 1-100 --set missing=skip"));
+  EXPECT_EQ(pixels(read_bytes(output(12))), pixels(alone)) << "of a sequence of which most frames are missing";
+  // What is refused is refused behind sky, too, and before it.
   auto turned = wall_camera();
   turned["world_to_camera"] = {{0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}};
   write_bytes(camera, turned.dump());
-  for (const int first : {1, 2}) {
-    sky.write(input(first));
-    wall_frame().write(input(3 - first));
-    const Finished finished = run({"--frames", "1-2", "--keep-going"});
-    EXPECT_EQ(finished.code, 1) << finished;
-    EXPECT_THAT(finished.err, HasSubstr("--normal none")) << first;
+  wall_frame().write(input(12));
+  sky.write(input(13));
+  for (const char* frames : {"11-12", "12-13"}) {
+    const Finished refused = run({"--frames", frames, "--keep-going"});
+    EXPECT_EQ(refused.code, 1) << refused;
+    EXPECT_THAT(refused.err, HasSubstr("--normal none")) << frames;
   }
 }
 
-TEST_F(Batch, sky_at_the_beginning_decides_nothing_however_long_it_is) {
-  FrameFile sky = wall_frame(), coded = wall_frame();
-  for (float& depth : sky.planes["ViewLayer.Depth.Z"]) depth = 1e10f;
-  for (const char* component : {"X", "Y", "Z"})
-    for (float& n : coded.planes[std::string("ViewLayer.Normal.") + component]) n = 0.5f + 0.5f * n;
-  sky.write(input(1));
-  for (int frame = 2; frame < 12; frame++) fs::copy_file(input(1), input(frame));
-  for (const int frame : {12, 13}) coded.write(input(frame));
-  ASSERT_EQ(run({"--frames", "12"}).code, 0);
-  const std::string alone = read_bytes(output(12));
-  remove_outputs();
-  const Finished finished = run();
-  ASSERT_EQ(finished.code, 0) << finished;
-  EXPECT_EQ(pixels(read_bytes(output(12))), pixels(alone)) << finished;
-  ASSERT_EQ(run({"--frames", "1-100", "--set", "missing=skip"}).code, 0);
-  EXPECT_EQ(pixels(read_bytes(output(12))), pixels(alone)) << "of a sequence of which most frames are missing";
-}
-
-TEST_F(Batch, what_is_noted_of_all_frames_is_said_once) {
-  FrameFile file = wall_frame();
-  file.halves = {"ViewLayer.Depth.Z"};
-  for (const int frame : {1, 2, 3}) file.write(input(frame));
-  const Finished finished = run({"--frames", "1-3"});
-  ASSERT_EQ(finished.code, 0) << finished;
-  const std::size_t first = finished.err.find("half float");
-  EXPECT_NE(first, std::string::npos) << finished;
-  EXPECT_EQ(finished.err.find("half float", first + 1), std::string::npos) << finished;
-}
-
-// Where frames take long there are lines between them, too. One after the other, so that no later one is told before.
 TEST_F(Batch, progress_for_farms_goes_to_the_standard_output) {
   write_frames(1, 4);
   const auto percents_of = [](const std::string& out) {
@@ -252,8 +211,8 @@ TEST_F(Batch, plain_progress_is_whole_lines_and_a_summary_at_the_end) {
 
 TEST_F(Batch, the_log_has_an_object_a_line) {
   write_frames(1, 3);
-  const std::string log = folder / "log.jsonl", stats = folder / "stats.json";
-  ASSERT_EQ(run({"--log-json", log, "--stats", stats, "--threads", "2"}).code, 0);
+  const std::string log = folder / "log.jsonl";
+  const json totals = stats_of({"--log-json", log, "--threads", "2"})["totals"];
   const auto lines = lines_of(read_bytes(log));
   ASSERT_EQ(lines.size(), 5);
   EXPECT_EQ(json::parse(lines[0])["event"], "begin");
@@ -266,7 +225,6 @@ TEST_F(Batch, the_log_has_an_object_a_line) {
     EXPECT_GT(frame["time"], 1.6e9);
   }
   EXPECT_EQ(json::parse(lines[4])["done"], 3);
-  const json totals = json::parse(read_bytes(stats))["totals"];
   EXPECT_EQ(totals["frames"], 3);
   EXPECT_EQ(totals["at_once"], 2);
   EXPECT_THAT(run({"--log-json", "-", "--progress", "none"}).out, StartsWith("{\"event\":\"begin\""));
@@ -279,25 +237,9 @@ TEST_F(Batch, memory_does_not_grow_with_the_frames) {
 #endif
   write_frames(1, 200);
   const auto peak = [&](const char* frames) {
-    const std::string stats = folder / "stats.json";
-    EXPECT_EQ(run({"--frames", frames, "--threads", "2", "--stats", stats, "-q"}).code, 0);
-    return json::parse(read_bytes(stats))["totals"]["peak_rss_mb"].get<double>();
+    return stats_of({"--frames", frames, "--threads", "2", "-q"})["totals"]["peak_rss_mb"].get<double>();
   };
   EXPECT_LT(peak("1-200"), peak("1-20") + 6);
-}
-
-TEST_F(Batch, senseless_options_are_refused) {
-  write_frames(1, 1);
-  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--chunk", "0/2"},
-                                                    {"--chunk", "3/2"},
-                                                    {"--chunk", "2"},
-                                                    {"--chunk", "a/b"},
-                                                    {"--frames", "1-x"},
-                                                    {"--memory", "4X"},
-                                                    {"--memory", "-1G"},
-                                                    {"--set", "missing=hold"},
-                                                    {"--progress", "loud"}})
-    EXPECT_EQ(run(arguments).code, 2) << testing::PrintToString(arguments);
 }
 
 }  // namespace

@@ -19,9 +19,7 @@
 #include <half.h>
 
 #include <cstring>
-#include <sstream>
 
-#include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 
 namespace alcove {
@@ -29,7 +27,7 @@ namespace {
 
 using namespace test;
 using testing::HasSubstr;
-using Options = std::vector<std::string>;
+using Plane = std::vector<float>;
 
 Imath::Box2i box_of(const Window& w) { return {{w.x, w.y}, {w.x + w.width - 1, w.y + w.height - 1}}; }
 
@@ -208,12 +206,9 @@ class CompositeLayers : public CommandLine {
     out.writePixels(kWallWindow.height);
   }
 
-  std::vector<PartContent> composited(const Options& more = {}) const {
-    Options options{"--beauty", beauty, "--composite", composite, "--type", "float", "--set", "overwrite=true"};
-    options.insert(options.end(), more.begin(), more.end());
-    const Finished finished = run(options);
-    EXPECT_EQ(finished.code, 0) << finished;
-    return finished.code ? std::vector<PartContent>() : content_of(composite);
+  std::vector<PartContent> composited(const std::string& more = {}) const {
+    return done(joined(options, typed("--type float " + more))).code ? std::vector<PartContent>()
+                                                                     : content_of(composite);
   }
 
   /// Everything must be as before, but the beauty, in `part`, which must be another one.
@@ -243,6 +238,7 @@ class CompositeLayers : public CommandLine {
   }
 
   const std::string beauty = folder / "beauty.exr", composite = folder / "composite.exr";
+  const Options options{"--beauty", beauty, "--composite", composite};
 };
 
 TEST_F(CompositeLayers, of_one_part_keep_every_bit_beside_the_beauty) {
@@ -258,7 +254,7 @@ TEST_F(CompositeLayers, of_one_part_keep_every_bit_beside_the_beauty) {
 
 TEST_F(CompositeLayers, hold_what_the_composite_of_rgba_alone_holds) {
   write({header("", "", beauty_channels())});
-  const auto all = composited(), alone = composited({"--set", "composite-layers=rgba"});
+  const auto all = composited(), alone = composited("--set composite-layers=rgba");
   ASSERT_EQ(alone.size(), 1);
   EXPECT_EQ(alone[0].channels.size(), 4);
   for (const char* c : {"R", "G", "B", "A"})
@@ -291,21 +287,20 @@ TEST_F(CompositeLayers, of_tiles_or_lossy_parts_become_lossless_scan_lines) {
   const auto before = content_of(beauty), after = composited();
   expect_kept(before, after, 0, "Combined.");
   EXPECT_EQ(after[0].compression, Imf::ZIP_COMPRESSION);
-  EXPECT_EQ(composited({"--set", "composite-compression=dwab"})[0].compression, Imf::DWAB_COMPRESSION);
+  EXPECT_EQ(composited("--set composite-compression=dwab")[0].compression, Imf::DWAB_COMPRESSION);
 }
 
 TEST_F(CompositeLayers, may_take_the_ao_too) {
   write({header("", "", beauty_channels())});
-  const auto before = content_of(beauty), after = composited({"--set", "append-ao=AO"});
+  const auto before = content_of(beauty), after = composited("--set append-ao=AO");
   expect_kept(before, after, 0, "Combined.");
   EXPECT_EQ(after[0].channels.size(), before[0].channels.size() + 1);
-  const Image appended = read_exr_image(composite, {"AO.Y"}), alone = read_exr_image(ao);
-  EXPECT_EQ(appended.pixels, alone.pixels);
-  EXPECT_TRUE(composited({"--set", "append-ao=Light.occlusion"})[0].channels.contains("Light.occlusion"));
-  EXPECT_TRUE(composited({"--set", "append-ao=AO", "--set", "composite-layers=rgba"})[0].channels.contains("AO.Y"));
-  composited({"--set", "ao-name=shadow.Y"});
+  EXPECT_EQ(read_exr_image(composite, {"AO.Y"}).pixels, read_exr_image(ao).pixels);
+  EXPECT_TRUE(composited("--set append-ao=Light.occlusion")[0].channels.contains("Light.occlusion"));
+  EXPECT_TRUE(composited("--set append-ao=AO --set composite-layers=rgba")[0].channels.contains("AO.Y"));
+  composited("--set ao-name=shadow.Y");
   EXPECT_EQ(read_exr_image(ao).names, Options{"shadow.Y"});
-  composited({"--set", "ao-name=shadow", "--set", "ao-channels=rgb"});
+  composited("--set ao-name=shadow --set ao-channels=rgb");
   EXPECT_THAT(read_exr_image(ao).names, testing::UnorderedElementsAre("shadow.R", "shadow.G", "shadow.B"));
 }
 
@@ -316,43 +311,32 @@ TEST_F(CompositeLayers, of_a_region_are_cut_to_it_where_they_are_of_its_window) 
   const Image before = read_exr_image(beauty, {"Q.X"});
   const auto deep = content_of(beauty)[2];
   const Window region{10, 12, 20, 16};
-  const auto after = composited({"--roi", "10,12,20,16"});
+  const auto after = composited("--roi 10,12,20,16");
   EXPECT_EQ(after[0].data, region);
   EXPECT_EQ(after[1].data, region);
   EXPECT_EQ(after[2].data, kWallWindow);
   EXPECT_EQ(after[2].channels, deep.channels);
-  const Image cut = read_exr_image(composite, {"Q.X"});
-  ASSERT_EQ(cut.pixels.size(), region.pixels());
-  for (int y = 0; y < region.height; y++)
-    EXPECT_EQ(std::memcmp(&cut.pixels[std::size_t(y * region.width)],
-                          &before.pixels[std::size_t((y + region.y) * kWallWindow.width + region.x)],
-                          sizeof(float) * std::size_t(region.width)),
-              0)
-        << y;
+  const Plane cut = read_exr_image(composite, {"Q.X"}).pixels, expected = cropped(before.pixels, kWallWindow, region);
+  ASSERT_EQ(cut.size(), expected.size());
+  EXPECT_EQ(std::memcmp(cut.data(), expected.data(), sizeof(float) * cut.size()), 0) << "which may be NaN";
 }
 
 TEST_F(CompositeLayers, of_frames_that_are_done_are_left_by_resume_and_others_are_not) {
   write({header("beauty", Imf::SCANLINEIMAGE, beauty_channels()),
          header("more", Imf::SCANLINEIMAGE, {{"Q.X", Imf::FLOAT}}, Imf::PIZ_COMPRESSION),
          header("tiles", Imf::TILEDIMAGE, {{"T.h", Imf::HALF}})});
-  const Options options{"--beauty", beauty, "--composite", composite, "--resume", "-v"};
-  const auto with = [&](const Options& more) {
-    Options all = options;
-    all.insert(all.end(), more.begin(), more.end());
-    const auto time = std::filesystem::last_write_time(composite);
-    const Finished finished = run(all);
-    EXPECT_EQ(finished.code, 0) << finished;
-    return std::filesystem::last_write_time(composite) != time;
+  const auto is_made = [&](const std::string& more) {
+    return done(joined(options, typed("--resume " + more))).err.find("whole, kept") == std::string::npos;
   };
-  ASSERT_EQ(run(options).code, 0);
-  EXPECT_FALSE(with({})) << "it is done";
-  EXPECT_TRUE(with({"--set", "append-ao=AO"}));
-  EXPECT_TRUE(with({"--set", "gain=2"}));
-  EXPECT_TRUE(with({})) << "what is there is another one";
+  EXPECT_TRUE(is_made(""));
+  EXPECT_FALSE(is_made("")) << "it is done";
+  EXPECT_TRUE(is_made("--set append-ao=AO"));
+  EXPECT_TRUE(is_made("--set gain=2"));
+  EXPECT_TRUE(is_made("")) << "what is there is another one";
   const auto whole = std::filesystem::file_size(composite);
   for (const double part : {0.999, 0.9, 0.5}) {
     std::filesystem::resize_file(composite, std::uintmax_t(part * double(whole)));
-    EXPECT_TRUE(with({})) << part << " of it is left";
+    EXPECT_TRUE(is_made("")) << part << " of it is left";
   }
 }
 
@@ -370,32 +354,26 @@ TEST_F(CompositeLayers, take_notes_that_come_late) {
 }
 
 TEST_F(CompositeLayers, mistakes_are_named_in_one_line) {
-  const auto expect_error = [&](int code, const Options& more, const Options& words) {
-    Options options{"--beauty", beauty, "--composite", composite};
-    options.insert(options.end(), more.begin(), more.end());
-    const Finished finished = run(options);
-    EXPECT_EQ(finished.code, code) << finished;
-    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
-    for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
-    EXPECT_FALSE(std::filesystem::exists(composite));
-  };
   write({header("", "", beauty_channels())});
-  expect_error(3, {"--set", "append-ao=Combined.R"}, {beauty, "Combined.R", "--set append-ao"});
-  expect_error(2, {"--set", "append-ao=AO", "--set", "composite-compression=dwaa"},
-               {"--set append-ao=AO", "dwaa", "AO.ao"});
-  expect_error(2, {"--set", "composite-layers=some"}, {"--set composite-layers", "all"});
-  expect_error(3, {"--set", "ambient=Combinet"}, {beauty, "Combinet", "--set ambient"});
-  for (const char* text :
+  std::vector<std::tuple<int, std::string, Options>> rows{
+      {3, "append-ao=Combined.R", {beauty, "Combined.R", "--set append-ao"}},
+      {2, "append-ao=AO composite-compression=dwaa", {"--set append-ao=AO", "dwaa", "AO.ao"}},
+      {2, "composite-layers=some", {"--set composite-layers", "all"}},
+      {3, "ambient=Combinet", {beauty, "Combinet", "--set ambient"}}};
+  for (const std::string text :
        {"Combined*2", "Combined*-1", "Combined**1", "*1", "Combined*a*b", "Combined*1*1", "Combined,"})
-    expect_error(2, {"--set", std::string("ambient=") + text}, {"--set ambient", "LIGHT*NUMBER"});
-  for (const char* text : {"1,1", "1,1,2", "a,b,c", "0.5"})
-    expect_error(2, {"--set", std::string("tint=") + text}, {"--set tint", text});
+    rows.push_back({2, "ambient=" + text, {"--set ambient", "LIGHT*NUMBER"}});
+  for (const std::string text : {"1,1", "1,1,2", "a,b,c", "0.5"})
+    rows.push_back({2, "tint=" + text, {"--set tint", text}});
+  for (const auto& [code, settings, texts] : rows) {
+    Options more = options;
+    for (const auto& setting : typed(settings)) more = joined(more, {"--set", setting});
+    expect_refused(code, more, texts);
+  }
   // The file is cut within its pixels.
   std::filesystem::resize_file(beauty, std::filesystem::file_size(beauty) * 3 / 4);
-  expect_error(3, {}, {beauty});
-}
-
-TEST_F(CompositeLayers, a_beauty_of_one_colour_is_none) {
+  expect_refused(3, options, {beauty});
+  // A beauty of one colour is none.
   FrameFile file = wall_frame();
   add_beauty(file);
   for (const float color : {0.0F, 0.5F}) {
@@ -406,14 +384,13 @@ TEST_F(CompositeLayers, a_beauty_of_one_colour_is_none) {
     EXPECT_EQ(finished.code, 3) << finished;
     EXPECT_THAT(finished.err, testing::AllOf(HasSubstr(frame), HasSubstr("Combined"), HasSubstr("--beauty")));
     EXPECT_EQ(finished.err.find("black") != std::string::npos, color == 0) << finished;
-    EXPECT_FALSE(std::filesystem::exists(composite));
   }
+  EXPECT_FALSE(std::filesystem::exists(composite));
 }
 
 /// A beauty of several lights, and the composite by plain arithmetic.
 class Lights : public CompositeLayers {
  protected:
-  using Plane = std::vector<float>;
   Lights() : file(wall_frame()) {
     add_beauty(file);
     std::size_t at = 0;
@@ -425,16 +402,12 @@ class Lights : public CompositeLayers {
       }
   }
 
-  /// The largest difference between the composite and color - D o (1 - tint), relative to what it takes away.
-  double error(const Options& more, const std::function<double(std::size_t, const char*)>& ambient, double gain = 1,
-               double mix = 1, const std::array<double, 3>& tint = {}) const {
+  using Ambient = std::function<double(std::size_t, const char*)>;
+  /// The largest difference between the composite and color - D o (1 - tint).
+  double error(const std::string& more, const Ambient& ambient, double gain = 1, double mix = 1,
+               const std::array<double, 3>& tint = {}) const {
     file.write(frame);
-    Options options{"--composite", composite, "--set", "composite-layers=rgba",
-                    "--type",      "float",   "--set", "overwrite=true"};
-    options.insert(options.end(), more.begin(), more.end());
-    const Finished finished = run(options);
-    EXPECT_EQ(finished.code, 0) << finished;
-    if (finished.code) return 1e9;
+    if (done(typed("--set composite-layers=rgba --type float --composite " + composite + " " + more)).code) return 1e9;
     const Image result = read_exr_image(composite), visible = read_exr_image(ao);
     double largest = 0, taken = 0;
     for (int c = 0; c < 3; c++) {
@@ -456,35 +429,31 @@ class Lights : public CompositeLayers {
   }
 
   FrameFile file;
+  const Ambient diffuse = [this](std::size_t i, const char* c) { return at("DiffInd", c, i) * at("DiffCol", c, i); };
 };
 
 TEST_F(Lights, are_dimmed_by_their_weights_and_take_the_colours_that_belong_to_them) {
-  const auto diffuse = [&](std::size_t i, const char* c) { return at("DiffInd", c, i) * at("DiffCol", c, i); };
-  const auto gloss = [&](std::size_t i, const char* c) { return at("GlossInd", c, i) * at("GlossCol", c, i); };
-  EXPECT_LT(error({}, diffuse), 1e-5) << "as ever";
-  EXPECT_LT(error({"--set", "ambient=DiffInd"}, diffuse), 1e-5);
-  EXPECT_LT(error({"--set", "ambient=DiffInd,GlossInd*0.25"},
-                  [&](std::size_t i, const char* c) { return diffuse(i, c) + 0.25 * gloss(i, c); }),
-            1e-5);
-  EXPECT_LT(error({"--set", "ambient=GI*DiffCol*0.5,key_light"},
-                  [&](std::size_t i, const char* c) {
-                    return 0.5 * at("GI", c, i) * at("DiffCol", c, i) + at("key_light", c, i);
-                  }),
-            1e-5);
-  EXPECT_LT(error({"--set", "ambient=ViewLayer.GI"}, [&](std::size_t i, const char* c) { return at("GI", c, i); }),
-            1e-5);
-  EXPECT_LT(error({"--set", "ambient=Combined"}, [&](std::size_t i, const char* c) { return at("Combined", c, i); }),
-            1e-5);
+  const Ambient gloss = [&](std::size_t i, const char* c) { return at("GlossInd", c, i) * at("GlossCol", c, i); };
+  const std::pair<const char*, Ambient> rows[] = {
+      {"", diffuse},  // as ever
+      {"--set ambient=DiffInd", diffuse},
+      {"--set ambient=DiffInd,GlossInd*0.25",
+       [&](std::size_t i, const char* c) { return diffuse(i, c) + 0.25 * gloss(i, c); }},
+      {"--set ambient=GI*DiffCol*0.5,key_light",
+       [&](std::size_t i, const char* c) {
+         return 0.5 * at("GI", c, i) * at("DiffCol", c, i) + at("key_light", c, i);
+       }},
+      {"--set ambient=ViewLayer.GI", [&](std::size_t i, const char* c) { return at("GI", c, i); }},
+      {"--set ambient=Combined", [&](std::size_t i, const char* c) { return at("Combined", c, i); }}};
+  for (const auto& [more, ambient] : rows) EXPECT_LT(error(more, ambient), 1e-5) << more;
 }
 
 TEST_F(Lights, are_dimmed_by_gain_tint_and_mix) {
-  const auto diffuse = [&](std::size_t i, const char* c) { return at("DiffInd", c, i) * at("DiffCol", c, i); };
-  EXPECT_LT(error({"--set", "gain=2.5"}, diffuse, 2.5), 1e-5);
-  EXPECT_LT(error({"--set", "mix=0.4"}, diffuse, 1, 0.4), 1e-5);
-  EXPECT_LT(error({"--set", "tint=0.2,0.1,0"}, diffuse, 1, 1, {0.2, 0.1, 0}), 1e-5);
-  EXPECT_LT(error({"--set", "tint=0.2,0.1,0", "--set", "gain=3", "--set", "mix=0.7"}, diffuse, 3, 0.7, {0.2, 0.1, 0}),
-            1e-5);
-  EXPECT_GT(error({"--set", "gain=2.5"}, diffuse, 1), 0.01) << "or else nothing is told apart";
+  EXPECT_LT(error("--set gain=2.5", diffuse, 2.5), 1e-5);
+  EXPECT_LT(error("--set mix=0.4", diffuse, 1, 0.4), 1e-5);
+  EXPECT_LT(error("--set tint=0.2,0.1,0", diffuse, 1, 1, {0.2, 0.1, 0}), 1e-5);
+  EXPECT_LT(error("--set tint=0.2,0.1,0 --set gain=3 --set mix=0.7", diffuse, 3, 0.7, {0.2, 0.1, 0}), 1e-5);
+  EXPECT_GT(error("--set gain=2.5", diffuse, 1), 0.01) << "or else nothing is told apart";
 }
 
 }  // namespace

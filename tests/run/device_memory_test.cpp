@@ -1,4 +1,5 @@
-// A GPU with little memory of its own: fewer frames at once, then tiles, and always the same bits.
+// Runs keep within the memory that there is: a GPU with little of its own gets fewer frames at once, then tiles, and
+// always the same bits; the host keeps within --memory as the kernel counts it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
@@ -7,136 +8,140 @@
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
 using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr std::uint64_t kMiB = 1 << 20;
+constexpr double kMiB = 1 << 20, kRich = 1024;
 constexpr int kFrames = 8;
 
 class DeviceMemory : public SequenceFolder {
  protected:
   DeviceMemory() {
     const Window window{0, 0, 320, 180};
-    wall_frame(window, window).write(input(1));
-    for (int frame = 2; frame <= kFrames; frame++) fs::copy_file(input(1), input(frame));
+    write_frames(1, kFrames, wall_frame(window, window));
     write_bytes(camera, wall_camera(window).dump());
   }
 
-  /// A run on a discrete GPU that has `bytes` of memory and says to have `stated`.
-  Finished run_with(std::uint64_t bytes, std::uint64_t stated, std::vector<std::string> more = {},
-                    std::map<std::string, std::optional<std::string>> environment = {}) const {
-    more.insert(more.end(), {"--threads", "4", "--noise", "animated", "--radius", "0.1", "--stats", stats});
-    environment.insert({{"ALCOVE_HEAP", std::to_string(bytes)},
-                        {"ALCOVE_HEAP_SAYS", std::to_string(stated)},
+  /// A discrete GPU that has `mebibytes` of memory and says to have `stated`.
+  static Surroundings with(double mebibytes, double stated,
+                           std::map<std::string, std::optional<std::string>> environment = {}) {
+    environment.insert({{"ALCOVE_HEAP", std::to_string(std::uint64_t(mebibytes * kMiB))},
+                        {"ALCOVE_HEAP_SAYS", std::to_string(std::uint64_t(stated * kMiB))},
                         {"ALCOVE_TEST_DEVICE", std::nullopt}});
-    return run(more, {.environment = environment, .preload = ALCOVE_POOR_DEVICE});
+    return {.environment = environment, .preload = ALCOVE_POOR_DEVICE};
   }
-  json of_stats() const { return json::parse(read_bytes(stats)); }
+  /// A run on it, which must write what was written before.
+  json expect_whole(const Surroundings& surroundings, const Options& more = kOptions) {
+    remove_outputs();
+    said = "";
+    const Finished finished = run(joined(more, {"--stats", folder / "stats.json"}), surroundings);
+    EXPECT_EQ(finished.code, 0) << finished;
+    said = finished.err;
+    if (whole.empty()) whole = outputs();
+    EXPECT_TRUE(outputs() == whole);
+    return json::parse(read_bytes(folder / "stats.json"));
+  }
 
-  const std::string stats = folder / "stats.json";
+  inline static const Options kOptions = typed("--threads 4 --noise animated --radius 0.1");
+  std::map<std::string, std::string> whole;
+  std::string said;  // by the last run
 };
 
 TEST_F(DeviceMemory, decides_how_many_frames_are_computed_at_once) {
-  const Finished rich = run_with(1024 * kMiB, 1024 * kMiB);
-  ASSERT_EQ(rich.code, 0) << rich;
-  EXPECT_EQ(of_stats()["totals"]["at_once"], 6) << "four threads, and two frames that wait for the device";
-  const auto whole = outputs();
-
-  remove_outputs();
-  const Finished poor = run_with(16 * kMiB, 16 * kMiB);
-  ASSERT_EQ(poor.code, 0) << poor;
-  EXPECT_LT(of_stats()["totals"]["at_once"], 6);
-  EXPECT_THAT(poor.err, Not(HasSubstr("had no memory"))) << "it was planned for";
-  EXPECT_TRUE(outputs() == whole);
-
-  remove_outputs();
-  const Finished shared = run_with(1024 * kMiB, 1024 * kMiB, {}, {{"ALCOVE_HEAP_USED", std::to_string(1008 * kMiB)}});
-  ASSERT_EQ(shared.code, 0) << shared;
-  EXPECT_LT(of_stats()["totals"]["at_once"], 6) << "other programs have taken all but 16 MiB";
-  EXPECT_TRUE(outputs() == whole);
-
-  remove_outputs();
-  const Finished poorest = run_with(3 * kMiB, 3 * kMiB);
-  ASSERT_EQ(poorest.code, 0) << poorest;
-  EXPECT_EQ(of_stats()["totals"]["at_once"], 1);
-  EXPECT_GT(of_stats()["frames"][0]["parts"], 1);
-  EXPECT_TRUE(outputs() == whole);
+  EXPECT_EQ(expect_whole(with(kRich, kRich))["totals"]["at_once"], 6)
+      << "four threads, and two frames that wait for the device";
+  EXPECT_LT(expect_whole(with(16, 16))["totals"]["at_once"], 6);
+  EXPECT_THAT(said, Not(HasSubstr("had no memory"))) << "it was planned for";
+  const std::string used = std::to_string(std::uint64_t(1008 * kMiB));
+  EXPECT_LT(expect_whole(with(kRich, kRich, {{"ALCOVE_HEAP_USED", used}}))["totals"]["at_once"], 6)
+      << "other programs have taken all but 16 MiB";
+  const json poorest = expect_whole(with(3, 3));
+  EXPECT_EQ(poorest["totals"]["at_once"], 1);
+  EXPECT_GT(poorest["frames"][0]["parts"], 1);
 }
 
 TEST_F(DeviceMemory, that_runs_out_halves_the_frames_at_once_and_then_the_tiles) {
-  ASSERT_EQ(run_with(1024 * kMiB, 1024 * kMiB).code, 0);
-  const auto whole = outputs();
-
-  remove_outputs();
-  const Finished fewer = run_with(6 * kMiB, 1024 * kMiB);
-  ASSERT_EQ(fewer.code, 0) << fewer;
-  EXPECT_THAT(of_stats()["frames"].dump(),
-              AllOf(HasSubstr("had no memory for 6 frames at once; from here on it computes 3"),
-                    Not(HasSubstr("pixels at once"))));
-  EXPECT_LE(of_stats()["totals"]["at_once"], 3);
-  EXPECT_TRUE(outputs() == whole);
-
-  remove_outputs();
-  const Finished in_tiles = run_with(2 * kMiB, 1024 * kMiB);
-  ASSERT_EQ(in_tiles.code, 0) << in_tiles;
-  EXPECT_THAT(of_stats()["frames"].dump(), HasSubstr("had no memory for 57600 pixels at once; now at most 28800"));
-  EXPECT_EQ(of_stats()["totals"]["at_once"], 1);
-  EXPECT_GT(of_stats()["frames"][kFrames - 1]["parts"], 1);
-  EXPECT_TRUE(outputs() == whole);
+  expect_whole(with(kRich, kRich));
+  const json fewer = expect_whole(with(6, kRich));
+  EXPECT_THAT(fewer["frames"].dump(), AllOf(HasSubstr("had no memory for 6 frames at once; from here on it computes 3"),
+                                            Not(HasSubstr("pixels at once"))));
+  EXPECT_LE(fewer["totals"]["at_once"], 3);
+  const json in_tiles = expect_whole(with(2, kRich));
+  EXPECT_THAT(in_tiles["frames"].dump(), HasSubstr("had no memory for 57600 pixels at once; now at most 28800"));
+  EXPECT_EQ(in_tiles["totals"]["at_once"], 1);
+  EXPECT_GT(in_tiles["frames"][kFrames - 1]["parts"], 1);
 }
 
 TEST_F(DeviceMemory, that_runs_out_for_an_estimate_halves_its_parts) {
-  const std::vector<std::string> options{
-      "run", in + "/f.%04d.exr", "-o",  out + "/ao.%04d.exr", "--camera", camera, "--radius", "0.1", "--frames",
-      "2",   "--stats",          stats, "--accumulate",       "1"};
-  ASSERT_EQ(run_program(options).code, 0);
-  const auto whole = outputs();
-  remove_outputs();
+  const Options options = typed("--radius 0.1 --frames 2 --accumulate 1");
+  expect_whole({}, options);
   // One of them is the driver's own. The frame fails at once, and once more when it is alone and without the buffers of
   // the first time.
-  const Finished finished =
-      run_program(options, {.environment = {{"ALCOVE_FIRST", "3"}}, .preload = ALCOVE_POOR_DEVICE});
-  ASSERT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(of_stats()["frames"].dump(), HasSubstr("had no memory for 57600 pixels at once; now at most 28800"));
-  EXPECT_GT(of_stats()["frames"][0]["parts"], 1);
-  EXPECT_TRUE(outputs() == whole);
+  const json first = expect_whole({.environment = {{"ALCOVE_FIRST", "3"}}, .preload = ALCOVE_POOR_DEVICE}, options);
+  EXPECT_THAT(first["frames"].dump(), HasSubstr("had no memory for 57600 pixels at once; now at most 28800"));
+  EXPECT_GT(first["frames"][0]["parts"], 1);
 }
 
 TEST_F(DeviceMemory, that_six_frames_miss_side_by_side_halves_their_number_once) {
-  const Finished finished = run_with(1024 * kMiB, 1024 * kMiB, {}, {{"ALCOVE_TOGETHER", "6"}});
-  ASSERT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(finished.err, AllOf(HasSubstr("had no memory for 6 frames at once; from here on it computes 3"),
-                                  Not(HasSubstr("had no memory for 3 frames"))));
-  EXPECT_EQ(of_stats()["totals"]["at_once"], 3);
+  EXPECT_EQ(expect_whole(with(kRich, kRich, {{"ALCOVE_TOGETHER", "6"}}))["totals"]["at_once"], 3);
+  EXPECT_THAT(said, AllOf(HasSubstr("had no memory for 6 frames at once; from here on it computes 3"),
+                          Not(HasSubstr("had no memory for 3 frames"))));
   EXPECT_EQ(outputs().size(), std::size_t(kFrames));
 }
 
 TEST_F(DeviceMemory, that_is_missing_for_a_second_device_leaves_one_lane) {
-  const Finished finished =
-      run({"--device", "cpu", "--threads", "2", "--radius", "0.1", "--stats", stats},
-          {.environment = {{"ALCOVE_LACKS", "memory for a second device"}}, .preload = ALCOVE_POOR_DEVICE});
-  ASSERT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(finished.err, HasSubstr("had no memory for 2 frames at once; from here on it computes 1"));
-  EXPECT_EQ(of_stats()["totals"]["at_once"], 1);
+  const Surroundings lacking{.environment = {{"ALCOVE_LACKS", "memory for a second device"}},
+                             .preload = ALCOVE_POOR_DEVICE};
+  EXPECT_EQ(expect_whole(lacking, typed("--device cpu --threads 2 --radius 0.1"))["totals"]["at_once"], 1);
+  EXPECT_THAT(said, HasSubstr("had no memory for 2 frames at once; from here on it computes 1"));
   EXPECT_EQ(outputs().size(), std::size_t(kFrames));
 }
 
-TEST_F(DeviceMemory, that_is_not_enough_for_any_tile_fails_the_frame_by_name) {
-  const Finished finished = run_with(kMiB / 4, 1024 * kMiB);
-  EXPECT_EQ(finished.code, 5) << finished;
-  EXPECT_THAT(finished.err, AllOf(HasSubstr("f.0001.exr"), HasSubstr("no room for a buffer")));
-  EXPECT_TRUE(outputs().empty());
+TEST_F(DeviceMemory, that_is_not_enough_fails_the_frame_by_name) {
+  for (const auto& [mebibytes, more, text] : {std::tuple(0.25, std::string(), "f.0001.exr"),
+                                              {1.5, "--preview " + out + "/p.%04d.png", "--preview needs it whole"}}) {
+    const Finished finished = run(joined(kOptions, typed(more)), with(mebibytes, kRich));
+    EXPECT_EQ(finished.code, 5) << finished;
+    EXPECT_THAT(finished.err, AllOf(HasSubstr(text), HasSubstr("no room for a buffer")));
+    EXPECT_THAT(names_in(out), testing::IsEmpty());
+  }
 }
 
-TEST_F(DeviceMemory, that_runs_out_for_a_picture_of_the_whole_frame_fails_the_frame) {
-  const Finished finished = run_with(3 * kMiB / 2, 1024 * kMiB, {"--preview", out + "/p.%04d.png"});
-  EXPECT_EQ(finished.code, 5) << finished;
-  EXPECT_THAT(finished.err, AllOf(HasSubstr("no room for a buffer"), HasSubstr("--preview needs it whole")));
-  EXPECT_THAT(names_in(out), testing::IsEmpty());
+class MemoryLimit : public SequenceFolder {
+ protected:
+  void SetUp() override {
+#if defined(ALCOVE_SANITIZE_ADDRESS) || defined(ALCOVE_SANITIZE_THREAD)
+    GTEST_SKIP() << "sanitizers take memory of their own";
+#endif
+  }
+
+  /// A run on the CPU, of copies of a frame of this size; its peak must be within the limit.
+  json run_within(int mebibytes, int frames, const Window& window, const std::string& more) const {
+    FrameFile large = wall_frame(window, window);
+    if (frames == 1) add_beauty(large);
+    write_frames(1, frames, large);
+    write_bytes(camera, wall_camera(window).dump());
+    const std::string stats = folder / "stats.json";
+    const Finished finished = done(typed(fmt::format(
+        "--radius 0.3 --memory {}M --device cpu --stats {} --frames 1-{} {}", mebibytes, stats, frames, more)));
+    EXPECT_LE(finished.peak_mib, mebibytes) << finished;
+    return json::parse(read_bytes(stats));
+  }
+};
+
+TEST_F(MemoryLimit, holds_for_a_frame_in_tiles) {
+  const std::string to = out + "/new/";
+  EXPECT_GT(run_within(
+                330, 1, {0, 0, 2000, 800},
+                "--slices 1 --steps 2 -o " + to + "ao.%04d.exr --composite " + to + "c.%04d.exr")["frames"][0]["parts"],
+            1);
+}
+
+TEST_F(MemoryLimit, holds_for_several_frames_at_once) {
+  EXPECT_GT(run_within(360, 6, {0, 0, 800, 600}, "--threads 4 --noise animated")["totals"]["at_once"], 1);
 }
 
 }  // namespace

@@ -26,7 +26,20 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-using Faults = SequenceFolder;
+class Faults : public SequenceFolder {
+ protected:
+  /// Runs that end early must leave some of the files that a whole run leaves, and no others.
+  void expect_some_of(const std::map<std::string, std::string>& whole) const {
+    EXPECT_LT(outputs().size(), whole.size());
+    for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(whole.contains(name) && whole.at(name) == bytes) << name;
+  }
+  std::map<std::string, std::string> whole_outputs(const Options& more = {}) const {
+    done(more);
+    const auto whole = outputs();
+    remove_outputs();
+    return whole;
+  }
+};
 
 void sleep_ms(double ms) { std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms)); }
 
@@ -42,7 +55,7 @@ Surroundings signalled(const std::string& out, std::size_t files, int signal) {
 
 void cut_short(const std::string& path) { fs::resize_file(path, fs::file_size(path) - 10); }
 
-TEST_F(Faults, a_damaged_frame_ends_the_run_by_name) {
+TEST_F(Faults, damaged_frames_end_the_run_by_name_or_are_left_out) {
   write_frames(1, 6);
   cut_short(input(3));
   const Finished finished = run({"--threads", "1"});
@@ -50,16 +63,12 @@ TEST_F(Faults, a_damaged_frame_ends_the_run_by_name) {
   EXPECT_THAT(finished.err, AllOf(HasSubstr("error: frame 3: "), HasSubstr("f.0003.exr")));
   EXPECT_THAT(lines_of(finished.err).back(), StartsWith("alcove: 2 frames done, 1 failed (3), 3 not begun"));
   EXPECT_THAT(names_in(out), ElementsAre("ao.0001.exr", "ao.0002.exr"));
-}
-
-TEST_F(Faults, keep_going_computes_all_others) {
-  write_frames(1, 6);
-  cut_short(input(1));
-  write_bytes(input(4), "no EXR");
-  const Finished finished = run({"--keep-going"});
-  EXPECT_EQ(finished.code, 1) << finished;
-  EXPECT_THAT(lines_of(finished.err).back(), StartsWith("alcove: 4 frames done, 2 failed (1, 4)"));
-  EXPECT_THAT(names_in(out), ElementsAre("ao.0002.exr", "ao.0003.exr", "ao.0005.exr", "ao.0006.exr"));
+  write_bytes(input(1), "no EXR");
+  remove_outputs();
+  const Finished going = run({"--keep-going"});
+  EXPECT_EQ(going.code, 1) << going;
+  EXPECT_THAT(lines_of(going.err).back(), StartsWith("alcove: 4 frames done, 2 failed (1, 3)"));
+  EXPECT_THAT(names_in(out), ElementsAre("ao.0002.exr", "ao.0004.exr", "ao.0005.exr", "ao.0006.exr"));
 }
 
 TEST_F(Faults, an_input_that_vanishes_is_a_failed_frame) {
@@ -77,37 +86,31 @@ TEST_F(Faults, an_input_that_vanishes_is_a_failed_frame) {
 
 TEST_F(Faults, signals_end_the_run_and_leave_whole_files_only) {
   write_frames(1, 150);
-  ASSERT_EQ(run().code, 0);
-  const auto whole = outputs();
+  const auto whole = whole_outputs();
   for (const auto& [signal, code] : {std::pair(SIGTERM, 143), std::pair(SIGINT, 130), std::pair(SIGHUP, 129)}) {
     remove_outputs();
     const Finished finished = run({}, signalled(out, 3, signal));
     EXPECT_EQ(finished.code, code) << finished;
     EXPECT_THAT(lines_of(finished.err).back(), HasSubstr("not begun or dropped"));
-    EXPECT_LT(outputs().size(), 150);
-    for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(whole.contains(name) && whole.at(name) == bytes) << name;
+    expect_some_of(whole);
   }
 }
 
 TEST_F(Faults, a_signal_ends_a_run_whose_frames_are_means_of_many) {
   write_frames(1, 60);
-  ASSERT_EQ(run({"--accumulate", "2"}).code, 0);
-  const auto whole = outputs();
-  remove_outputs();
+  const auto whole = whole_outputs({"--accumulate", "2"});
   const Finished finished = run({"--accumulate", "2"}, signalled(out, 3, SIGINT));
   EXPECT_EQ(finished.code, 130) << finished;
-  EXPECT_LT(outputs().size(), 60);
-  for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(whole.contains(name) && whole.at(name) == bytes) << name;
+  expect_some_of(whole);
 }
 
 TEST_F(Faults, a_run_that_nohup_started_outlives_its_terminal) {
   write_frames(1, 60);
   Surroundings surroundings = signalled(out, 3, SIGHUP);
   surroundings.program = "/bin/sh";
-  const Finished finished =
-      run_program({"-c", "trap '' HUP; exec \"$0\" \"$@\"", ALCOVE_PROGRAM, "run", in + "/f.%04d.exr", "-o",
-                   out + "/ao.%04d.exr", "--camera", camera, "--radius", "1", "--noise", "animated"},
-                  surroundings);
+  const Finished finished = run_program(
+      joined({"-c", "trap '' HUP; exec \"$0\" \"$@\"", ALCOVE_PROGRAM, "run"}, arguments({"--noise", "animated"})),
+      surroundings);
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(names_in(out), SizeIs(60));
 }
@@ -147,9 +150,7 @@ TEST_F(Faults, a_terminal_that_stands_still_stops_no_frame) {
 
 TEST_F(Faults, a_kill_at_any_moment_leaves_whole_files_and_what_is_cleaned_next_time) {
   write_frames(1, 40);
-  ASSERT_EQ(run().code, 0);
-  const auto whole = outputs();
-  remove_outputs();
+  const auto whole = whole_outputs();
   for (int i = 0; i < 12; i++) {
     Surroundings surroundings;
     surroundings.meanwhile = [&](int process) {
@@ -165,52 +166,40 @@ TEST_F(Faults, a_kill_at_any_moment_leaves_whole_files_and_what_is_cleaned_next_
   EXPECT_TRUE(outputs() == whole) << testing::PrintToString(names_in(out));
 }
 
-TEST_F(Faults, resume_redoes_what_is_missing_stale_or_broken) {
+TEST_F(Faults, resume_redoes_what_is_missing_stale_or_broken_or_has_another_input_of_any_age) {
   write_frames(1, 8);
-  ASSERT_EQ(run().code, 0);
+  done();
   const auto whole = outputs();
   EXPECT_THAT(run({"--resume"}).err, HasSubstr("0 frames done, 8 kept"));
   fs::remove(output(2));
   cut_short(output(4));
   fs::last_write_time(input(5), fs::last_write_time(output(5)) + std::chrono::seconds(1));
   write_bytes(output(7), "no EXR");
-  const Finished finished = run({"--resume"});
-  EXPECT_EQ(finished.code, 0) << finished;
+  const Finished finished = done({"--resume"});
   EXPECT_THAT(finished.err, HasSubstr("4 frames done, 4 kept"));
   for (const int frame : {1, 3, 6, 8}) EXPECT_THAT(finished.err, HasSubstr(output(frame) + ": whole, kept"));
   EXPECT_TRUE(outputs() == whole);
-  fs::last_write_time(input(5), fs::last_write_time(output(1)));
+  FrameFile other = wall_frame();
+  other.change("Depth", [](float z) { return 1.5f * z; });
+  other.write(input(2));
+  for (const int frame : {2, 5})
+    fs::last_write_time(input(frame), fs::last_write_time(output(1)) - std::chrono::hours(1));
+  EXPECT_THAT(run({"--resume"}).err, HasSubstr("1 frames done, 7 kept"));
+  EXPECT_NE(read_bytes(output(2)), whole.at("ao.0002.exr"));
   EXPECT_THAT(run({"--resume", "--radius", "2"}).err, HasSubstr("8 frames done"));
   EXPECT_THAT(run({"--resume", "--radius", "2"}).err, HasSubstr("8 kept"));
   EXPECT_THAT(run({"--resume", "--set", "overwrite=true", "--radius", "2"}).err, HasSubstr("8 frames done"));
 }
 
-TEST_F(Faults, resume_redoes_what_has_another_input_of_any_age) {
-  write_frames(1, 3);
-  ASSERT_EQ(run().code, 0);
-  const std::string before = read_bytes(output(2));
-  FrameFile other = wall_frame();
-  for (auto& [name, plane] : other.planes)
-    if (name.find("Depth") != std::string::npos)
-      for (float& z : plane) z *= 1.5f;
-  other.write(input(2));
-  fs::last_write_time(input(2), fs::last_write_time(output(2)) - std::chrono::hours(1));
-  EXPECT_THAT(run({"--resume"}).err, HasSubstr("1 frames done, 2 kept"));
-  EXPECT_NE(read_bytes(output(2)), before);
-  EXPECT_THAT(run({"--resume"}).err, HasSubstr("0 frames done, 3 kept"));
-}
-
 TEST_F(Faults, resume_looks_at_every_output) {
   write_frames(1, 2);
-  const std::vector<std::string> more{"--preview", out + "/p.%04d.png", "--resume"};
-  ASSERT_EQ(run(more).code, 0);
+  const Options more{"--preview", out + "/p.%04d.png", "--resume"}, other = joined(more, {"--radius", "0.5"});
+  done(more);
   EXPECT_THAT(run(more).err, HasSubstr("2 kept"));
   cut_short(out + "/p.0002.png");
   EXPECT_THAT(run(more).err, HasSubstr("1 frames done, 1 kept"));
   const std::string picture = read_bytes(out + "/p.0001.png");
-  ASSERT_EQ(run({"--radius", "0.5"}).code, 0) << "which leaves the pictures as they are";
-  std::vector<std::string> other = more;
-  other.insert(other.end(), {"--radius", "0.5"});
+  done({"--radius", "0.5"});  // which leaves the pictures as they are
   EXPECT_THAT(run(other).err, HasSubstr("2 frames done, in")) << "pictures of another radius";
   EXPECT_NE(read_bytes(out + "/p.0001.png"), picture);
   EXPECT_THAT(run(other).err, HasSubstr("0 frames done, 2 kept"));
@@ -218,8 +207,7 @@ TEST_F(Faults, resume_looks_at_every_output) {
 
 TEST_F(Faults, a_full_disk_leaves_nothing_half) {
   write_frames(1, 40);
-  ASSERT_EQ(run().code, 0);
-  const auto whole = outputs();
+  const auto whole = whole_outputs();
   const std::string disk = folder / "disk";
   fs::create_directory(disk);
   if (!mount_memory(disk, "size=48k")) GTEST_SKIP() << "this process may not mount";
@@ -237,18 +225,16 @@ TEST_F(Faults, a_full_disk_leaves_nothing_half) {
   unmount(disk);
 }
 
+Surroundings losing(const char* times) {
+  return {.environment = {{"ALCOVE_LOSSES", times}}, .preload = ALCOVE_LOST_DEVICE};
+}
+
 TEST_F(Faults, a_lost_device_is_replaced_once) {
   write_frames(1, 6);
-  // computes it, though they are equal
-  const std::vector<std::string> every_frame{"--threads", "1", "--keep-going", "--noise", "animated"};
-  ASSERT_EQ(run(every_frame).code, 0);
-  const auto whole = outputs();
-  remove_outputs();
-  const auto losing = [](const char* times) {
-    return Surroundings{.environment = {{"ALCOVE_LOSSES", times}}, .preload = ALCOVE_LOST_DEVICE};
-  };
-  const Finished once = run(every_frame, losing("1"));
-  EXPECT_EQ(once.code, 0) << once;
+  // computes every frame, though they are equal
+  const Options every_frame = typed("--threads 1 --keep-going --noise animated");
+  const auto whole = whole_outputs(every_frame);
+  done(every_frame, losing("1"));
   EXPECT_TRUE(outputs() == whole);
   const Finished always = run(every_frame, losing("100"));
   EXPECT_EQ(always.code, 5) << always;
@@ -258,14 +244,10 @@ TEST_F(Faults, a_lost_device_is_replaced_once) {
 TEST_F(Faults, what_frames_share_is_kept_when_a_device_is_lost) {
   write_frames(1, 8);
   const auto rows_read_by = [&](const Surroundings& surroundings) {
-    const Finished finished =
-        run({"--accumulate", "2", "--frames", "1,8", "--threads", "1", "--stats", folder / "stats.json"}, surroundings);
-    EXPECT_EQ(finished.code, 0) << finished;
-    return nlohmann::json::parse(read_bytes(folder / "stats.json"))["frames"][0]["rows_read"].get<int>();
+    return stats_of(typed("--accumulate 2 --frames 1,8 --threads 1"), surroundings)["frames"][0]["rows_read"]
+        .get<int>();
   };
-  const int once = rows_read_by({});
-  const int again = rows_read_by({.environment = {{"ALCOVE_LOSSES", "1"}}, .preload = ALCOVE_LOST_DEVICE});
-  EXPECT_LT(again, once) << "two of its five frames were estimated before";
+  EXPECT_LT(rows_read_by(losing("1")), rows_read_by({})) << "two of its five frames were estimated before";
 }
 
 }  // namespace

@@ -1,15 +1,11 @@
 // Warnings and notes: where they are said and recorded, and how they end a run.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfOutputFile.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "core/base/note.h"
-#include "tests/support/command_line.h"
+#include "tests/support/dwa_frame.h"
 #include "tests/support/exr_header.h"
 #include "tests/support/sequence_folder.h"
 
@@ -37,7 +33,7 @@ FrameFile half_frame() {
 /// A frame with a note and without a warning, since it has no normals.
 FrameFile frame_without_normals() {
   FrameFile file = wall_frame();
-  std::erase_if(file.planes, [](const auto& plane) { return plane.first.find("Normal") != std::string::npos; });
+  file.erase("Normal");
   return file;
 }
 
@@ -59,30 +55,15 @@ void write_with_averaged_edges(const std::string& path) {
 
 void write_with_short_normals(const std::string& path) {
   FrameFile file = wall_frame();
-  for (auto& [name, plane] : file.planes)
-    for (std::size_t i = 0; i < plane.size() && name.find("Normal") != name.npos; i += 4) plane[i] *= 0.5f;
+  int i = 0;
+  file.change("Normal", [&](float n) { return i++ % 4 ? n : 0.5f * n; });
   // Not Blender's names: its Cycles averages them always.
   file.rename("ViewLayer.Depth.Z", "Z");
   for (const std::string axis : {"X", "Y", "Z"}) file.rename("ViewLayer.Normal." + axis, "N." + axis);
   file.write(path);
 }
 
-/// Normals whose channels are named as colours are, which DWA quantizes.
-void write_with_dwa(const std::string& path) {
-  FrameFile file = wall_frame();
-  for (const auto& [axis, color] : {std::pair("X", "R"), {"Y", "G"}, {"Z", "B"}})
-    file.rename(std::string("ViewLayer.Normal.") + axis, std::string("ViewLayer.Normal.") + color);
-  Imf::Header header(file.data.width, file.data.height);
-  header.compression() = Imf::DWAA_COMPRESSION;
-  Imf::FrameBuffer pixels;
-  for (const auto& [name, plane] : file.planes) {
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    pixels.insert(name, Imf::Slice::Make(Imf::FLOAT, plane.data(), header.dataWindow()));
-  }
-  Imf::OutputFile out(path.c_str(), header);
-  out.setFrameBuffer(pixels);
-  out.writePixels(file.data.height);
-}
+void write_with_lossy_normals(const std::string& path) { write_with_dwa(path, Imf::DWAA_COMPRESSION); }
 
 std::vector<std::string> codes_in(const json& notes) {
   std::vector<std::string> codes;
@@ -90,7 +71,11 @@ std::vector<std::string> codes_in(const json& notes) {
   return codes;
 }
 
-class Notes : public CommandLine {};
+class Notes : public CommandLine {
+ protected:
+  /// The warnings in the header of a file.
+  static std::string notes_in(const std::string& path) { return text_in(read_header(path), "alcove/notes"); }
+};
 class SequenceNotes : public SequenceFolder {};
 
 TEST_F(Notes, have_their_level_and_their_code) {
@@ -105,9 +90,8 @@ TEST_F(Notes, have_their_level_and_their_code) {
 
 TEST_F(Notes, stand_in_log_and_statistics) {
   half_frame().write(frame);
-  const std::string stats = folder / "stats.json", log = folder / "log.jsonl";
-  ASSERT_EQ(run({"--stats", stats, "--log-json", log, "-q"}).code, 0);
-  const json all = json::parse(read_bytes(stats)), notes = all["frames"][0]["notes"];
+  const std::string log = folder / "log.jsonl";
+  const json all = stats_of({"--log-json", log, "-q"}), notes = all["frames"][0]["notes"];
   ASSERT_THAT(codes_in(notes), ElementsAre("half-depth"));
   EXPECT_EQ(notes[0]["level"], "warning");
   EXPECT_THAT(notes[0]["text"].get<std::string>(), HasSubstr("half float"));
@@ -118,50 +102,37 @@ TEST_F(Notes, stand_in_log_and_statistics) {
 TEST_F(Notes, that_are_warnings_stand_in_the_header) {
   half_frame().write(frame);
   const std::string composite = folder / "composite.exr";
-  ASSERT_EQ(run({}).code, 0);
-  EXPECT_THAT(text_in(read_header(ao), "alcove/notes"), StartsWith("half-depth: ViewLayer.Depth.Z is stored as half"));
-  const std::string bytes = read_bytes(ao);
-  ASSERT_EQ(run({}).code, 0);
-  EXPECT_TRUE(read_bytes(ao) == bytes);
-
+  done();
+  EXPECT_THAT(notes_in(ao), StartsWith("half-depth: ViewLayer.Depth.Z is stored as half"));
   FrameFile repaired = frame_with_repairs(3);
   add_beauty(repaired);
   repaired.write(frame);
-  ASSERT_EQ(run({"--composite", composite}).code, 0);
-  EXPECT_EQ(text_in(read_header(ao), "alcove/notes"), "repaired-normals: pixels had no usable normal");
-  EXPECT_EQ(text_in(read_header(composite), "alcove/notes"), "repaired-normals: pixels had no usable normal");
-
-  frame_without_normals().write(frame);
-  ASSERT_EQ(run({}).code, 0);
-  EXPECT_EQ(text_in(read_header(ao), "alcove/notes"), "(none)") << "a note is no warning";
+  done({"--composite", composite});
+  for (const std::string& path : {ao, composite})
+    EXPECT_EQ(notes_in(path), "repaired-normals: pixels had no usable normal");
+  FrameFile made = frame_without_normals();
+  made.attributes = {{"alcove/notes", "half-depth: of another file"}, {"owner", "a studio"}};
+  made.write(frame);
+  done();
+  EXPECT_EQ(notes_in(ao), "(none)") << "a note is no warning, nor is that of an input the output's";
+  EXPECT_EQ(text_in(read_header(ao), "owner"), "a studio");
 }
 
 TEST_F(Notes, tell_of_frames_whose_making_harms_ao) {
   for (const auto& [write, code, words] :
        {std::tuple(&write_with_averaged_edges, "antialiased-depth", "render it without filtering"),
         {&write_with_short_normals, "shortened-normals", "were averaged over the pixel"},
-        {&write_with_dwa, "lossy-compression", "write data with zip"}}) {
+        {&write_with_lossy_normals, "lossy-compression", "write data with zip"}}) {
     write(frame);
-    const Finished finished = run({});
-    ASSERT_EQ(finished.code, 0) << finished;
+    const Finished finished = done();
     EXPECT_THAT(lines_of(finished.err), Contains(AllOf(StartsWith("alcove: warning: " + frame + ": "), HasSubstr(words),
                                                        testing::EndsWith(fmt::format(" [{}]", code)))))
         << finished;
-    EXPECT_THAT(text_in(read_header(ao), "alcove/notes"), HasSubstr(std::string(code) + ": "));
+    EXPECT_THAT(notes_in(ao), HasSubstr(std::string(code) + ": "));
     fs::remove(ao);
-    const Finished refused = run({"--set", "warnings-as-errors=true"});
-    EXPECT_EQ(refused.code, 3) << refused;
+    EXPECT_EQ(run({"--set", "warnings-as-errors=true"}).code, 3);
     EXPECT_FALSE(fs::exists(ao)) << code;
   }
-}
-
-TEST_F(Notes, of_an_input_that_alcove_has_made_are_not_those_of_the_output) {
-  FrameFile made = wall_frame();
-  made.attributes = {{"alcove/notes", "half-depth: of another file"}, {"owner", "a studio"}};
-  made.write(frame);
-  ASSERT_EQ(run({}).code, 0);
-  EXPECT_EQ(text_in(read_header(ao), "alcove/notes"), "(none)");
-  EXPECT_EQ(text_in(read_header(ao), "owner"), "a studio");
 }
 
 TEST_F(Notes, that_are_warnings_fail_where_they_count_as_errors) {
@@ -183,14 +154,12 @@ TEST_F(Notes, that_are_warnings_fail_where_they_count_as_errors) {
 }
 
 TEST_F(SequenceNotes, are_said_once_and_recorded_for_every_frame) {
-  for (const int frame : {1, 2, 3}) half_frame().write(input(frame));
-  const std::string stats = folder / "stats.json";
-  const Finished finished = run({"--stats", stats});
-  ASSERT_EQ(finished.code, 0) << finished;
+  write_frames(1, 3, half_frame());
+  const Finished finished = done({"--stats", folder / "stats.json"});
   const std::size_t first = finished.err.find("[half-depth]");
   EXPECT_NE(first, std::string::npos) << finished;
-  EXPECT_EQ(finished.err.find("[half-depth]", first + 1), std::string::npos) << finished;
-  const json all = json::parse(read_bytes(stats));
+  EXPECT_EQ(finished.err.rfind("[half-depth]"), first) << finished;
+  const json all = json::parse(read_bytes(folder / "stats.json"));
   EXPECT_THAT(codes_in(all["notes"]), Contains("half-depth"));
   for (const int frame : {1, 2, 3}) {
     EXPECT_THAT(codes_in(all["frames"][std::size_t(frame - 1)]["notes"]), ElementsAre("half-depth")) << frame;
@@ -202,15 +171,13 @@ TEST_F(SequenceNotes, are_said_once_and_recorded_for_every_frame) {
 TEST_F(SequenceNotes, of_single_frames_are_said_once_and_counted) {
   wall_frame().write(input(1));
   for (const int frame : {2, 3, 4}) frame_with_repairs(std::size_t(frame)).write(input(frame));
-  const std::string stats = folder / "stats.json";
-  const Finished finished = run({"--stats", stats});
-  ASSERT_EQ(finished.code, 0) << finished;
+  const Finished finished = done({"--stats", folder / "stats.json"});
   std::vector<std::string> said = lines_of(finished.err);
   std::erase_if(said, [](const std::string& line) { return line.find("[repaired-normals]") == std::string::npos; });
   ASSERT_EQ(said.size(), 2) << finished;
   EXPECT_THAT(said[0], AllOf(HasSubstr(input(2)), HasSubstr("2 pixels")));
   EXPECT_THAT(said[1], AllOf(StartsWith("alcove: warning: "), HasSubstr("2 further frames")));
-  const json frames = json::parse(read_bytes(stats))["frames"];
+  const json frames = json::parse(read_bytes(folder / "stats.json"))["frames"];
   EXPECT_THAT(frames[0]["notes"], IsEmpty());
   EXPECT_THAT(frames[3]["notes"][0]["text"].get<std::string>(), HasSubstr("4 pixels"));
 }

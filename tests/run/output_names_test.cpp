@@ -1,9 +1,7 @@
-// Names of inputs and outputs: endings, folders that are made, what shells make of sequences; and what a dry run says.
+// Names of inputs and outputs: endings, folders that are made, what shells make of sequences.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "core/formats/exr.h"
-#include "tests/support/command_line.h"
 #include "tests/support/sequence_folder.h"
 
 namespace alcove {
@@ -11,21 +9,15 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace test;
-using nlohmann::json;
 using testing::AllOf;
-using testing::Contains;
-using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::MatchesRegex;
 using testing::Not;
 
 class OutputNames : public CommandLine {
  protected:
   /// `run` to this output, with these arguments.
-  Finished to(const std::string& output, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"run", frame, "-o", output, "--camera", camera, "--radius", "1"});
-    return run_program(more);
+  Finished to(const std::string& output, const Options& more = {}) const {
+    return run_program(joined({"run", frame, "-o", output, "--camera", camera, "--radius", "1"}, more));
   }
 };
 
@@ -34,20 +26,19 @@ TEST_F(OutputNames, that_end_in_another_format_are_refused) {
   add_beauty(file);
   file.write(frame);
   const auto before = names_in(folder.path());
-  const auto expect_refused = [&](const Finished& finished, const std::string& name, const char* option,
-                                  const char* ending) {
-    EXPECT_EQ(finished.code, 2) << name << finished;
-    EXPECT_THAT(finished.err, AllOf(HasSubstr(name), HasSubstr(option), HasSubstr(ending)));
+  const auto expect_refused = [&](const Finished& finished, const char* name, const char* option, const char* ending) {
+    test::expect_refused(finished, 2, {name, option, ending});
     EXPECT_EQ(names_in(folder.path()), before);
   };
   for (const char* name : {"x.png", "x.tif", "x.JPG", "x.png.tmp", "x.png.0001", "x.json", "x.exr.zip"}) {
     expect_refused(to(folder / name), name, "--output", ".exr");
     expect_refused(to(ao, {"--composite", folder / name}), name, "--composite", ".exr");
   }
-  for (const char* name : {"x.jpg", "x.exr", "x.tif", "x.jpg.part"})
-    for (const Finished& finished : {to(ao, {"--preview", folder / name}),
-                                     run_program({"inspect", frame, "--camera", camera, "--preview", folder / name})})
-      expect_refused(finished, name, "--preview", ".png");
+  for (const char* name : {"x.jpg", "x.exr", "x.tif", "x.jpg.part"}) {
+    const Options preview{"--preview", folder / name};
+    expect_refused(to(ao, preview), name, "--preview", ".png");
+    expect_refused(run_program(joined({"inspect", frame, "--camera", camera}, preview)), name, "--preview", ".png");
+  }
   expect_refused(to(folder / "x.####.png", {"--frames", "1-2"}), "x.0001.png", "--output", ".exr");
   expect_refused(to(folder / "x.png", {"--dry-run"}), "x.png", "--output", ".exr");
 }
@@ -95,39 +86,22 @@ class InputNames : public SequenceFolder {};
 
 TEST_F(InputNames, that_are_globs_are_answered_with_the_pattern) {
   write_frames(1, 2);
-  const auto expect_answer = [&](const std::string& glob, const std::string& pattern) {
-    const Finished finished =
-        run_program({"run", glob, "-o", out + "/ao.####.exr", "--camera", camera, "--radius", "1"});
-    EXPECT_EQ(finished.code, 2) << finished;
-    EXPECT_THAT(finished.err, AllOf(HasSubstr(glob), HasSubstr("write " + pattern)));
-    EXPECT_THAT(names_in(out), IsEmpty());
+  const auto run_on = [&](const Options& inputs) {
+    return run_program(joined(joined({"run"}, inputs), {"-o", out + "/ao.exr", "--camera", camera, "--radius", "1"}));
   };
-  expect_answer(in + "/f.*.exr", in + "/f.####.exr");
-  expect_answer(in + "/f.?????.exr", in + "/f.#####.exr");
-  expect_answer(in + "/*.*", "shot.####.exr");
+  for (const auto& [glob, pattern] : {std::pair(in + "/f.*.exr", in + "/f.####.exr"),
+                                      {in + "/f.?????.exr", in + "/f.#####.exr"},
+                                      {in + "/*.*", "shot.####.exr"}}) {
+    test::expect_refused(run_on({glob}), 2, {glob, "write " + pattern});
+    EXPECT_THAT(names_in(out), testing::IsEmpty());
+  }
   const Finished bare = run_program({"run", in + "/f.*.exr"});
   EXPECT_EQ(bare.code, 2) << bare;
   EXPECT_THAT(bare.err, AllOf(HasSubstr("write " + in + "/f.####.exr"), Not(HasSubstr("such as"))));
-  const Finished expanded = run_program({"run", input(1), input(2), "-o", out + "/ao.exr", "--camera", camera});
-  EXPECT_EQ(expanded.code, 2) << expanded;
-  EXPECT_THAT(expanded.err, HasSubstr("write " + in + "/f.####.exr"));
+  test::expect_refused(run_on({input(1), input(2)}), 2, {"write " + in + "/f.####.exr"});
   // A file of that very name is no glob.
   fs::copy_file(input(1), in + "/what?.exr");
-  EXPECT_EQ(run_program({"run", in + "/what?.exr", "-o", out + "/ao.exr", "--camera", camera, "--radius", "1"}).code,
-            0);
-}
-
-TEST_F(InputNames, of_a_dry_run_come_without_a_device) {
-  write_frames(1, 4);
-  const auto before = names_in(folder.path());
-  const Finished finished = run({"--dry-run", "--device", "99"});
-  EXPECT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(lines_of(finished.out), Contains(MatchesRegex("frames +4: .*")));
-  EXPECT_EQ(names_in(folder.path()), before);
-
-  ASSERT_EQ(run().code, 0);
-  fs::remove(output(2));
-  EXPECT_THAT(lines_of(run({"--dry-run", "--resume"}).out), Contains(MatchesRegex("kept +3: .*")));
+  EXPECT_EQ(run_on({in + "/what?.exr"}).code, 0);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "core/formats/exr.h"
 #include "tests/support/command_line.h"
+#include "tests/support/difference.h"
 #include "tests/support/exr_header.h"
 
 namespace alcove {
@@ -19,7 +20,6 @@ namespace {
 using namespace test;
 using testing::AllOf;
 using testing::HasSubstr;
-using Options = std::vector<std::string>;
 using Plane = std::vector<float>;
 
 const Window kSmall = kWallWindow;
@@ -59,10 +59,6 @@ Plane filtered(const Plane& plane, const Window& large, const Window& small, int
   return result;
 }
 
-float value_at(int x, int y, int channel) {
-  return 0.25f + float(((x + 50) * 7 + (y + 50) * 13 + channel * 5) % 32) / 16;
-}
-
 class Supersampling : public CommandLine {
  protected:
   /// The wall, with blocks before it that make edges everywhere.
@@ -75,71 +71,49 @@ class Supersampling : public CommandLine {
     write_bytes(camera, wall_camera(display).dump());
   }
 
-  void write_beauty(const Window& data, const Window& display) const {
-    FrameFile file{data, display, 1, {}, {}, {}};
-    for (int c = 0; c < 3; c++) {
-      Plane& plane = file.planes[std::string(1, "RGB"[c])];
-      for (int y = data.y; y < data.y + data.height; y++)
-        for (int x = data.x; x < data.x + data.width; x++) plane.push_back(value_at(x, y, c));
+  void write_beauty(const Window& data, const Window& display) const { beauty_over(data, display).write(beauty); }
+
+  /// Expects of every channel of a picture that it is that of larger planes as a renderer filters them.
+  void expect_filtered(const Image& small, const Image& full, int factor, const std::string& filter = "blackman-harris",
+                       double width = 3) const {
+    EXPECT_EQ(small.display, kSmall);
+    ASSERT_EQ(small.names, full.names);
+    for (const auto& name : full.names) {
+      const auto plane = full.plane(name), result = small.plane(name);
+      const Plane expected = filtered({plane.begin(), plane.end()}, full.data, small.data, factor, filter, width);
+      if (name != "Z") EXPECT_LT(difference({result.begin(), result.end()}, expected).max, 1e-6) << name;
     }
-    file.write(beauty);
-  }
-
-  Image computed(const Options& more) const {
-    Options options{"--type", "float"};
-    options.insert(options.end(), more.begin(), more.end());
-    const Finished finished = run(options);
-    EXPECT_EQ(finished.code, 0) << finished;
-    return read_exr_image(ao);
-  }
-
-  void expect_error(const Options& options, const std::vector<std::string>& words) const {
-    const Finished finished = run(options);
-    EXPECT_EQ(finished.code, 3) << finished;
-    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
-    for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word));
   }
 
   const std::string beauty = folder / "beauty.exr", composite = folder / "composite.exr";
+  const Options composed{"--beauty", beauty, "--composite", composite};
 };
-
-double largest_difference(std::span<const float> a, std::span<const float> b) {
-  EXPECT_EQ(a.size(), b.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); i++)
-    largest = std::max(largest, std::abs(double(a[i]) - b[i]));
-  return largest;
-}
 
 struct FilterCase {
   int factor;
   std::string filter;
   double width;
-  Options options;
+  const char* more;
 };
 
 TEST_F(Supersampling, filters_as_the_formulas_say) {
-  for (const FilterCase& c : {FilterCase{2, "blackman-harris", 3, {}},
-                              {3, "blackman-harris", 3, {}},
-                              {2, "box", 1, {"--set", "filter=box"}},
-                              {4, "gaussian", 2, {"--set", "filter=gaussian"}},
-                              {2, "gaussian", 3.5, {"--set", "filter=gaussian", "--set", "filter-width=3.5"}},
-                              {3, "box", 2, {"--set", "filter=box", "--set", "filter-width=2"}}}) {
+  for (const FilterCase& c : {FilterCase{2, "blackman-harris", 3, ""},
+                              {2, "box", 1, "--set filter=box"},
+                              {4, "gaussian", 2, "--set filter=gaussian"},
+                              {2, "gaussian", 3.5, "--set filter=gaussian --set filter-width=3.5"},
+                              {3, "box", 2, "--set filter=box --set filter-width=2"}}) {
     SCOPED_TRACE(std::to_string(c.factor) + " " + c.filter);
     const Window display = times(kSmall, c.factor);
     write_frame(display, display);
     const Image full = computed({});
-    Options options{"--set", std::string("supersampling=") + std::to_string(c.factor)};
-    options.insert(options.end(), c.options.begin(), c.options.end());
-    const Image small = computed(options);
+    const Image small = computed(typed(fmt::format("--set supersampling={} {}", c.factor, c.more)));
     EXPECT_EQ(small.data, kSmall);
-    EXPECT_EQ(small.display, kSmall);
     EXPECT_EQ(text_in(read_header(ao), "alcove/filter"),
               fmt::format("{} x {} px by {} {}", c.factor, c.factor, c.filter, c.width));
+    expect_filtered(small, full, c.factor, c.filter, c.width);
     const Plane expected = filtered(full.pixels, display, kSmall, c.factor, c.filter, c.width);
-    EXPECT_LT(largest_difference(small.pixels, expected), 1e-6);
-    // Else any filter would do.
-    EXPECT_GT(largest_difference(expected, filtered(full.pixels, display, kSmall, c.factor, "box", 4)), 0.01);
+    EXPECT_GT(difference(expected, filtered(full.pixels, display, kSmall, c.factor, "box", 4)).max, 0.01)
+        << "else any filter would do";
   }
 }
 
@@ -152,40 +126,35 @@ TEST_F(Supersampling, a_picture_has_the_pixels_whose_middle_the_depth_has) {
        {Windows{{-7, -3, 140, 80}, {-4, -2, 70, 40}}, Windows{{13, 8, 61, 30}, {6, 4, 31, 15}},
         Windows{{12, 7, 61, 31}, {6, 3, 30, 16}}}) {
     write_frame(depth, times(kSmall, 2));
-    const Image full = computed({});
-    const Image small = computed({"--set", "supersampling=2"});
+    const Image full = computed({}), small = computed({"--set", "supersampling=2"});
     EXPECT_EQ(small.data, picture);
-    EXPECT_EQ(small.display, kSmall);
-    EXPECT_LT(largest_difference(small.pixels, filtered(full.pixels, depth, picture, 2, "blackman-harris", 3)), 1e-6);
+    expect_filtered(small, full, 2);
   }
 }
 
 TEST_F(Supersampling, a_smaller_beauty_asks_for_it_and_takes_the_filtered_ao) {
-  for (const int factor : {2, 3, 4}) {
+  for (const auto& [factor, window] : {std::pair(2, kSmall), {3, Window{-3, 2, 40, 50}}, {4, Window{-3, 2, 40, 50}}}) {
     const Window display = times(kSmall, factor);
     write_frame(display, display);
-    const Image filtered_ao = computed({"--set", std::string("supersampling=") + std::to_string(factor)});
-    for (const Window& window : {kSmall, Window{-3, 2, 40, 50}}) {
-      write_beauty(window, kSmall);
-      const Finished noted = run({"--beauty", beauty, "--composite", composite});
-      EXPECT_THAT(noted.err, HasSubstr("--set supersampling")) << "nobody has asked for it";
-      const Image with = computed({"--beauty", beauty, "--composite", composite, "--set", "append-ao=AO"});
-      EXPECT_EQ(with.pixels, filtered_ao.pixels);
-      const Image result = read_exr_image(composite);
-      EXPECT_EQ(result.data, window);
-      EXPECT_EQ(result.display, kSmall);
-      for (int y = window.y; y < window.y + window.height; y++)
-        for (int x = window.x; x < window.x + window.width; x++) {
-          const auto at = std::size_t(y - window.y) * std::size_t(window.width) + std::size_t(x - window.x);
-          const bool has_ao = x >= 0 && y >= 0 && x < kSmall.width && y < kSmall.height;
-          const float ao_there =
-              has_ao ? filtered_ao.pixels[std::size_t(y) * std::size_t(kSmall.width) + std::size_t(x)] : 1;
-          ASSERT_EQ(result.plane("AO.Y")[at], ao_there) << x << ", " << y;
-          for (int c = 0; c < 3; c++)
-            ASSERT_NEAR(result.plane(std::string(1, "RGB"[c]))[at], ao_there * value_at(x, y, c), 1e-6)
-                << x << ", " << y;
-        }
-    }
+    const Image filtered_ao = computed({"--set", fmt::format("supersampling={}", factor)});
+    write_beauty(window, kSmall);
+    const Finished noted = done(joined(composed, typed("--type float --set append-ao=AO")));
+    EXPECT_THAT(noted.err, HasSubstr("--set supersampling")) << "nobody has asked for it";
+    EXPECT_EQ(read_exr_image(ao).pixels, filtered_ao.pixels);
+    const Image result = read_exr_image(composite);
+    EXPECT_EQ(result.data, window);
+    EXPECT_EQ(result.display, kSmall);
+    for (int y = window.y; y < window.y + window.height; y++)
+      for (int x = window.x; x < window.x + window.width; x++) {
+        const auto at = std::size_t(y - window.y) * std::size_t(window.width) + std::size_t(x - window.x);
+        const bool has_ao = x >= 0 && y >= 0 && x < kSmall.width && y < kSmall.height;
+        const float ao_there =
+            has_ao ? filtered_ao.pixels[std::size_t(y) * std::size_t(kSmall.width) + std::size_t(x)] : 1;
+        ASSERT_EQ(result.plane("AO.Y")[at], ao_there) << x << ", " << y;
+        for (int c = 0; c < 3; c++)
+          ASSERT_NEAR(result.plane(std::string(1, "RGB"[c]))[at], ao_there * beauty_at(x, y, c), 1e-6)
+              << x << ", " << y;
+      }
   }
 }
 
@@ -194,12 +163,9 @@ TEST_F(Supersampling, a_region_counts_in_pixels_of_the_picture_and_has_the_bits_
   write_frame(display, display);
   write_beauty(kSmall, kSmall);
   // A filter that reaches farther than all else.
-  Options options{"--beauty",        beauty,      "--composite", composite,  "--set", "filter=box", "--set",
-                  "filter-width=16", "--denoise", "none",        "--radius", "0.1"};
-  const Image whole = computed(options);
-  const Image whole_composite = read_exr_image(composite);
-  options.insert(options.end(), {"--roi", "11,7,30,20"});
-  const Image part = computed(options);
+  const Options options = joined(composed, typed("--set filter=box --set filter-width=16 --denoise none --radius 0.1"));
+  const Image whole = computed(options), whole_composite = read_exr_image(composite);
+  const Image part = computed(joined(options, {"--roi", "11,7,30,20"}));
   EXPECT_EQ(part.data, region);
   EXPECT_EQ(part.pixels, cropped(whole.pixels, kSmall, region));
   const Image part_composite = read_exr_image(composite);
@@ -213,54 +179,30 @@ TEST_F(Supersampling, a_region_counts_in_pixels_of_the_picture_and_has_the_bits_
 TEST_F(Supersampling, amounts_and_directions_are_filtered_and_depth_is_that_of_the_middle) {
   const Window display = times(kSmall, 2);
   write_frame(display, display);
-  const Options aovs{"--aov",    "ao,normal,bent-normal,depth,confidence,specular-occlusion,ao-scales",
-                     "--radius", "0.4",
-                     "--set",    "aov-space=view"};
-  const Image full = computed(aovs);
-  Options options = aovs;
-  options.insert(options.end(), {"--set", "supersampling=2"});
-  const Image small = computed(options);
-  ASSERT_EQ(small.names, full.names);
-  for (const std::string& name : full.names) {
-    const auto of_full = full.plane(name);
-    Plane expected = filtered({of_full.begin(), of_full.end()}, display, kSmall, 2, "blackman-harris", 3);
-    if (name == "Z")
-      for (std::size_t i = 0; i < expected.size(); i++)
-        expected[i] = of_full[(2 * (i / 64) + 1) * 128 + 2 * (i % 64) + 1];
-    EXPECT_LT(largest_difference(small.plane(name), expected), 1e-6) << name;
-  }
-}
-
-TEST_F(Supersampling, multi_bounce_is_that_of_each_sample) {
-  const Window display = times(kSmall, 2);
-  write_frame(display, display);
-  const Options colored{"--set", "ao-channels=rgb", "--set", "multi-bounce=true", "--set", "albedo=0.8"};
-  const Image full = computed(colored);
-  Options options = colored;
-  options.insert(options.end(), {"--set", "supersampling=2"});
-  const Image small = computed(options);
-  for (const std::string name : {"R", "G", "B"}) {
-    const auto plane = full.plane(name);
-    const Plane expected = filtered({plane.begin(), plane.end()}, display, kSmall, 2, "blackman-harris", 3);
-    EXPECT_LT(largest_difference(small.plane(name), expected), 1e-6) << name;
-  }
+  // Multi-bounce is that of each sample.
+  const Options aovs = typed(
+      "--radius 0.4 --set aov-space=view --set ao-channels=rgb --set multi-bounce=true --set "
+      "albedo=0.8 --aov ao,normal,bent-normal,depth,confidence,specular-occlusion,ao-scales");
+  const Image full = computed(aovs), small = computed(joined(aovs, {"--set", "supersampling=2"}));
+  expect_filtered(small, full, 2);
+  for (std::size_t i = 0; i < kSmall.pixels(); i++)
+    ASSERT_EQ(small.plane("Z")[i], full.plane("Z")[(2 * (i / 64) + 1) * 128 + 2 * (i % 64) + 1]) << i;
 }
 
 TEST_F(Supersampling, a_matte_of_the_pictures_size_counts_for_its_blocks) {
   const Window display = times(kSmall, 2);
   write_frame(display, display);
-  const std::string large_matte = folder / "large.exr", small_matte = folder / "small.exr";
-  FrameFile large{display, display, 1, {}, {}, {}}, small{kSmall, kSmall, 1, {}, {}, {}};
-  const auto is_in = [](int x, int y) { return x > 20 && (x + y) % 11 > 3 ? 1.0f : 0.0f; };
-  for (int y = 0; y < display.height; y++)
-    for (int x = 0; x < display.width; x++) large.planes["Y"].push_back(is_in(x / 2, y / 2));
-  for (int y = 0; y < kSmall.height; y++)
-    for (int x = 0; x < kSmall.width; x++) small.planes["Y"].push_back(is_in(x, y));
-  large.write(large_matte);
-  small.write(small_matte);
-  const Image by_large = computed({"--set", "supersampling=2", "--matte", large_matte});
-  EXPECT_EQ(computed({"--set", "supersampling=2", "--matte", small_matte}).pixels, by_large.pixels);
-  EXPECT_NE(computed({"--set", "supersampling=2"}).pixels, by_large.pixels);
+  const auto by_matte = [&](const Window& window, int factor) {
+    Plane matte;
+    for (int y = 0; y < window.height; y++)
+      for (int x = 0; x < window.width; x++)
+        matte.push_back(x / factor > 20 && (x / factor + y / factor) % 11 > 3 ? 1.0f : 0.0f);
+    write_plane(folder / "matte.exr", "Y", matte, window);
+    return computed({"--set", "supersampling=2", "--matte", folder / "matte.exr"}).pixels;
+  };
+  const Plane by_large = by_matte(display, 2);
+  EXPECT_EQ(by_matte(kSmall, 1), by_large);
+  EXPECT_NE(computed({"--set", "supersampling=2"}).pixels, by_large);
 }
 
 TEST_F(Supersampling, a_preview_is_as_large_as_the_picture) {
@@ -269,13 +211,11 @@ TEST_F(Supersampling, a_preview_is_as_large_as_the_picture) {
   write_frame(display, display);
   write_beauty(kSmall, kSmall);
   for (const char* style : {"ao", "composite"}) {
-    computed({"--beauty", beauty, "--composite", composite, "--preview", preview, "--set",
-              std::string("preview-style=") + style});
-    ExrFile shown = open_image(preview, "the test", Formats::all);
-    EXPECT_EQ(shown.parts()[0].data, kSmall);
+    done(joined(composed, {"--preview", preview, "--set", std::string("preview-style=") + style}));
+    EXPECT_EQ(open_image(preview, "the test", Formats::all).parts()[0].data, kSmall);
   }
   // Two bytes of a PNG may differ by rounding.
-  const Image small = computed({"--set", "supersampling=2", "--preview", preview});
+  done(typed("--type float --set supersampling=2 --preview " + preview));
   const Finished compared = run_program({"compare", preview, ao, "--max-rmse", "0.003"});
   EXPECT_EQ(compared.code, 0) << compared;
 }
@@ -288,35 +228,28 @@ TEST_F(Supersampling, sky_counts_as_open) {
     if (i % 128 > 63) depth[i] = 1e10f;
   file.write(frame);
   write_bytes(camera, wall_camera(display).dump());
-  const Image full = computed({});
-  const Image small = computed({"--set", "supersampling=2"});
+  const Image full = computed({}), small = computed({"--set", "supersampling=2"});
   EXPECT_EQ(small.pixels[63], 1);
-  EXPECT_LT(largest_difference(small.pixels, filtered(full.pixels, display, kSmall, 2, "blackman-harris", 3)), 1e-6);
+  expect_filtered(small, full, 2);
 }
 
-TEST_F(Supersampling, sizes_that_do_not_fit_are_refused) {
+TEST_F(Supersampling, sizes_that_do_not_fit_are_refused_and_one_keeps_every_pixel) {
   const Window display = times(kSmall, 2);
   write_frame(display, display);
   write_beauty(display, display);
-  expect_error({"--set", "supersampling=2", "--beauty", beauty, "--composite", composite},
-               {"beauty.exr", "128x72", "--set supersampling=2", "64x36"});
+  expect_refused(3, joined(composed, {"--set", "supersampling=2"}),
+                 {"beauty.exr", "128x72", "--set supersampling=2", "64x36"});
   write_beauty({0, 0, 42, 24}, {0, 0, 42, 24});
-  expect_error({"--beauty", beauty, "--composite", composite}, {"beauty.exr", "--set supersampling"});
+  expect_refused(3, composed, {"beauty.exr", "--set supersampling"});
   write_beauty({0, 0, 256, 144}, {0, 0, 256, 144});
-  expect_error({"--beauty", beauty, "--composite", composite}, {"beauty.exr", "--resolution half"});
-  write_frame(kSmall, {0, 0, 64, 37});
-  expect_error({"--set", "supersampling=2"}, {"wall.0042.exr", "64x37", "--set supersampling=2"});
-}
-
-TEST_F(Supersampling, of_one_keeps_every_pixel) {
-  const Window display = times(kSmall, 2);
-  write_frame(display, display);
+  expect_refused(3, composed, {"beauty.exr", "--resolution half"});
+  write_beauty(kSmall, kSmall);
+  expect_refused(3, joined(composed, {"--set", "supersampling=1"}), {"beauty.exr", "--set supersampling"});
   const Image full = computed({});
   EXPECT_EQ(full.data, display);
   EXPECT_EQ(computed({"--set", "supersampling=1"}).pixels, full.pixels);
-  write_beauty(kSmall, kSmall);
-  expect_error({"--set", "supersampling=1", "--beauty", beauty, "--composite", composite},
-               {"beauty.exr", "--set supersampling"});
+  write_frame(kSmall, {0, 0, 64, 37});
+  expect_refused(3, {"--set", "supersampling=2"}, {"wall.0042.exr", "64x37", "--set supersampling=2"});
 }
 
 }  // namespace

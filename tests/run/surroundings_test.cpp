@@ -9,7 +9,6 @@
 #include <fstream>
 
 #include "core/base/file.h"
-#include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
@@ -25,33 +24,25 @@ using testing::Not;
 class SurroundingsTest : public CommandLine {
  protected:
   /// The AO file's bytes, of a run that must succeed.
-  std::string result(const std::vector<std::string>& more, const Surroundings& surroundings = {}) const {
-    const Finished finished = run(more, surroundings);
-    EXPECT_EQ(finished.code, 0) << testing::PrintToString(more) << finished;
-    return finished.code == 0 ? read_bytes(ao) : "";
+  std::string result(const Options& more, const Surroundings& surroundings = {}) const {
+    return done(more, surroundings).code == 0 ? read_bytes(ao) : "";
   }
-
   /// A run must succeed and give the file that a plain run gives.
-  void expect_plain(const std::vector<std::string>& more, const Surroundings& surroundings = {}) {
+  void expect_plain(const Options& more, const Surroundings& surroundings = {}) {
     if (plain.empty()) plain = result({});
     EXPECT_TRUE(result(more, surroundings) == plain) << "another file with " << testing::PrintToString(more) << " "
                                                      << testing::PrintToString(surroundings.environment);
+  }
+  void expect_plain_with(const std::map<std::string, std::optional<std::string>>& environment) {
+    expect_plain({}, {.environment = environment});
   }
 
   std::string plain;
 };
 
-TEST_F(SurroundingsTest, two_runs_give_the_same_file) { expect_plain({}); }
-
-TEST_F(SurroundingsTest, threads_do_not_change_the_file) {
-  for (const char* threads : {"1", "2", "3"}) expect_plain({"--threads", threads});
-}
-
-TEST_F(SurroundingsTest, a_seed_changes_the_pixels) {
-  result({});
-  const Image plain = read_exr_image(ao);
-  result({"--seed", "1"});
-  EXPECT_NE(read_exr_image(ao).pixels, plain.pixels);
+TEST_F(SurroundingsTest, that_repeat_or_thread_a_run_give_the_same_file_and_a_seed_gives_other_pixels) {
+  for (const Options& more : {Options{}, {"--threads", "1"}, {"--threads", "3"}}) expect_plain(more);
+  EXPECT_NE(computed({"--seed", "1"}).pixels, computed({}).pixels);
 }
 
 TEST_F(SurroundingsTest, a_quiet_run_prints_nothing_and_a_verbose_one_every_pass) {
@@ -73,29 +64,26 @@ TEST_F(SurroundingsTest, the_validation_layer_has_nothing_to_say) {
   EXPECT_THAT(finished.err, Not(HasSubstr("vulkan validation")));
 }
 
-TEST_F(SurroundingsTest, no_home_at_all_is_enough) {
-  expect_plain({}, {.environment = {{"HOME", std::nullopt}, {"XDG_CACHE_HOME", std::nullopt}}});
-  expect_plain({}, {.environment = {{"HOME", "/nonexistent"}, {"XDG_CACHE_HOME", std::nullopt}}});
-  expect_plain({}, {.environment = {{"HOME", ""}, {"XDG_CACHE_HOME", "relative"}}});
-  expect_plain({}, {.environment = {{"HOME", std::nullopt}, {"XDG_CACHE_HOME", "/dev/null"}}});
-}
-
-TEST_F(SurroundingsTest, a_read_only_home_costs_nothing_but_time) {
+TEST_F(SurroundingsTest, without_a_home_or_with_a_read_only_one_cost_nothing_but_time) {
+  expect_plain_with({{"HOME", std::nullopt}, {"XDG_CACHE_HOME", std::nullopt}});
+  expect_plain_with({{"HOME", "/nonexistent"}, {"XDG_CACHE_HOME", std::nullopt}});
+  expect_plain_with({{"HOME", ""}, {"XDG_CACHE_HOME", "relative"}});
+  expect_plain_with({{"HOME", std::nullopt}, {"XDG_CACHE_HOME", "/dev/null"}});
   const std::string home = folder / "home";
   fs::create_directory(home);
   if (!mount_memory(home, "size=64k") || !make_read_only(home)) GTEST_SKIP() << "this process may not mount";
-  expect_plain({}, {.environment = {{"HOME", home}, {"XDG_CACHE_HOME", std::nullopt}}});
-  expect_plain({}, {.environment = {{"HOME", home}, {"XDG_CACHE_HOME", home}}});
+  expect_plain_with({{"HOME", home}, {"XDG_CACHE_HOME", std::nullopt}});
+  expect_plain_with({{"HOME", home}, {"XDG_CACHE_HOME", home}});
   unmount(home);
 }
 
-TEST_F(SurroundingsTest, a_full_cache_folder_costs_nothing_but_time_and_is_left_as_it_was) {
+TEST_F(SurroundingsTest, with_a_full_cache_folder_cost_nothing_but_time_and_leave_it_as_it_was) {
   const std::string home = folder / "home";
   fs::create_directory(home);
   if (!mount_memory(home, "size=4k")) GTEST_SKIP() << "this process may not mount";
   write_bytes(home + "/full", std::string(4096, 'x'));
   // Mesa 22.3 maps the index of its own cache before there is room for it, and dies of the first write.
-  expect_plain({}, {.environment = {{"XDG_CACHE_HOME", home}, {"MESA_SHADER_CACHE_DISABLE", "true"}}});
+  expect_plain_with({{"XDG_CACHE_HOME", home}, {"MESA_SHADER_CACHE_DISABLE", "true"}});
   for (const auto& name : names_in(home))
     EXPECT_FALSE(name.ends_with(".bin") || name.ends_with(".tmp")) << name << " is no whole cache";
   unmount(home);
@@ -132,37 +120,33 @@ TEST_F(SurroundingsTest, help_needs_no_presets) {
         << command;
 }
 
-TEST_F(SurroundingsTest, relative_paths_are_relative_to_the_working_directory) {
-  const Finished finished =
-      run_program({"run", "wall.0042.exr", "-o", "./ao.exr", "--camera", "camera.json", "--radius", "1"},
-                  {.folder = folder.path(), .environment = {}});
-  EXPECT_EQ(finished.code, 0) << finished;
+TEST_F(SurroundingsTest, relative_paths_are_relative_to_the_working_directory_and_may_begin_with_a_dash) {
+  const auto run_here = [&](const std::string& arguments) {
+    const Finished finished = run_program(typed("run --camera camera.json --radius 1 " + arguments),
+                                          {.folder = folder.path(), .environment = {}});
+    EXPECT_EQ(finished.code, 0) << finished;
+  };
+  run_here("wall.0042.exr -o ./ao.exr");
   const std::string relative = read_bytes(ao);
   EXPECT_TRUE(relative == result({})) << "another file";
+  fs::copy_file(frame, folder / "-wall.0042.exr");
+  run_here("-o -ao.exr -- -wall.0042.exr");
+  EXPECT_TRUE(fs::exists(folder / "-ao.exr"));
 }
 
 TEST_F(SurroundingsTest, file_names_may_hold_spaces_and_any_script) {
   for (const std::string name : {"Ünïcode ☂ 框架", "100% {brace} 'quote' \"double\" a#b=c;d,e", "not utf-8 \xff"}) {
-    const std::string shot = folder / (name + "/");
+    const std::string shot = folder / (name + "/"), of = shot + name;
     fs::create_directory(shot);
-    for (const char* file : {"wall.0042.exr", "camera.json"}) fs::copy_file(folder / file, shot + name + file);
-    const Finished finished = run_program({"run", shot + name + "wall.0042.exr", "-o", shot + name + " ao.exr",
-                                           "--camera", shot + name + "camera.json", "--radius", "1", "--preview",
-                                           shot + name + ".png", "--stats", shot + name + ".json"});
+    for (const char* file : {"wall.0042.exr", "camera.json"}) fs::copy_file(folder / file, of + file);
+    const Finished finished =
+        run_program({"run", of + "wall.0042.exr", "-o", of + " ao.exr", "--camera", of + "camera.json", "--radius", "1",
+                     "--preview", of + ".png", "--stats", of + ".json"});
     EXPECT_EQ(finished.code, 0) << name << finished;
     EXPECT_EQ(names_in(shot).size(), 5) << name;
-    EXPECT_EQ(text_in(read_header(shot + name + " ao.exr"), "alcove/input"), name + "wall.0042.exr");
-    EXPECT_TRUE(nlohmann::json::accept(read_bytes(shot + name + ".json"))) << name;
+    EXPECT_EQ(text_in(read_header(of + " ao.exr"), "alcove/input"), name + "wall.0042.exr");
+    EXPECT_TRUE(nlohmann::json::accept(read_bytes(of + ".json"))) << name;
   }
-}
-
-TEST_F(SurroundingsTest, a_file_name_that_begins_with_a_dash_can_be_given) {
-  fs::copy_file(frame, folder / "-wall.0042.exr");
-  const Finished finished =
-      run_program({"run", "-o", "-ao.exr", "--camera", "camera.json", "--radius", "1", "--", "-wall.0042.exr"},
-                  {.folder = folder.path(), .environment = {}});
-  EXPECT_EQ(finished.code, 0) << finished;
-  EXPECT_TRUE(fs::exists(folder / "-ao.exr"));
 }
 
 TEST_F(SurroundingsTest, an_output_has_the_permissions_that_the_umask_leaves) {
@@ -192,12 +176,8 @@ TEST_F(SurroundingsTest, an_output_that_is_a_symbolic_link_is_replaced_and_not_f
 TEST_F(SurroundingsTest, names_of_devices_are_never_replaced) {
   // In /dev itself only the error would show what is wrong, and a mistake would harm the machine: /proc stands for it,
   // where nothing can be replaced.
-  for (const std::string path : {"/proc/self/fd/1", "/proc/self/none.json"}) {
-    const Finished finished =
-        run_program({"run", frame, "-o", ao, "--camera", camera, "--radius", "1", "--stats", path});
-    EXPECT_EQ(finished.code, 4) << finished;
-    EXPECT_THAT(finished.err, AllOf(HasSubstr(path), HasSubstr("no place for files"), HasSubstr("--stats")));
-  }
+  for (const std::string path : {"/proc/self/fd/1", "/proc/self/none.json"})
+    expect_refused(4, {"--stats", path}, {path, "no place for files", "--stats"});
   EXPECT_FALSE(fs::exists(ao));
 }
 
@@ -221,21 +201,16 @@ TEST_F(SurroundingsTest, what_poses_as_an_unfinished_file_is_neither_followed_no
   EXPECT_TRUE(fs::exists(pipe) && fs::exists(link) && fs::exists(camera));
 }
 
-TEST_F(SurroundingsTest, a_run_replaces_what_was_there_and_leaves_nothing_else) {
-  write_bytes(ao, "before");
-  result({"--composite", "", "--preview", folder / "p.png"});
-  EXPECT_THAT(names_in(folder.path()),
-              testing::UnorderedElementsAre("ao.exr", "camera.json", "p.png", "wall.0042.exr"));
-}
-
-TEST_F(SurroundingsTest, a_reader_never_sees_half_a_file) {
+TEST_F(SurroundingsTest, a_run_replaces_what_was_there_and_no_reader_sees_half_a_file) {
   // What was open before the run still shows the old bytes: the new file came under a name of its own.
   write_bytes(ao, "before");
   std::ifstream before(ao);
-  result({});
+  result({"--composite", "", "--preview", folder / "p.png"});
   std::string word;
   before >> word;
   EXPECT_EQ(word, "before");
+  EXPECT_THAT(names_in(folder.path()),
+              testing::UnorderedElementsAre("ao.exr", "camera.json", "p.png", "wall.0042.exr"));
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
-// What the tests of the command line share: a folder with the frame of the wall and its camera, and a run on them.
+// Folders with rendered frames and their cameras, and runs on them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/formats/exr.h"
@@ -11,53 +12,75 @@
 
 namespace alcove::test {
 
-class CommandLine : public testing::Test {
+/// Whatever `run` runs on.
+class Runs : public testing::Test {
  protected:
-  CommandLine() {
-    wall_frame().write(frame);
-    write_bytes(camera, wall_camera().dump());
-  }
+  Runs() { write_bytes(camera, wall_camera().dump()); }
 
-  /// `run` on the frame with its camera, a radius of 1 and these arguments.
-  Finished run(const std::vector<std::string>& more, const Surroundings& surroundings = {}) const {
-    std::vector<std::string> arguments{"run", frame, "-o", ao, "--camera", camera, "--radius", "1"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments, surroundings);
-  }
+  virtual Finished run(const Options& more, const Surroundings& surroundings = {}) const = 0;
 
-  /// Makes a run that must end with this code and one line that holds the words, and must leave nothing behind.
-  void expect_run_refused(int code, const std::vector<std::string>& words, const std::vector<std::string>& more) const {
+  /// A run that must succeed.
+  Finished done(const Options& more = {}, const Surroundings& surroundings = {}) const {
+    const Finished finished = run(more, surroundings);
+    EXPECT_EQ(finished.code, 0) << testing::PrintToString(more) << finished;
+    return finished;
+  }
+  /// What such a run's statistics say.
+  nlohmann::json stats_of(const Options& more, const Surroundings& surroundings = {}) const {
+    done(joined(more, {"--stats", folder / "stats.json"}), surroundings);
+    return nlohmann::json::parse(read_bytes(folder / "stats.json"));
+  }
+  /// A run that must end with this code and one line that holds these texts.
+  void expect_refused(int code, const Options& more, const Options& texts,
+                      const Surroundings& surroundings = {}) const {
     SCOPED_TRACE(testing::PrintToString(more));
+    test::expect_refused(run(more, surroundings), code, texts);
+  }
+
+  /// The same of a run that must leave nothing behind.
+  void expect_run_refused(int code, const Options& texts, const Options& more) const {
     const auto before = names_in(folder.path());
-    const Finished finished = run(more);
-    EXPECT_EQ(finished.code, code) << finished;
-    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
-    for (const auto& word : words) EXPECT_NE(finished.err.find(word), std::string::npos) << word << finished;
+    expect_refused(code, more, texts);
     EXPECT_EQ(names_in(folder.path()), before);
   }
 
-  /// The same without a radius; it must succeed, and OUTPUT is returned.
-  Image written(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"run", frame, "-o", ao, "--camera", camera, "--type", "float"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Finished finished = run_program(arguments);
+  TemporaryFolder folder;
+  const std::string camera = folder / "camera.json";
+};
+
+/// The frame of the wall.
+class CommandLine : public Runs {
+ protected:
+  CommandLine() { wall_frame().write(frame); }
+
+  /// `run` on the frame with its camera, a radius of 1 and these arguments.
+  Finished run(const Options& more, const Surroundings& surroundings = {}) const override {
+    return run_program(joined({"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, more), surroundings);
+  }
+  /// What a run that must succeed writes as floats: all channels of the AO's file.
+  Image computed(const Options& more) const {
+    return done(joined({"--type", "float"}, more)).code == 0 ? read_exr_image(ao) : Image();
+  }
+
+  /// The same without a radius.
+  Image written(const Options& more) const {
+    const Finished finished =
+        run_program(joined({"run", frame, "-o", ao, "--camera", camera, "--type", "float"}, more));
     EXPECT_EQ(finished.code, 0) << finished;
     return read_exr_image(ao);
   }
-
   /// Expects that a region has the bits of the whole, in all channels, and returns the whole.
-  Image expect_region_of_whole(std::vector<std::string> more, const Window& region) const {
+  Image expect_region_of_whole(const Options& more, const Window& region) const {
     const Image whole = written(more);
-    more.insert(more.end(), {"--roi", fmt::format("{},{},{},{}", region.x, region.y, region.width, region.height)});
-    const Image part = written(more);
+    const Image part = written(
+        joined(more, {"--roi", fmt::format("{},{},{},{}", region.x, region.y, region.width, region.height)}));
     EXPECT_EQ(part.data, region);
     EXPECT_EQ(part.names, whole.names);
     EXPECT_TRUE(part.pixels == cropped(whole.pixels, whole.data, region)) << testing::PrintToString(more);
     return whole;
   }
 
-  TemporaryFolder folder;
-  const std::string frame = folder / "wall.0042.exr", camera = folder / "camera.json", ao = folder / "ao.exr";
+  const std::string frame = folder / "wall.0042.exr", ao = folder / "ao.exr";
 };
 
 }  // namespace alcove::test

@@ -3,6 +3,7 @@
 #include "tests/support/program.h"
 
 #include <fcntl.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sched.h>
@@ -90,7 +91,7 @@ std::vector<std::string> on_test_device(std::vector<std::string> arguments) {
   const char* device = std::getenv("ALCOVE_TEST_DEVICE");
   const bool computes = !arguments.empty() && (arguments[0] == "run" || arguments[0] == "bench");
   const auto names_one = [](const std::string& word) {
-    return word.starts_with("--device") || word == "--set", "require-gpu=true";
+    return word.starts_with("--device") || word == "require-gpu=true";
   };
   if (device && *device && computes && std::ranges::none_of(arguments, names_one))
     arguments.insert(arguments.begin() + 1, {"--device", device});
@@ -158,6 +159,25 @@ Finished run_program(const std::vector<std::string>& arguments, const Surroundin
   rusage usage{};
   const int code = wait_for(child, surroundings.seconds, usage);
   return {code, out.text(), without_durations(err.text()), usage.ru_maxrss >> 10};
+}
+
+Options typed(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+Options joined(Options options, const Options& more) {
+  options.insert(options.end(), more.begin(), more.end());
+  return options;
+}
+
+void expect_refused(const Finished& finished, int code, const Options& texts) {
+  EXPECT_EQ(finished.code, code) << finished;
+  const auto is_summary = [](const std::string& line) { return line.find(" frames done, ") != line.npos; };
+  std::vector<std::string> lines = lines_of(finished.err);
+  std::erase_if(lines, is_summary);
+  EXPECT_EQ(lines.size(), 1) << finished;
+  for (const auto& text : texts) EXPECT_THAT(finished.err, testing::HasSubstr(text));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -37,6 +37,16 @@ struct Surroundings {
 /// slow machines alone print, how long a frame takes, is left out of Finished::err.
 Finished run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
 
+/// The words of a command line.
+using Options = std::vector<std::string>;
+/// Those of a text with blanks between them.
+Options typed(const std::string& text);
+Options joined(Options options, const Options& more);
+
+/// It must have ended with this code and, but for the summary of a sequence, one line on stderr that holds all of these
+/// texts.
+void expect_refused(const Finished& finished, int code, const Options& texts);
+
 std::vector<std::string> lines_of(const std::string& text);
 
 /// A folder under the system's temporary folder; it goes with all that is in it.

@@ -43,6 +43,15 @@ inline FrameFile with_board(int frame, const Window& window = kWallWindow) {
   return file;
 }
 
+/// A run within this process. With `bytes`, frames may take no more than these, which no option says.
+inline RunReport run_here(const Options& arguments, std::uint64_t bytes = 0, const RunWatch& watch = {}) {
+  RunOptions options;
+  EXPECT_TRUE(parse_run_options(arguments, options));
+  if (bytes) options.settings.device.memory = 1;
+  if (bytes) options.settings.device.least_memory = bytes;
+  return run_frames(options.settings, watch);
+}
+
 class WalkedShot : public SequenceFolder {
  protected:
   /// Frames 1 to `frames`, and their cameras.
@@ -65,39 +74,6 @@ class WalkedShot : public SequenceFolder {
     settings.estimator.radius = 1;
     settings.output.output = out + "/ao.####.exr";
     return settings;
-  }
-
-  /// Expects that the second frame has the bits in tiles, within so much memory, that it has as a whole.
-  void expect_tiles_as_the_whole(const std::vector<std::string>& more, std::uint64_t mebibytes) const {
-    const auto run_with = [&](std::uint64_t bytes) {
-      std::vector<std::string> arguments{in + "/f.%04d.exr",
-                                         "-o",
-                                         out + "/ao.%04d.exr",
-                                         "--camera",
-                                         camera,
-                                         "--radius",
-                                         "0.3",
-                                         "--frames",
-                                         "2",
-                                         "--type",
-                                         "float",
-                                         "--stats",
-                                         folder / "stats.json"};
-      arguments.insert(arguments.end(), more.begin(), more.end());
-      RunOptions options;
-      EXPECT_TRUE(parse_run_options(arguments, options));
-      if (bytes) options.settings.device.memory = 1;
-      if (bytes) options.settings.device.least_memory = bytes;
-      const RunReport report = run_frames(options.settings);
-      EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
-      return report.done == 1 ? std::pair(report.frames[0].parts, read_exr_image(output(2), {"Y"}).pixels)
-                              : std::pair(0, std::vector<float>());
-    };
-    const auto [one, whole] = run_with(0);
-    const auto [many, tiled] = run_with(mebibytes << 20);
-    EXPECT_EQ(one, 1);
-    EXPECT_GT(many, 1);
-    EXPECT_TRUE(whole == tiled) << difference(tiled, whole).rmse;
   }
 };
 

@@ -36,6 +36,21 @@ void FrameFile::rename(const std::string& from, const std::string& to) {
   planes.insert(std::move(plane));
 }
 
+void FrameFile::erase(const std::string& text) {
+  std::erase_if(planes, [&](const auto& plane) { return plane.first.find(text) != std::string::npos; });
+}
+
+void FrameFile::change(const std::string& text, const std::function<float(float)>& value_of) {
+  for (auto& [name, plane] : planes)
+    if (name.find(text) != std::string::npos)
+      for (float& value : plane) value = value_of(value);
+}
+
+void write_plane(const std::string& path, const std::string& channel, const std::vector<float>& plane,
+                 const Window& data, const std::optional<Window>& display) {
+  FrameFile{data, display.value_or(data), 1, {{channel, plane}}, {}, {}}.write(path);
+}
+
 FrameFile wall_frame(const Window& data, const Window& display, double pixel_aspect) {
   FrameFile frame{data, display, pixel_aspect, {}, {}, {}};
   auto plane = [&](const std::string& name) -> std::vector<float>& {
@@ -70,6 +85,19 @@ void add_beauty(FrameFile& frame) {
         value = 2 * uneven(index++);
   auto& alpha = frame.planes["ViewLayer.Combined.A"] = std::vector<float>(frame.data.pixels(), 1);
   for (std::size_t i = 0; i < alpha.size(); i += 3) alpha[i] = uneven(i);
+}
+
+float beauty_at(int x, int y, int channel) {
+  return 0.25f + float(((x + 50) * 7 + (y + 50) * 13 + channel * 5) % 32) / 16;
+}
+
+FrameFile beauty_over(const Window& data, const Window& display) {
+  FrameFile file{data, display, 1, {}, {}, {}};
+  for (int c = 0; c < 3; c++)
+    for (int y = data.y; y < data.y + data.height; y++)
+      for (int x = data.x; x < data.x + data.width; x++)
+        file.planes[std::string(1, "RGB"[c])].push_back(beauty_at(x, y, c));
+  return file;
 }
 
 nlohmann::json wall_camera(const Window& display, double pixel_aspect) {

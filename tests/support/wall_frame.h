@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -25,7 +27,14 @@ struct FrameFile {
   void write(const std::string& path) const;
   /// Gives a plane another name.
   void rename(const std::string& from, const std::string& to);
+  /// Removes, or replaces every value of, the planes whose names hold a text.
+  void erase(const std::string& text);
+  void change(const std::string& text, const std::function<float(float)>& value_of);
 };
+
+/// Writes a file of one plane.
+void write_plane(const std::string& path, const std::string& channel, const std::vector<float>& plane,
+                 const Window& data = kWallWindow, const std::optional<Window>& display = {});
 
 /// Depth and world-space normals as Blender names them. The floor is 1 below the eye, the wall 6 in front of it; the
 /// world's z is up. On the wall, everything above the middle of the display window is farther than 1 from the floor.
@@ -36,6 +45,10 @@ void turn_normals_to_view(FrameFile& frame);
 
 /// Adds Combined with alpha below 1 in places, DiffInd and DiffCol: uneven values, up to 2.
 void add_beauty(FrameFile& frame);
+
+/// A beauty over any window: R, G and B whose pixels have their value wherever they lie in it.
+float beauty_at(int x, int y, int channel);
+FrameFile beauty_over(const Window& data, const Window& display);
 
 /// The camera file that fits the frame.
 nlohmann::json wall_camera(const Window& display = kWallWindow, double pixel_aspect = 1);

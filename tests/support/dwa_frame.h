@@ -1,0 +1,30 @@
+// A frame whose normals' channels are named as colours are, which DWA quantizes.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+
+#include "tests/support/wall_frame.h"
+
+namespace alcove::test {
+
+inline void write_with_dwa(const std::string& path, Imf::Compression compression) {
+  FrameFile file = wall_frame();
+  for (const auto& [axis, color] : {std::pair("X", "R"), {"Y", "G"}, {"Z", "B"}})
+    file.rename(std::string("ViewLayer.Normal.") + axis, std::string("ViewLayer.Normal.") + color);
+  Imf::Header header(file.data.width, file.data.height);
+  header.compression() = compression;
+  Imf::FrameBuffer pixels;
+  for (const auto& [name, plane] : file.planes) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    pixels.insert(name, Imf::Slice::Make(Imf::FLOAT, plane.data(), header.dataWindow()));
+  }
+  Imf::OutputFile out(path.c_str(), header);
+  out.setFrameBuffer(pixels);
+  out.writePixels(file.data.height);
+}
+
+}  // namespace alcove::test
