@@ -34,10 +34,10 @@ struct ivec2 {
 #extension GL_EXT_scalar_block_layout : require
 // The compiler numbers bindings: the host finds a buffer by the name of its block. See core/gpu/recorder.h.
 layout(scalar) buffer;
-/// An `if` that jumps where no invocation of a subgroup takes it, for a body that is long and seldom needed. Lavapipe
-/// goes through the body of a plain `if` in any case, with its lanes switched off, but leaves a loop that no lane goes on
-/// with. What is the same for all invocations is loaded outside of conditions and loops: there lavapipe loads it once,
-/// else for one lane after the other.
+/// An `if` that jumps if no invocation of a subgroup takes it, for a body that is long and seldom needed. Lavapipe goes
+/// through the body of a plain `if` in any case, with its lanes switched off, but leaves a loop that no lane goes on
+/// with. Values that are the same for all invocations are loaded outside of conditions and loops: there lavapipe loads
+/// them once, else for one lane after the other.
 #define IF_ANY(condition) for (bool once = condition; once; once = false)
 #define ALCOVE_BEGIN
 #define ALCOVE_END

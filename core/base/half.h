@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#define IMATH_HALF_NO_LOOKUP_TABLE  // which would be in Imath's library, and that is not loaded with libalcove
 #include <half.h>
 
 #include <cstdint>

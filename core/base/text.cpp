@@ -151,6 +151,21 @@ std::size_t distance_of(std::string_view name, std::string_view candidate) {
   return contained ? 1 : std::min(edit_distance(name, candidate), below);
 }
 
+/// How many digits a decimal number has before its point; below 1 where it has none but zeros.
+double decimal_exponent(std::string_view text) {
+  const std::size_t e = std::min(text.find_first_of("eE"), text.size());
+  const std::size_t point = std::min(text.substr(0, e).find('.'), e);
+  const double before = double(point) - double(text.find_first_of("123456789"));
+  double power = 0;
+  if (e < text.size()) {
+    const std::string_view digits = text.substr(e + 1 + (text[e + 1] == '+'));
+    int written = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), written);
+    power = error == std::errc() ? written : digits[0] == '-' ? -1e9 : 1e9;
+  }
+  return before + power;
+}
+
 }  // namespace
 
 std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates,
@@ -173,11 +188,9 @@ std::optional<double> number_of(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
   if (error != std::errc::result_out_of_range) return value;
-  // It leaves the value as it was, be it too large or too near to 0. The wider type tells, and beyond it the exponent.
-  const bool is_small = text.find("e-") != text.npos || text.find("E-") != text.npos;
-  long double wide = is_small ? 0 : std::numeric_limits<long double>::infinity();
-  std::from_chars(text.data(), text.data() + text.size(), wide);
-  return double(text.starts_with('-') ? -std::abs(wide) : wide);
+  // It leaves the value as it was, be it too large or too near to 0.
+  const double size = decimal_exponent(text) > 0 ? std::numeric_limits<double>::infinity() : 0;
+  return text.starts_with('-') ? -size : size;
 }
 
 std::string suggestion(std::string_view name, std::span<const std::string> candidates) {

@@ -16,7 +16,9 @@ namespace {
 class Shared {
  public:
   Shared(std::size_t pieces, const std::function<void(std::size_t, std::size_t)>& work)
-      : pieces_(pieces), work_(work) {}
+      : pieces_(pieces), work_(work) {
+    const std::lock_guard lock(mutex_);
+  }
 
   void help() {
     std::unique_lock lock(mutex_);

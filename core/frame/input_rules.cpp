@@ -13,10 +13,11 @@ namespace alcove {
 namespace {
 
 /// What a word of an option stands for; none where it is no word of it, or leaves open what it means.
+/// Positions have channels of their own.
 template <class T>
 std::optional<T> known_meaning(const std::string& word) {
   for (const auto& [known, meaning] : kWordsOf<T>)
-    if (meaning != T::automatic && word == known) return meaning;
+    if (meaning != T::automatic && word == known && word != "position") return meaning;
   return std::nullopt;
 }
 

@@ -18,8 +18,9 @@
 
 namespace alcove::gpu {
 
-/// The buffer for a block that the kernel declares, by the block's name in GLSL. Null: as it is specialized, the kernel
-/// does not touch the block. Vulkan needs a buffer all the same, and the recorder gives it one of a few bytes.
+/// The buffer for a block that the kernel declares, by the block's name in GLSL. Null: the kernel does not touch the
+/// block, by its specialization or its parameters. Vulkan needs a buffer all the same, and the recorder gives it one of
+/// a few bytes.
 struct Binding {
   Binding(std::string_view name, const Buffer* bound) : block(name), buffer(bound) {}
   Binding(std::string_view name, const Buffer& bound) : block(name), buffer(&bound) {}

@@ -107,7 +107,7 @@ class FramePlan {
   std::set<int> absent_;  // of the shot
 };
 
-/// The number of a single file's frame by its name (core/formats/frame_number.h); 0 where there is none.
+/// The number of a single file's frame by its name (core/formats/sequence.h); 0 where there is none.
 int frame_number_of(const std::string& path);
 
 /// Whether a frame with a warning fails.

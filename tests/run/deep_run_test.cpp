@@ -274,7 +274,7 @@ TEST_F(DeepRun, inspect_says_what_samples_hold) {
   EXPECT_EQ(inspected({frame, "--deep", deep})["deep"][0]["depth"], "along the ray");
 
   write_deep(deep, {samples_of_first()});
-  const std::string text = run_program({"inspect", deep, "--camera", camera}).out;
+  const std::string text = run_program({"inspect", deep, "--camera", camera, "-v"}).out;
   EXPECT_THAT(text, HasSubstr("rendered in one go"));
   EXPECT_THAT(text, Not(HasSubstr("behind1"))) << "no pixel has a second surface";
   EXPECT_THAT(text, testing::ContainsRegex("as planar alone [0-9.]+ % of the smooth places are flat"));

@@ -125,6 +125,9 @@ def _message(code: int, said: str) -> str:
     lines = [line for line in said.splitlines() if line.strip()]
     errors = [line for line in lines if "error" in line] or lines or [f"alcove ended with exit code {code}"]
     prefix = "alcove: error: "
+    for number, line in enumerate(lines):
+        if line.startswith(prefix) and line.endswith(":"):  # a list, and the command that has all of it
+            return " ".join(part.strip() for part in [line[len(prefix):]] + lines[number + 1:])
     return errors[-1][len(prefix):] if errors[-1].startswith(prefix) else errors[-1]
 
 
