@@ -25,6 +25,7 @@ class Doubts : public Sources {
     int count = 0;
     for (float& d : planes["Z"])
       if (const float other = d == sky ? some_sky(count++) : NAN; !std::isnan(other)) d = other;
+    ASSERT_GT(count, 500) << "or else too little of the sky is changed";
     write(settings.input);
   }
 

@@ -168,6 +168,12 @@ TEST(PlainPixels, bend_by_less_than_a_ten_thousandth) {
   }
 }
 
+TEST(PlainPixels, of_an_orthographic_camera_are_those_of_planes_that_are_not_too_steep) {
+  const auto tilted = [](double slope) { return plane_of([&](int x, int) { return 10 + slope * x; }); };
+  EXPECT_EQ(count_of(plain_of(tilted(0.05))), kPlainSide * kPlainSide);  // 2 (slope / z)^2 is 5e-5 at most
+  EXPECT_THAT(plain_of(tilted(0.5)), Each(0));
+}
+
 // How much grain there is.
 
 TEST(Grain, of_a_bias_and_of_a_gradient_is_0) {
