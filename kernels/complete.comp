@@ -181,7 +181,7 @@ void close(inout Open open, View view, LinePlane plane, int way, float steps) {
   const float kept_z = end.y / plane.ray_length;
   const float kept_step = (end.x / (perspective ? kept_z : 1.0) - plane.start) / plane.step;
   const float kept = min(steps, abs(kept_step - first));
-  IF_ANY(kept > 0.0) {
+  IF_ANY (kept > 0.0) {
     goes_on[open.index] = pack_goes_on(kept, kept_z / z);
     vertex[open.index] = -abs(vertex[open.index]);
   }
@@ -196,7 +196,7 @@ void go_on(inout Open open, View view, LinePlane plane, Walk walk, Corner next, 
   const bool after_sky = begins_run && abs(next.at - walk.before.at) > 1;
   const bool is_hidden = !after_sky && behind_next > 0.0;
   const bool ends = !is_hidden || to_next >= open.farthest;
-  IF_ANY(open.is_open && ends) {
+  IF_ANY (open.is_open && ends) {
     float steps = begins_run ? to_before : mix(to_before, to_next, behind_before / (behind_before - behind_next));
     if (is_hidden) steps = to_next;
     close(open, view, plane, walk.way, min(steps, open.farthest));
@@ -210,8 +210,7 @@ void go_beyond(inout Open open, View view, LinePlane plane, Open last, Walk walk
   const float behind_last = walk.before.hides - open.nearness - open.slope * steps;
   const float closing = open.slope - last.slope;
   const float further = closing > 0.0 ? behind_last / max(closing, behind_last / kLongestStroke) : kLongestStroke;
-  IF_ANY(open.is_open)
-    close(open, view, plane, walk.way, min(goes_beyond ? steps + further : steps, open.farthest));
+  IF_ANY (open.is_open) close(open, view, plane, walk.way, min(goes_beyond ? steps + further : steps, open.farthest));
 }
 
 /// Whether it is to be told behind what vertices a surface goes on: in a plane of several, only of the first.
@@ -244,10 +243,9 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
     const bool is_interrupted = params.behind != 0 && begins_run && (walk.before.marked & both_ends) != both_ends &&
                                 next.at == walk.before.at + way && next.hides > walk.before.nearness;
     goes = (next.marked & walk.is_last) == 0u;
-    IF_ANY(is_interrupted) {
+    IF_ANY (is_interrupted) {
       if (opens.a.is_open && opens.b.is_open) {
-        IF_ANY(opens.c.is_open)
-          close(opens.c, view, plane, way, abs(float(walk.before.at) - opens.c.from));
+        IF_ANY (opens.c.is_open) close(opens.c, view, plane, way, abs(float(walk.before.at) - opens.c.from));
         opens.c = opens.b;
       }
       if (opens.a.is_open) opens.b = opens.a;
@@ -283,7 +281,7 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
   }
   const bool goes_beyond = abs(walk.before.at - inner.at) >= kLeastStepsAtBorder;
   Open last = none;
-  IF_ANY(goes_beyond) {
+  IF_ANY (goes_beyond) {
     last = from_end(view, lines, plane, line, walk, inner, index);
     close(last, view, plane, way, last.farthest);
   }

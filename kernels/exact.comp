@@ -133,7 +133,7 @@ void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, bool
   float height = max(dot(stroke.near, search.normal), dot(stroke.far, search.normal));
   const float thickness = kSlots > 1u ? walk.thickness + stroke.parts.y * walk.change : walk.thickness;
   float back = back_of(stroke.far, eye_distance, thickness, radius_sq);
-  IF_ANY(kSlots > 1u && walk.change != 0.0)
+  IF_ANY (kSlots > 1u && walk.change != 0.0)
     back = min(back, back_of(stroke.near, eye_distance, walk.thickness + stroke.parts.x * walk.change, radius_sq));
   if (kCompletes != kCompletesNothing) {
     const bool bends = both(goes_on, dot(bend, bend) < radius_sq);
@@ -239,7 +239,7 @@ int nearest_walk(Next next) {
 void go_to(inout Next next, Search search, int walk, int at, bool ends) {
   int away = kNever;
   float z = 0.0;
-  IF_ANY(!ends) {
+  IF_ANY (!ends) {
     away = abs(int(mark[at] >> 16) - search.from);
     z = abs(vertex[at]);
   }
@@ -264,7 +264,7 @@ void come_to(inout Walk walk, View view, LinePlane plane, Point point, Search se
   const float here = thickness_at(mark[at]);
   walk.thickness = here;
   walk.change = 0.0;
-  IF_ANY(!walk.starts && (mark[at] & search.begins) == 0u) {
+  IF_ANY (!walk.starts && (mark[at] & search.begins) == 0u) {
     const int before = at - search.step, from_step = int(mark[before] >> 16);
     const vec2 offset = place_at(view, plane, float(from_step), abs(vertex[before])) - point.place;
     const vec2 from = vec2(dot(offset, search.across), dot(offset, point.eye));
@@ -344,7 +344,7 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
       stroke.to = goes_on ? whole.to : stroke.to;
     }
     // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
-    IF_ANY(!is_unseen)
+    IF_ANY (!is_unseen)
       block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), goes_on, corner.place,
             point.eye_distance, least, radius_sq);
     const bool ends = ends_at(marked, corner, search);
@@ -364,7 +364,7 @@ BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Sea
   }
   const bool looks_beyond = kCompletes != kCompletesNothing && (kSlots == 1u || kUnseen != 0u) && last >= 0;
   const uint beyond = looks_beyond ? vertex_beyond(view, search, last) : kNoVertex;
-  IF_ANY(beyond != kNoVertex) {
+  IF_ANY (beyond != kNoVertex) {
     const int at = (kWalks - 1) * pixels + row + int(beyond);
     const uint marked = mark[at];
     const int to = int(marked >> 16);

@@ -240,7 +240,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       add_faded(found, side, reach, draw, s.place);
     }
     last = s;
-    IF_ANY(kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
+    IF_ANY (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
       complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
       interrupted = Interruptions(k + 1, 0u, 0u);
     }
@@ -362,7 +362,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
     }
     slots = now;
     last = here.at[0];
-    IF_ANY(kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
+    IF_ANY (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
       complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
       interrupted = Interruptions(k + 1, 0u, 0u);
     }
@@ -382,8 +382,7 @@ vec4 search(Receiver r, Side side, Reach reach, Draw draw) {
     search_layers(found, r, side, reach, draw, count);
   else
     search_runs(found, r, side, reach, draw, count);
-  IF_ANY(kBeyondBorder && side.is_cut && side.reach >= 1.0)
-    complete_beyond(found, r, side, reach, draw);
+  IF_ANY (kBeyondBorder && side.is_cut && side.reach >= 1.0) complete_beyond(found, r, side, reach, draw);
   if (!kHard) return vec4(found.sum, found.completed_sum);
   const Blocked all =
       Blocked(max(found.blocked.near, found.completed.near), min(found.blocked.far, found.completed.far),

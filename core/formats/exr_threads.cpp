@@ -15,8 +15,7 @@ namespace {
 /// of the pool.
 class Shared {
  public:
-  Shared(std::size_t pieces, const std::function<void(std::size_t, std::size_t)>& work)
-      : pieces_(pieces), work_(work) {
+  Shared(std::size_t pieces, const std::function<void(std::size_t, std::size_t)>& work) : pieces_(pieces), work_(work) {
     const std::lock_guard lock(mutex_);
   }
 

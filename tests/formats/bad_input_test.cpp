@@ -27,8 +27,8 @@ class BadInput : public CommandLine {
     for (const std::string& file : {ao_out, composite, preview, stats}) write_bytes(file, kBefore);
   }
 
-  /// A run with these arguments must end with this code and one line on stderr, or a list of what is missing, that holds the words and names an
-  /// option, and must leave the output folder as it was.
+  /// A run with these arguments must end with this code and one line on stderr, or a list of what is missing. It must
+  /// hold the words and name an option, and must leave the output folder as it was.
   void expect_refused(int code, const std::vector<std::string>& words, std::vector<std::string> arguments,
                       const Surroundings& surroundings = {}) const {
     arguments.insert(arguments.begin(), "run");

@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "core/formats/exr.h"
-#include "core/frame/settle.h"
 #include "core/frame/gbuffer.h"
+#include "core/frame/settle.h"
 #include "tests/support/command_line.h"
 #include "tests/support/dds_file.h"
 #include "tests/support/difference.h"

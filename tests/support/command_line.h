@@ -72,8 +72,8 @@ class CommandLine : public Runs {
   /// Expects that a region has the bits of the whole, in all channels, and returns the whole.
   Image expect_region_of_whole(const Options& more, const Window& region) const {
     const Image whole = written(more);
-    const Image part = written(
-        joined(more, {"--roi", fmt::format("{},{},{},{}", region.x, region.y, region.width, region.height)}));
+    const Image part =
+        written(joined(more, {"--roi", fmt::format("{},{},{},{}", region.x, region.y, region.width, region.height)}));
     EXPECT_EQ(part.data, region);
     EXPECT_EQ(part.names, whole.names);
     EXPECT_TRUE(part.pixels == cropped(whole.pixels, whole.data, region)) << testing::PrintToString(more);
