@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/shading.h"
 #include "core/reference/reference.h"
-#include "kernels/shared.h"
 #include "tests/support/bent.h"
 #include "tests/support/chain.h"
 
@@ -12,7 +11,13 @@ namespace {
 using namespace test;
 
 /// The kernels' own function, compiled as C++.
+namespace glsl {
+struct vec2 {
+  vec2(float along_x, float along_y) : x(along_x), y(along_y) {}
+  float x, y;
+};
 #include "kernels/bent.glsl"
+}  // namespace glsl
 
 constexpr Estimator kSliced[]{Estimator::gtao, Estimator::bitmask};
 
@@ -44,8 +49,8 @@ TEST(BentNormals, of_a_side_are_its_integral) {
         across += weight * std::sin(theta);
         toward += weight * std::cos(theta);
       }
-      const vec2 result =
-          bent_to(float(std::cos(h)), float(std::sin(h)), float(std::cos(gamma)), float(std::sin(gamma)));
+      const glsl::vec2 result =
+          glsl::bent_to(float(std::cos(h)), float(std::sin(h)), float(std::cos(gamma)), float(std::sin(gamma)));
       ASSERT_NEAR(result.x, across, 2e-6) << gamma << " " << h;
       ASSERT_NEAR(result.y, toward, 2e-6) << gamma << " " << h;
     }
