@@ -10,6 +10,15 @@ namespace {
 
 using namespace test;
 
+/// The kernels' own function, compiled as C++.
+namespace glsl {
+struct vec2 {
+  vec2(float along_x, float along_y) : x(along_x), y(along_y) {}
+  float x, y;
+};
+#include "kernels/bent.glsl"
+}  // namespace glsl
+
 constexpr Estimator kSliced[]{Estimator::gtao, Estimator::bitmask};
 
 /// All kinds of exact searches: by outlines and by pixels, directions shared by a block, and by the error.
@@ -28,6 +37,24 @@ Vec3 normal_at(const HostFrame& frame, std::size_t i) {
 }
 
 // Closed forms.
+
+TEST(BentNormals, of_a_side_are_its_integral) {
+  for (double gamma = -1.5; gamma <= 1.5; gamma += 0.25)
+    for (double part = 0; part <= 1; part += 0.125) {
+      const double h = part * (gamma + kPi / 2);
+      double across = 0, toward = 0;
+      constexpr int kSteps = 2000;
+      for (int i = 0; i < kSteps; i++) {
+        const double theta = h * (i + 0.5) / kSteps, weight = std::cos(theta - gamma) * std::sin(theta) * h / kSteps;
+        across += weight * std::sin(theta);
+        toward += weight * std::cos(theta);
+      }
+      const glsl::vec2 result =
+          glsl::bent_to(float(std::cos(h)), float(std::sin(h)), float(std::cos(gamma)), float(std::sin(gamma)));
+      ASSERT_NEAR(result.x, across, 2e-6) << gamma << " " << h;
+      ASSERT_NEAR(result.y, toward, 2e-6) << gamma << " " << h;
+    }
+}
 
 /// How far vectors are at most from the normals times a length, on surfaces.
 double farthest_from_normals(const std::vector<Vec3>& vectors, const HostFrame& frame, double length_of_normals) {

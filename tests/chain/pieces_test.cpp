@@ -207,6 +207,17 @@ const HostFrame& plate_frame() {
   return frame;
 }
 
+TEST(Pieces, of_several_radii_are_those_of_each) {
+  for (const Estimator estimator : kSampled) {
+    EstimatorSettings settings = thin(estimator, 1, Completion::all);
+    const std::vector<float> alone = ao_of(plate_frame(), settings);
+    settings.further_radii = {0.3};
+    const Planes both = planes_of(plate_frame(), settings);
+    ASSERT_EQ(both.scales.size(), 2 * alone.size());
+    EXPECT_TRUE(same_bits(alone, {both.scales.begin() + std::ptrdiff_t(alone.size()), both.scales.end()}));
+  }
+}
+
 // A piece weighs by the distance of its middle, and the reference by that of each of its parts.
 TEST(Pieces, weigh_by_the_falloff) {
   const auto share = [](const std::vector<float>& faded, const std::vector<float>& hard) {
@@ -258,6 +269,14 @@ TEST(Pieces, tell_what_would_be_open_without_them) {
     EXPECT_LE(d.rmse, 1e-3) << int(estimator);
     EXPECT_GT(std::ranges::max(all.completed), 0.2);
   }
+}
+
+TEST(Pieces, are_none_of_other_estimators) {
+  const Planes all = planes_of(plate_frame(), thin(Estimator::hbao, 1, Completion::all)),
+               none = planes_of(plate_frame(), thin(Estimator::hbao, 1, Completion::none));
+  EXPECT_TRUE(all.completed.empty());
+  EXPECT_TRUE(same_bits(all.ao, none.ao));
+  EXPECT_TRUE(same_bits(all.confidence, none.confidence));
 }
 
 using PiecesOfFiles = CommandLine;

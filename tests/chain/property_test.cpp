@@ -198,6 +198,19 @@ TEST(Mirror, of_the_frame_is_the_mirror_of_the_ao) {
   }
 }
 
+TEST(Projection, orthographic_is_the_limit_of_a_small_field_of_view) {
+  const Vec3 target{0.6, 0, 0.3}, towards = unit({4, -1, 3});
+  constexpr double kDistance = 500, kWidth = 4;
+  const double fov = 2 * std::atan(0.5 * kWidth / kDistance) / kRadian;
+  const HostFrame near =
+                      render(kRoomWithADome, Shot::orthographic(target + 10 * towards, target, kWidth, 160, 120)).frame,
+                  far = render(kRoomWithADome, Shot::perspective(target + kDistance * towards, target, fov, 160, 120))
+                            .frame;
+  const Difference d = difference(ao_of(far, gtao(0.8, 8, 32)), ao_of(near, gtao(0.8, 8, 32)));
+  EXPECT_LE(d.mean, 1e-3) << place(d, far);
+  EXPECT_LE(d.max, 0.05) << place(d, far);  // one sample that falls on the other side of an edge, or of the radius
+}
+
 // Kinds of input that mean the same.
 
 TEST(DepthKind, planar_ray_and_inverse_agree) {
@@ -376,14 +389,16 @@ TEST(Size, may_be_anything_from_one_pixel_and_any_bits_give_an_ao_from_0_to_1) {
     HostFrame bits = random_bits(width, height, 5);
     for (const EstimatorSettings& kind : all_kinds(0.6)) {
       EstimatorSettings settings = kind;
-      settings.radius = std::array{1e-4, 0.6, 1e3}[std::size_t(number++ % 3)];
+      settings.radius = std::array{1e-4, 0.6, 1e3}[std::size_t(number % 3)];
       SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height) + ", " + name_of(settings));
-      bits.depth_kind = std::array{DepthKind::planar, DepthKind::ray, DepthKind::inverse}[std::size_t(number % 3)];
+      bits.depth_kind = std::array{DepthKind::planar, DepthKind::ray, DepthKind::inverse}[std::size_t(number / 3 % 3)];
+      number++;
       for (const float ao : ao_of(bits, settings)) ASSERT_TRUE(ao >= 0 && ao <= 1) << ao;
       const std::vector<float> ao = ao_of(room.frame, settings);
       for (std::size_t i = 0; i < ao.size(); i++)
         ASSERT_TRUE(ao[i] >= 0 && (room.hits[i].primitive < 0 ? ao[i] == 1 : ao[i] <= 1)) << ao[i] << " at " << i;
     }
+    number++;  // so that each search meets each radius and kind of depth: the number of searches is a multiple of 3
     bits.normal.clear();
     for (const float ao : ao_of(bits, gtao(0.6, 3, 6))) ASSERT_TRUE(ao >= 0 && ao <= 1) << ao;
     for (const EstimatorSettings& settings : slice_searches(1)) expect_open(plane, settings, 1e-4);

@@ -114,8 +114,9 @@ TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
     if (settings.denoise == Denoise::bilateral && settings.resolution == Resolution::full)
       settings.stride = 1 << random.whole(0, 4);
     settings.density = Density(i % 2);
+    const int still = random.whole(1, 3);  // the frame that is as the one before it
     for (int shot = 0; shot < 4; shot++) {
-      if (shot > 0 && random.whole(0, 3) > 0) change(frame, random);
+      if (shot > 0 && shot != still) change(frame, random);
       frame.frame = shot;
       const Outcome next = next_of(lane, frame, settings, all);
       EXPECT_TRUE(same_bits(next.values, alone(frame, settings, all)))
@@ -125,7 +126,7 @@ TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
     }
   }
   EXPECT_GT(kept, 16u * std::uint64_t(count)) << "tiles";
-  EXPECT_GT(same, std::uint64_t(count) * 2 / 5) << "frames";
+  EXPECT_GE(same, std::uint64_t(count)) << "frames";
 }
 
 // A low wall walks over a floor seen from above. The radius is 103 pixels wide there, more than three blocks of

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <regex>
+
 #include "tests/support/deep_file.h"
 #include "tests/support/walked_shot.h"
 
@@ -97,7 +99,9 @@ TEST_F(SameBits, of_a_region_and_the_whole_at_less_cost) {
     EXPECT_EQ(part.data, region);
     EXPECT_EQ(part.display, kWindow);
     EXPECT_EQ(difference(part.pixels, cropped(whole.pixels, whole.data, region)).max, 0);
-    EXPECT_LT(std::ranges::min(part.pixels), 0.995) << "or else there is nothing to compare";
+    // Filters, and estimates that many pixels share, leave less of the crease.
+    const bool is_smooth = std::regex_search(more, std::regex("bilateral|half|quarter|uniform"));
+    EXPECT_LT(std::ranges::min(part.plane("Y")), is_smooth ? 0.98 : 0.9) << "or else there is nothing to compare";
   }
 }
 
