@@ -197,7 +197,8 @@ TEST_F(Accumulated, what_does_not_count_blocks_in_no_frame_of_a_mean) {
   const std::string everything = folder / "everything.exr";
   for (int frame = 1; frame <= kShort; frame++) {
     std::vector<float> is_board;
-    for (const float z : with_board(frame, kWindow).planes.at("ViewLayer.Depth.Z"))
+    const FrameFile file = with_board(frame, kWindow);
+    for (const float z : file.planes.at("ViewLayer.Depth.Z"))
       is_board.push_back(z == kBoard.depth ? 1.0f : 0.0f);
     write_plane(folder / fmt::format("board.{:04}.exr", frame), "Y", is_board, kWindow);
   }
@@ -294,7 +295,7 @@ TEST_F(Accumulated, refusals_say_what_to_do) {
   cameras.erase("world_to_camera");
   for (auto& frame : cameras["frames"]) frame.erase("world_to_camera");
   write_bytes(camera, cameras.dump());
-  expect_refused(3, typed("--accumulate 1 --normal none"), {"world_to_camera"});
+  expect_refused(3, typed("--accumulate 1 --normal none --threads 1"), {"world_to_camera"});
 }
 
 TEST_F(Accumulated, a_frame_beside_it_that_lacks_its_place_is_refused_by_the_option_that_takes_it) {
