@@ -198,8 +198,7 @@ TEST_F(Accumulated, what_does_not_count_blocks_in_no_frame_of_a_mean) {
   for (int frame = 1; frame <= kShort; frame++) {
     std::vector<float> is_board;
     const FrameFile file = with_board(frame, kWindow);
-    for (const float z : file.planes.at("ViewLayer.Depth.Z"))
-      is_board.push_back(z == kBoard.depth ? 1.0f : 0.0f);
+    for (const float z : file.planes.at("ViewLayer.Depth.Z")) is_board.push_back(z == kBoard.depth ? 1.0f : 0.0f);
     write_plane(folder / fmt::format("board.{:04}.exr", frame), "Y", is_board, kWindow);
   }
   write_plane(everything, "Y", std::vector<float>(kWindow.pixels(), 1), kWindow);
