@@ -10,13 +10,16 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readers=(core/formats/{exr_header,exr_zip,exr_zip_writer,zip_chunk,sample_loops,dds,image_io,open_image,png,sequence}.cpp core/frame/{header_camera,camera,cryptomatte}.cpp core/base/{file,text}.cpp)
+readers=(core/formats/{exr_header,exr_zip,exr_zip_writer,zip_chunk,sample_loops,dds,image_io,open_image,png,sequence}.cpp core/frame/{header_camera,camera,matte}.cpp core/base/{file,text}.cpp)
 tests=(base/{text,new_file,memory_limit}_test
-       formats/{file,file_names,open_image,bad_input,capture_formats,color,hostile,layouts,sequence,zip,zip_writer}_test
-       frame/{camera,chan,resection,header_camera,gbuffer,parts,evidence,inputs,readings,sources}_test
-       run/{refusals,region,matte}_test measure/compare_test inspect/inspect_test cli/options_test
+       formats/{file,file_names,open_image,bad_input,capture_formats,color,hostile,sequence,zip,zip_writer}_test
+       frame/{camera,chan,resection,header_camera,gbuffer,parts,inputs,readings,sources}_test
+       run/{refusals,same_bits,matte}_test measure/compare_test inspect/inspect_test cli/options_test
        gpu/gpu_test chain/{property,confidence}_test api/{library,library_refusals}_test)
 threaded=(run/{batch,faults}_test formats/{zip,zip_writer}_test)
+for file in "${readers[@]}" $(printf 'tests/%s.cpp ' "${tests[@]}" "${threaded[@]}"); do
+  [ -f "$file" ] || { echo "$0: there is no $file" >&2; exit 2; }
+done
 parts=${*:-addresses threads tidy fuzzing}
 if [ "$parts" = all ]; then
   parts="addresses threads tidy fuzzing"
