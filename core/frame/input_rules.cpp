@@ -13,12 +13,17 @@ namespace alcove {
 namespace {
 
 /// What a word of an option stands for; none where it is no word of it, or leaves open what it means.
-/// Positions have channels of their own.
 template <class T>
 std::optional<T> known_meaning(const std::string& word) {
   for (const auto& [known, meaning] : kWordsOf<T>)
-    if (meaning != T::automatic && word == known && word != "position") return meaning;
+    if (meaning != T::automatic && word == known) return meaning;
   return std::nullopt;
+}
+
+/// The kind of a depth channel. Positions have channels of their own.
+std::optional<DepthKind> depth_kind_of(const std::string& word) {
+  const auto kind = known_meaning<DepthKind>(word);
+  return kind == DepthKind::position ? std::nullopt : kind;
 }
 
 std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
@@ -26,7 +31,7 @@ std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
   for (const auto& word : words) {
     const std::size_t colon = word.rfind(':');
     const std::string before = word.substr(0, colon), after = colon == word.npos ? "" : word.substr(colon + 1);
-    const auto kind = known_meaning<DepthKind>(after);
+    const auto kind = depth_kind_of(after);
     const auto space = known_meaning<NormalSpace>(after);
     candidates.push_back({lower_case(kind || space ? before : word), kind.value_or(DepthKind::automatic),
                           space.value_or(NormalSpace::automatic)});
@@ -62,7 +67,7 @@ InputRules parse_input_rules(const std::string& name, const std::string& text) {
     else if (key == "position-channels")
       rules.position = candidates_of(values);
     else if (key == "depth-kind")
-      rules.depth_kind = known(known_meaning<DepthKind>(word));
+      rules.depth_kind = known(depth_kind_of(word));
     else if (key == "near")
       rules.depth_range.near = distance();
     else if (key == "far")

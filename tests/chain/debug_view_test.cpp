@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/chain/debug_view.h"
-#include "core/formats/image_io.h"
 #include "tests/support/command_line.h"
+#include "tests/support/whole_picture.h"
 
 namespace alcove {
 namespace {
@@ -18,15 +18,6 @@ using testing::HasSubstr;
 
 /// The ends of the colour ramp, near the darkest and the brightest colour of "viridis".
 constexpr std::array kLowest{71, 1, 85}, kHighest{252, 231, 33};
-
-Image picture_of(const std::string& path) {
-  const auto file = open_picture(path, "INPUT");
-  Image image(file->data, file->display, file->names);
-  std::vector<PictureReader::Channel> channels;
-  for (std::size_t i = 0; i < image.names.size(); i++) channels.push_back({i, image.plane(i).data()});
-  file->read(0, image.data.height, channels);
-  return image;
-}
 
 /// Of a frame by itself: how many frames it is a mean of is shown by tests/run/accumulate_test.cpp.
 std::vector<std::string> names_of_one_frame() {
@@ -43,7 +34,7 @@ class DebugViews : public CommandLine {
     EXPECT_EQ(finished.code, 0) << finished;
     return shown(name);
   }
-  Image shown(const std::string& name) const { return picture_of(folder / ("ao." + name + ".png")); }
+  Image shown(const std::string& name) const { return whole(*open_picture(folder / ("ao." + name + ".png"), "INPUT")); }
   static std::array<int, 3> color(const Image& picture, int x, int y) {
     std::array<int, 3> bytes{};
     const std::size_t i = std::size_t(y) * std::size_t(picture.data.width) + std::size_t(x);

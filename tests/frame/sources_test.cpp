@@ -300,6 +300,7 @@ TEST(InputRules, all_names_are_there_and_unknown_ones_name_the_nearest) {
     EXPECT_EQ(input_rules(name).name, name);
   expect_error(ErrorKind::usage, {"arnold"}, [] { input_rules("arnlod"); });
   EXPECT_THROW(parse_input_rules("x", "depth-kind = \"sideways\""), Error);
+  EXPECT_THROW(parse_input_rules("x", "depth-kind = \"position\""), Error) << "positions have channels of their own";
   EXPECT_THROW(parse_input_rules("x", "depth-kin = \"ray\""), Error);
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/formats/image_io.h"
+#include "tests/support/whole_picture.h"
 
 namespace alcove::test {
 
@@ -31,14 +31,7 @@ inline std::string dds(std::uint32_t width, std::uint32_t height, std::uint32_t 
   return words(header) + pixels;
 }
 
-inline Image read_dds(const std::string& path) {
-  const auto picture = open_dds(path, "--depth");
-  Image image(picture->data, picture->display, picture->names);
-  std::vector<PictureReader::Channel> channels;
-  for (std::size_t i = 0; i < image.names.size(); i++) channels.push_back({i, image.plane(i).data()});
-  picture->read(0, image.data.height, channels);
-  return image;
-}
+inline Image read_dds(const std::string& path) { return whole(*open_dds(path, "--depth")); }
 
 template <class T>
 std::string bytes_of(const std::vector<T>& values) {
