@@ -1,8 +1,5 @@
 // What the C library refuses, asks for, repairs and notes.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <limits>
-#include <set>
-
 #include "core/options/options.h"
 #include "tests/support/library.h"
 

@@ -1,7 +1,5 @@
 // The C library gives the chain's bits however planes lie, does what its header says, and keeps handles apart.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <array>
-#include <cstring>
 #include <thread>
 
 #include "core/base/version.h"

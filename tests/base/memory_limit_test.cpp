@@ -2,16 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/system.h"
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
-
 #include "tests/support/program.h"
 
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
 
 constexpr std::uint64_t kGiB = 1ull << 30;

@@ -2,15 +2,11 @@
 // replace.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <type_traits>
-#include <utility>
 
 #include "core/base/file.h"
 #include "tests/support/program.h"
@@ -48,9 +44,7 @@ extern "C" int rename(const char* from, const char* to) noexcept {
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using testing::ElementsAre;
 
 class NewFiles : public testing::Test {
  protected:
@@ -64,7 +58,7 @@ TEST_F(NewFiles, a_file_in_the_making_has_one_owner) {
   NewFile first(path);
   first.write_at(0, std::string("whole"));
   NewFile second = std::move(first);
-  EXPECT_THAT(names_in(folder.path()), testing::SizeIs(1));
+  EXPECT_THAT(names_in(folder.path()), SizeIs(1));
   second.commit();
   EXPECT_EQ(read_bytes(path), "whole");
 }

@@ -1,11 +1,9 @@
 // Signals that ask a program to end.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/system.h"
-
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 #include <csignal>
-#include <cstdlib>
 
 namespace alcove {
 namespace {

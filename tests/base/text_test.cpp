@@ -5,22 +5,13 @@
 #include "core/base/error.h"
 #include "core/base/flat_toml.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include <algorithm>
-#include <nlohmann/json.hpp>
-
 #include "core/base/json_text.h"
+#include "tests/support/test.h"
 
 namespace alcove {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using namespace test;
 using Names = std::vector<std::string>;
 
 TEST(Text, lower_case_changes_ascii_letters_only) {

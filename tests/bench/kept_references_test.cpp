@@ -5,14 +5,6 @@
 // With every change some pixels of each are computed anew, with ALCOVE_TEST_LONG all. After a change of the reference
 // or of what the presets ask of it, write them with
 //   build/tests/bench_tests --gtest_also_run_disabled_tests --gtest_filter='*writes_them'
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <string>
-#include <vector>
 
 #include "cli/options.h"
 #include "core/bench/bench.h"
@@ -26,7 +18,7 @@
 namespace alcove {
 namespace {
 
-using test::TemporaryFolder;
+using namespace test;
 
 /// Half floats from 0.5 to 1 are 2^-11 apart.
 constexpr float kRounding = 0x1p-12f;

@@ -5,12 +5,6 @@
 // The goldens are reference_estimate() of a preset's settings on a part of a rendered frame, one channel a preset; a
 // test computes some of their pixels anew. After a change of a preset or a definition, write them with
 //   build/tests/bench_tests --gtest_also_run_disabled_tests --gtest_filter='*writes_the_goldens'
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdlib>
-#include <string>
-#include <vector>
 
 #include "cli/options.h"
 #include "core/chain/compute.h"

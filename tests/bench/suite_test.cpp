@@ -1,14 +1,5 @@
 // Suites of the benchmark: at which radius each candidate is measured, and with how much grain.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <map>
-#include <nlohmann/json.hpp>
-
 #include "tests/support/command_line.h"
 
 namespace alcove {
@@ -26,9 +17,8 @@ class SuiteRadius : public CommandLine {
                 "\"wall.0042.exr\"\ncamera = \"camera.json\"\nradius = 1\ntruth = \"ao.exr\"\n" +
                     candidates);
     const std::string file = folder / "report.json";
-    const Finished finished = run_program({"bench", folder / "suite.toml", "-q", "--json", file});
-    EXPECT_EQ(finished.code, 0) << finished;
-    const auto report = nlohmann::json::parse(read_bytes(file));
+    run_well({"bench", folder / "suite.toml", "-q", "--json", file});
+    const auto report = json::parse(read_bytes(file));
     std::map<std::string, double> errors;
     for (const auto& row : report["rows"]) errors[row["candidate"]] = row["rmse"];
     return errors;
@@ -71,11 +61,10 @@ class SuiteGrain : public CommandLine {
   static void compute(const std::string& input, const std::string& seen_by, const std::string& output,
                       const std::string& radius) {
     static std::map<std::string, std::string> made;
-    std::string& bytes = made[std::filesystem::path(output).filename()];
+    std::string& bytes = made[fs::path(output).filename()];
     if (bytes.empty()) {
       const Finished finished =
-          run_program({"run", input, "-o", output, "--camera", seen_by, "--type", "float", "--radius", radius});
-      EXPECT_EQ(finished.code, 0) << finished;
+          run_well({"run", input, "-o", output, "--camera", seen_by, "--type", "float", "--radius", radius});
       bytes = read_bytes(output);
     }
     write_bytes(output, bytes);
@@ -87,23 +76,20 @@ class SuiteGrain : public CommandLine {
                        camera_name, truth);
   }
 
-  Finished bench(const std::string& frames, const std::vector<std::string>& more) const {
+  Finished bench(const std::string& frames, const Options& more) const {
     write_bytes(folder / "suite.toml", "title = \"grain\"\nrepeats = 1\nreference-slices = 0\n" + frames +
                                            "[[candidate]]\nname = \"far\"\nradius = 4\n");
-    std::vector<std::string> arguments{"bench", folder / "suite.toml"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments);
+    return run_program(joined({"bench", folder / "suite.toml"}, more));
   }
 
-  nlohmann::json report_of(const std::string& frames) const {
+  json report_of(const std::string& frames) const {
     const Finished finished = bench(frames, {"--json", folder / "report.json", "-q"});
     EXPECT_EQ(finished.code, 0) << finished;
-    return nlohmann::json::parse(read_bytes(folder / "report.json"));
+    return json::parse(read_bytes(folder / "report.json"));
   }
 
-  double compared(std::vector<std::string> more) const {
-    more.insert(more.begin(), {"compare", far, ao, "--depth", frame, "--json"});
-    return nlohmann::json::parse(run_program(more).out)["grain"];
+  double compared(const Options& more) const {
+    return json::parse(run_program(joined({"compare", far, ao, "--depth", frame, "--json"}, more)).out)["grain"];
   }
 
   const std::string second = folder / "second.exr", far = folder / "far.exr";
@@ -123,7 +109,7 @@ TEST_F(SuiteGrain, is_what_compare_says) {
 
 TEST_F(SuiteGrain, is_looked_for_in_planar_depth_whatever_the_file_has) {
   FrameFile ray = wall_frame();
-  nlohmann::json ray_camera = wall_camera();
+  json ray_camera = wall_camera();
   ray_camera["depth"] = "ray";
   auto& depth = ray.planes["ViewLayer.Depth.Z"];
   for (std::size_t i = 0; i < depth.size(); i++) {
@@ -146,13 +132,13 @@ TEST_F(SuiteGrain, of_a_frame_without_plain_pixels_is_nothing_and_in_no_mean) {
   EXPECT_EQ(finished.code, 0) << finished;
   const std::string in_table = fmt::format("{:.4f}", double(report["rows"][0]["grain"]));
   const std::string digits = fmt::format("{:.10f}", double(report["rows"][0]["grain"])).substr(0, 6);
-  EXPECT_THAT(lines_of(finished.out)[0], testing::HasSubstr("   grain "));
-  EXPECT_THAT(lines_of(finished.out)[1], testing::HasSubstr(in_table));
+  EXPECT_THAT(lines_of(finished.out)[0], HasSubstr("   grain "));
+  EXPECT_THAT(lines_of(finished.out)[1], HasSubstr(in_table));
   const auto csv = lines_of(read_bytes(folder / "report.csv"));
   EXPECT_THAT(csv[0], testing::EndsWith(",grain"));
-  EXPECT_THAT(csv[1], testing::HasSubstr("," + digits));
+  EXPECT_THAT(csv[1], HasSubstr("," + digits));
   EXPECT_THAT(csv[2], testing::EndsWith(","));
-  EXPECT_THAT(read_bytes(folder / "page.html"), testing::HasSubstr("\"grain\": " + digits));
+  EXPECT_THAT(read_bytes(folder / "page.html"), HasSubstr("\"grain\": " + digits));
 }
 
 TEST_F(SuiteGrain, has_a_limit_that_holds_breaks_or_cannot_be_checked) {
@@ -164,10 +150,8 @@ TEST_F(SuiteGrain, has_a_limit_that_holds_breaks_or_cannot_be_checked) {
   EXPECT_EQ(limited("wall", compared({}) + 1e-4).code, 0);
   const Finished broken = limited("wall", compared({}) - 1e-4);
   EXPECT_EQ(broken.code, 6) << broken;
-  EXPECT_THAT(broken.err, testing::StartsWith("alcove: far on wall: grain is "));
-  const Finished nothing = limited("small", 1);
-  EXPECT_EQ(nothing.code, 3) << nothing;
-  EXPECT_THAT(nothing.err, testing::AllOf(testing::HasSubstr("far on small: grain"), testing::HasSubstr("--limits")));
+  EXPECT_THAT(broken.err, StartsWith("alcove: far on wall: grain is "));
+  test::expect_refused(limited("small", 1), 3, {"far on small: grain", "--limits"});
 }
 
 }  // namespace

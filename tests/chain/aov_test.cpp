@@ -1,10 +1,5 @@
 // What comes out besides plain AO: AOVs by name, rgb, multi-bounce, material AO and fog, from files to files.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <functional>
-
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
@@ -12,39 +7,26 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using Options = std::vector<std::string>;
 
 /// `--set` before each.
 Options set(const Options& values, const Options& more = {}) {
   Options options;
-  for (const auto& value : values) options.insert(options.end(), {"--set", value});
-  options.insert(options.end(), more.begin(), more.end());
-  return options;
+  for (const auto& value : values) options = joined(options, {"--set", value});
+  return joined(options, more);
 }
 
 class Aovs : public CommandLine {
  protected:
   /// Makes a run that must succeed, and returns what OUTPUT holds then.
   Image good(const Options& more) {
-    const Finished finished = run(more);
-    EXPECT_EQ(finished.code, 0) << finished;
+    done(more);
     return read_exr_image(ao);
   }
 
   std::vector<HeaderChannel> channels() const { return channels_in(read_header(ao)); }
 
-  /// The passes of the last run, by the statistics that it wrote.
-  std::vector<std::string> passes() const {
-    std::vector<std::string> names;
-    const auto report = nlohmann::json::parse(read_bytes(stats));
-    for (const auto& pass : report.at("frames")[0].at("passes")) names.push_back(pass.at("name"));
-    return names;
-  }
-
   FrameFile input = wall_frame();
-  const std::string stats = folder / "stats.json", composite = folder / "composite.exr", other = folder / "other.exr";
+  const std::string composite = folder / "composite.exr", other = folder / "other.exr";
 };
 
 bool is_floor(const Image& image, std::size_t i) { return image.plane("ViewLayer.Normal.Z")[i] == 1; }
@@ -88,9 +70,7 @@ TEST_F(Aovs, a_depth_that_was_written_is_read_again) {
   good({"--aov", "depth,normal,ao", "--type", "float"});
   const std::string written = folder / "written.0042.exr", again = folder / "again.exr";  // the number keeps the noise
   write_bytes(written, read_bytes(ao));
-  const Finished finished =
-      run_program({"run", written, "-o", again, "--camera", camera, "--radius", "1", "--type", "float"});
-  ASSERT_EQ(finished.code, 0) << finished;
+  run_well({"run", written, "-o", again, "--camera", camera, "--radius", "1", "--type", "float"});
   const Image first = read_exr_image(ao), second = read_exr_image(again);
   for (std::size_t i = 0; i < first.data.pixels(); i++)
     ASSERT_NEAR(first.plane("Y")[i], second.plane("Y")[i], 1e-3) << i;
@@ -123,16 +103,14 @@ TEST_F(Aovs, normals_are_in_world_space_where_the_camera_has_it_else_in_view_spa
 }
 
 TEST_F(Aovs, only_what_was_asked_for_is_computed) {
-  good({"--aov", "depth", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct"));
-  EXPECT_EQ(nlohmann::json::parse(read_bytes(stats)).at("frames")[0].at("samples_per_pixel"), 0);
-  good({"--aov", "normal", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "directions"));
-  good({"--aov", "specular-occlusion", "--denoise", "none", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion", "bent_normal",
-                                    "specular_occlusion"));
-  good({"--denoise", "none", "--stats", stats});
-  EXPECT_THAT(passes(), ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion"));
+  EXPECT_THAT(passes_of({"--aov", "depth"}), ElementsAre("prepare", "reconstruct"));
+  EXPECT_EQ(stats_of({"--aov", "depth"})["frames"][0]["samples_per_pixel"], 0);
+  EXPECT_THAT(passes_of({"--aov", "normal"}), ElementsAre("prepare", "reconstruct", "directions"));
+  const Options plain{"--denoise", "none"};
+  EXPECT_THAT(passes_of(plain), ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion"));
+  EXPECT_THAT(
+      passes_of(joined(plain, {"--aov", "specular-occlusion"})),
+      ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion", "bent_normal", "specular_occlusion"));
 }
 
 TEST_F(Aovs, a_region_holds_what_the_whole_holds_there) {
@@ -200,9 +178,7 @@ TEST_F(Aovs, multi_bounce_takes_the_albedo_from_a_number_a_file_or_the_frame) {
       {{"--beauty", frame}, of_frame("DiffCol")},
       {set({"albedo-channels=ViewLayer.DiffInd"}), of_frame("DiffInd")}};
   for (const auto& [more, albedo] : cases) {
-    Options arguments = set({"ao-channels=rgb", "multi-bounce=true"}, {"--type", "float"});
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Image rgb = good(arguments);
+    const Image rgb = good(joined(set({"ao-channels=rgb", "multi-bounce=true"}, {"--type", "float"}), more));
     for (const std::string c : {"R", "G", "B"})
       for (std::size_t i = 0; i < mono.data.pixels(); i++)
         ASSERT_NEAR(rgb.plane(c)[i], bounced(mono.plane("Y")[i], albedo(c, i)), 1e-5) << c << i;

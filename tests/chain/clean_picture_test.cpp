@@ -1,7 +1,5 @@
 // What shares of estimates look like: no pattern on plain surfaces, and thin things stay what they are.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
 #include "core/measure/metrics.h"
 #include "tests/support/chain.h"
 #include "tests/support/preset.h"

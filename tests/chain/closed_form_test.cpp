@@ -5,7 +5,6 @@
 // The cosine-weighted hemisphere is the unit disk below it, seen from above (Nusselt's analogue), so each truth is an
 // area of that disk over pi. A direction that meets an infinite wall at distance d within the radius r lies beyond the
 // chord at d / r.
-#include <fmt/format.h>
 
 #include "core/reference/reference.h"
 #include "tests/support/chain.h"

@@ -1,11 +1,7 @@
 // What completed surfaces take of the visibility: who asks for it, its sums, its picture, and what is said of it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <nlohmann/json.hpp>
-
-#include "core/base/estimator_facts.h"
 #include "core/chain/completion.h"
+#include "core/base/estimator_facts.h"
 #include "core/chain/debug.h"
 #include "core/chain/reuse.h"
 #include "core/run/frame_run.h"
@@ -17,8 +13,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::HasSubstr;
 
 constexpr float kBefore = 0.5f;  // what stands in a plane before a pass that must leave it
 
@@ -332,22 +326,15 @@ TEST(Completion, of_millions_of_tiles_loses_none) {
 class CompletionStats : public CommandLine {
  protected:
   /// What the statistics say of the frame.
-  json stats_of(std::vector<std::string> more) const {
-    more.insert(more.end(), {"--stats", folder / "stats.json"});
-    const Finished finished = run(more);
-    EXPECT_EQ(finished.code, 0) << finished;
-    return json::parse(read_bytes(folder / "stats.json")).at("frames").at(0);
-  }
+  json stats_of(const Options& more) const { return CommandLine::stats_of(more)["frames"][0]; }
 };
 
 TEST_F(CompletionStats, are_there_wherever_ao_is_and_0_where_nothing_is_completed) {
-  for (const std::vector<std::string>& settings :
-       {std::vector<std::string>{"--set", "complete=none"}, {"--estimator", "hbao"}, {"--estimator", "crytek"}})
-    EXPECT_EQ(stats_of(settings).at("completed"), 0) << testing::PrintToString(settings);
-  for (const std::vector<std::string>& settings :
-       {std::vector<std::string>{}, {"--set", "complete=border"}, {"--resolution", "half"}, {"--search", "exact"}}) {
-    const json share = stats_of(settings).at("completed");
-    EXPECT_TRUE(share.is_number() && share >= 0 && share <= 1) << share << testing::PrintToString(settings);
+  for (const char* more : {"--set complete=none", "--estimator hbao", "--estimator crytek"})
+    EXPECT_EQ(stats_of(typed(more)).at("completed"), 0) << more;
+  for (const char* more : {"", "--set complete=border", "--resolution half", "--search exact"}) {
+    const json share = stats_of(typed(more)).at("completed");
+    EXPECT_TRUE(share.is_number() && share >= 0 && share <= 1) << share << more;
   }
   EXPECT_FALSE(stats_of({"--aov", "depth"}).contains("completed"));
 }
@@ -362,8 +349,8 @@ TEST_F(CompletionStats, of_sky_are_0) {
 
 TEST_F(CompletionStats, and_views_change_no_bit_of_the_ao_and_are_in_no_log_that_nobody_made_them_for) {
   const std::string log = folder / "log";
-  ASSERT_EQ(run({"--log-json", log}).code, 0);
-  EXPECT_THAT(read_bytes(log), testing::Not(HasSubstr("\"completed\"")));
+  done({"--log-json", log});
+  EXPECT_THAT(read_bytes(log), Not(HasSubstr("\"completed\"")));
   const std::string before = read_bytes(ao);
   stats_of({"--log-json", log, "--set", "debug=completed"});
   EXPECT_THAT(read_bytes(log), HasSubstr("\"completed\""));
@@ -372,11 +359,8 @@ TEST_F(CompletionStats, and_views_change_no_bit_of_the_ao_and_are_in_no_log_that
 
 TEST_F(CompletionStats, of_a_view_without_any_are_refused) {
   for (const auto& [option, value, words] :
-       {std::tuple{"--set", "complete=none", "border"}, {"--estimator", "hbao", "gtao and bitmask"}}) {
-    const Finished finished = run({option, value, "--set", "debug=completed"});
-    EXPECT_EQ(finished.code, 2) << finished;
-    for (const std::string word : {"--set debug=completed", value, words}) EXPECT_THAT(finished.err, HasSubstr(word));
-  }
+       {std::tuple{"--set", "complete=none", "border"}, {"--estimator", "hbao", "gtao and bitmask"}})
+    expect_refused(2, {option, value, "--set", "debug=completed"}, {"--set debug=completed", value, words});
 }
 
 }  // namespace

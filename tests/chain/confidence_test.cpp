@@ -1,7 +1,5 @@
 // The confidence AOV: it is low where the AO is a guess.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <numeric>
-
 #include "core/formats/exr.h"
 #include "tests/support/chain.h"
 

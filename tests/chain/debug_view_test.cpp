@@ -1,11 +1,6 @@
 // The debug views: a picture each that says its scale, whole or not at all, and right where what it must show is
 // known.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <cmath>
-
 #include "core/chain/debug_view.h"
 #include "tests/support/command_line.h"
 #include "tests/support/whole_picture.h"
@@ -14,7 +9,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::HasSubstr;
 
 /// The ends of the colour ramp, near the darkest and the brightest colour of "viridis".
 constexpr std::array kLowest{71, 1, 85}, kHighest{252, 231, 33};
@@ -28,10 +22,8 @@ std::vector<std::string> names_of_one_frame() {
 
 class DebugViews : public CommandLine {
  protected:
-  Image view(const std::string& name, std::vector<std::string> more = {}) {
-    more.insert(more.end(), {"--set", std::string("debug=") + name});
-    const Finished finished = run(more);
-    EXPECT_EQ(finished.code, 0) << finished;
+  Image view(const std::string& name, const Options& more = {}) {
+    done(joined(more, {"--set", "debug=" + name}));
     return shown(name);
   }
   Image shown(const std::string& name) const { return whole(*open_picture(folder / ("ao." + name + ".png"), "INPUT")); }
@@ -42,7 +34,7 @@ class DebugViews : public CommandLine {
     return bytes;
   }
   /// The arguments for all views: those of what is hidden need something that is.
-  std::vector<std::string> all_views() const {
+  Options all_views() const {
     FrameFile layer;
     layer.planes["Z"] = std::vector<float>(layer.data.pixels(), 9);
     layer.write(folder / "layer.exr");
@@ -51,17 +43,12 @@ class DebugViews : public CommandLine {
 };
 
 TEST_F(DebugViews, every_one_is_a_picture_beside_the_output_that_says_its_scale) {
-  std::vector<std::string> all = all_views();
-  all.insert(all.end(), {"--resolution", "full"});
-  ASSERT_EQ(run(all).code, 0);
-  for (const auto& name : names_of_one_frame()) {
-    EXPECT_EQ(shown(name).data, (Window{0, 0, 64, 36})) << name;
-  }
+  done(joined(all_views(), {"--resolution", "full"}));
+  for (const auto& name : names_of_one_frame()) EXPECT_EQ(shown(name).data, (Window{0, 0, 64, 36})) << name;
   const auto text = [&](const char* name) { return read_bytes(folder / fmt::format("ao.{}.png", name)); };
   EXPECT_THAT(text("raw-ao"),
               HasSubstr("raw AO: as estimated, at its own resolution; 1 is open. Darkest: 0, brightest: 1."));
-  EXPECT_THAT(text("linear-depth"),
-              testing::AllOf(HasSubstr("scene units. Darkest: <= 3."), HasSubstr(", brightest: >= 6.")));
+  EXPECT_THAT(text("linear-depth"), AllOf(HasSubstr("scene units. Darkest: <= 3."), HasSubstr(", brightest: >= 6.")));
 }
 
 TEST_F(DebugViews, sky_has_a_colour_that_no_number_has) {
@@ -144,11 +131,7 @@ TEST_F(DebugViews, view_normal_z_shows_the_wall_facing_and_the_floor_across) {
 }
 
 TEST_F(DebugViews, without_ao_only_its_own_passes_run) {
-  ASSERT_EQ(run({"--aov", "depth", "--set", "debug=edges", "--stats", folder / "stats.json"}).code, 0);
-  const auto stats = nlohmann::json::parse(read_bytes(folder / "stats.json"));
-  std::vector<std::string> names;
-  for (const auto& pass : stats.at("frames")[0].at("passes")) names.push_back(pass.at("name"));
-  EXPECT_THAT(names, testing::ElementsAre("prepare", "reconstruct", "debug"));
+  EXPECT_THAT(passes_of({"--aov", "depth", "--set", "debug=edges"}), ElementsAre("prepare", "reconstruct", "debug"));
 }
 
 TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
@@ -166,7 +149,7 @@ TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
   expect_run_refused(
       3, {"wall.0042.exr", "--set debug=raw-depth", "--depth-channel"},
       {"--set", "debug=raw-depth", "--position-channels", "ViewLayer.Position", "--depth-kind", "position"});
-  std::filesystem::create_directory(folder / "ao.edges.png");
+  fs::create_directory(folder / "ao.edges.png");
   expect_run_refused(4, {"ao.edges.png", "--set debug"}, {"--set", "debug=edges"});
 }
 

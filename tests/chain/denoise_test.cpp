@@ -1,7 +1,5 @@
 // The denoisers: what they keep, what they never mix, and the response to a single pixel.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <random>
-
 #include "tests/support/chain.h"
 
 namespace alcove {

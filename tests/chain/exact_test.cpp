@@ -2,10 +2,9 @@
 // surfaces behind the first one that are known, crops, and what it refuses.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reference/reference.h"
-#include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/hidden_truth.h"
-#include "tests/support/solid_peels.h"
+#include "tests/support/peels.h"
 
 namespace alcove {
 namespace {
@@ -424,12 +423,9 @@ TEST_F(CommandLine, an_exact_search_of_a_region_is_that_part_of_the_whole) {
   }
   rough.write(frame);
   write_bytes(camera, wall_camera(display).dump());
-  for (const std::vector<std::string>& more : {std::vector<std::string>{"--preset", "reference"},
-                                               {"--search", "exact", "--slices", "2"},
-                                               {"--tolerance", "0.05"},
-                                               {"--search", "exact", "--resolution", "half"}}) {
-    std::vector<std::string> arguments{"--radius", "0.1", "--aov", "ao,bent-normal,specular-occlusion"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+  for (const std::string more :
+       {"--preset reference", "--search exact --slices 2", "--tolerance 0.05", "--search exact --resolution half"}) {
+    const Options arguments = typed("--radius 0.1 --aov ao,bent-normal,specular-occlusion " + more);
     EXPECT_LT(std::ranges::min(expect_region_of_whole(arguments, region).plane("Y")), 0.8);
   }
 }

@@ -1,7 +1,7 @@
 // The sampled estimators with surfaces behind the first: what these must change, and what they must not.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/chain.h"
 #include "tests/support/hidden_truth.h"
+#include "tests/support/peels.h"
 #include "tests/support/random_scenes.h"
 
 namespace alcove {
@@ -58,8 +58,11 @@ TEST(Hidden, a_copy_of_the_first_depth_and_a_surface_beyond_the_radius_change_no
       }
 }
 
-/// A ball before a ball, over a floor and before a wall, with all that they hide.
+/// A ball before a ball, over a floor and before a wall, with so many of the surfaces that they hide.
 struct Balls {
+  explicit Balls(int peels = 0) {
+    if (peels > 0) add_solid_peels(rendering, scene, peels, {2, 3}, kNowhere, BehindKind::surfaces);
+  }
   Scene scene{{parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}), Plane{{0, 1.2, 0}, {0, -1, 0}},
                Sphere{.center = {-0.1, -0.5, 0.35}, .radius = 0.3}, Sphere{.center = {0.1, 0.4, 0.4}, .radius = 0.35}}};
   Rendering rendering = render(scene, Shot::perspective({0.1, -3.2, 1.1}, {0, 0.2, 0.3}, 38, 121, 91));
@@ -88,9 +91,7 @@ EstimatorSettings dense(Estimator estimator, double radius) {
 }
 
 TEST(Hidden, balls_block_from_their_fronts_to_their_backs) {
-  Balls balls;
-  Balls peeled;
-  add_peels(peeled.rendering, peeled.scene, 3);
+  const Balls balls, peeled(3);
   for (const Estimator estimator : kLayered) {
     const EstimatorSettings settings = dense(estimator, 0.6);
     const double before = error_of(balls.rendering, balls.scene, settings);
@@ -106,7 +107,7 @@ TEST(Hidden, a_plate_hides_a_post_that_blocks_the_floor_behind_it) {
                      parallelogram({-0.25, 0.3, 0.05}, {0.5, 0, 0}, {0, 0, 0.4})}};
   const Rendering plain = render(scene, Shot::perspective({0, -3, 1.4}, {0, 0, 0.1}, 36, 241, 181));
   Rendering peeled = plain;
-  add_peels(peeled, scene, 3);
+  add_solid_peels(peeled, scene, 3, {}, kNowhere, BehindKind::surfaces);
   EstimatorSettings settings = dense(Estimator::gtao, 0.5);
   settings.thickness = ThicknessKind::constant;
   settings.thickness_length = 0.01;
@@ -186,9 +187,7 @@ TEST(Hidden, a_tenth_of_the_picture_leaves_the_rest_to_the_plain_search) {
 }
 
 TEST(Hidden, smaller_images_keep_what_their_pixels_hide) {
-  Balls balls;
-  Balls peeled;
-  add_peels(peeled.rendering, peeled.scene, 3);
+  const Balls balls, peeled(3);
   EstimatorSettings settings = dense(Estimator::gtao, 0.6);
   settings.resolution = Resolution::half;
   EXPECT_LT(error_of(peeled.rendering, peeled.scene, settings),

@@ -1,7 +1,5 @@
 // The filter that gives all pixels theirs from the sites: against its formulas written out slowly, and what it keeps.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <random>
-
 #include "core/base/estimator_facts.h"
 #include "core/chain/filters.h"
 #include "tests/support/chain.h"

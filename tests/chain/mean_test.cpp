@@ -1,12 +1,5 @@
 // The mean of two frames, made by hand: which of the other one's pixels count.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <set>
-
 #include "core/chain/accumulate.h"
 #include "tests/support/device.h"
 

@@ -1,10 +1,5 @@
 // What other frames and views show behind the first surface lies where it is in the world, and stands still.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <array>
-#include <random>
-
 #include "core/chain/margin.h"
 #include "kernels/reprojection.h"
 #include "tests/support/chain.h"
@@ -73,7 +68,7 @@ TEST_P(Projections, a_wall_that_another_view_sees_is_found_behind_what_hides_it)
 TEST(OtherViews, the_same_view_shows_nothing_behind) {
   const Rendering room = furnished_room(kWidth, kHeight);
   const Hidden hidden = hidden_of(room, {seen_by(room, room.shot, "other")});
-  EXPECT_THAT(hidden.planes, testing::Each(kSkyDepth));
+  EXPECT_THAT(hidden.planes, Each(kSkyDepth));
   EXPECT_EQ(hidden.counts.moved, 0);
 }
 

@@ -1,20 +1,10 @@
 // Which hidden surfaces are taken to close a solid, where nobody says it: kernels/ends.comp and kernels/pair.comp.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <string>
-#include <vector>
-
-#include "core/chain/compute.h"
 #include "core/chain/hidden.h"
 #include "core/reference/reference_layers.h"
 #include "kernels/hidden.h"
 #include "tests/support/device.h"
 #include "tests/support/peels.h"
-#include "tests/support/scenes.h"
 
 namespace alcove {
 namespace {

@@ -3,11 +3,8 @@
 //
 // The scenes are of flat things without thickness, and the searches are told that occluders are thin. Without completed
 // surfaces they then miss exactly what is hidden.
-#include <numeric>
-#include <random>
 
 #include "core/reference/reference.h"
-#include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/hidden_truth.h"
 
@@ -20,7 +17,6 @@ constexpr double kThin = 0.001;  // scene units
 constexpr int kRaysAcross = 64;
 constexpr int kEvery = 4;  // px from one receiver to the next
 constexpr Estimator kSampled[] = {Estimator::gtao, Estimator::bitmask};
-const Scene kPlateScene{{kFloor, kWallX, parallelogram({0.8, -0.5, 0.45}, {0, 1, 0}, {0, 0, 0.8})}};
 
 EstimatorSettings thin(Estimator estimator, double radius, Completion complete) {
   EstimatorSettings settings = sampled(estimator, radius, 8, 32);
@@ -49,42 +45,17 @@ Shot oblique(Shot shot) {
   return shot;
 }
 
-/// Surfaces that something hides a part of, and the bound of their error when they are completed.
-struct Hiding {
-  const char* what;
-  Scene scene;
-  double radius;
-  Chosen chosen;
-  double bound;
-  Shot perspective, orthographic;
-};
-
 // Completed, the chosen surfaces have their true AO to the bound; without, they are at least 3 times as far off.
 TEST(Pieces, of_a_surface_go_on_behind_what_hides_it) {
-  const Sphere half{.center = {0.9, 0, 0.8}, .radius = 0.2, .axis = unit({2.1, 0, 2.7}), .cos_half_angle = 0.15};
-  const Hiding cases[]{
-      {"a plate", kPlateScene, 1, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; }, 0.0097,
-       Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 240, 180),
-       Shot::orthographic({5, 0.3, 1.8}, {0.3, 0, 0.6}, 5, 240, 180)},
-      {"a column",
-       {{kWallY, kWallX, parallelogram({0.75, 0.35, -9}, {-0.15, 0.15, 0}, {0, 0, 18})}},
-       0.8,
-       [](const Hit& hit) { return hit.primitive == 1 && hit.position.y < 0.6; },
-       0.018,
-       Shot::perspective({4, 4, 1}, {0.3, 0.3, 0}, 45, 240, 180),
-       Shot::orthographic({4, 4, 1}, {0.3, 0.3, 0}, 4, 240, 180)},
-      {"half a sphere",
-       {{kFloor, kWallX, half}},
-       0.8,
-       [](const Hit& hit) { return hit.primitive == 1 && hit.position.z < 0.5; },
-       0.0087,
-       Shot::perspective({3, 0, 3.5}, {0.3, 0, 0.3}, 50, 240, 180),
-       Shot::orthographic({3, 0, 3.5}, {0.3, 0, 0.3}, 4, 240, 180)}};
-  for (const auto& [what, scene, radius, chosen, bound, perspective, orthographic] : cases)
-    for (const Shot& shot : {oblique(perspective), orthographic}) {
-      SCOPED_TRACE(what);
+  const double bounds[]{0.0097, 0.018, 0.0087};
+  const std::vector<Hiding> cases = hidings(240, 180);
+  for (std::size_t k = 0; k < cases.size(); k++)
+    for (const Shot& shot : {oblique(cases[k].perspective), cases[k].orthographic}) {
+      SCOPED_TRACE(cases[k].what);
+      const Scene& scene = cases[k].scene;
+      const double radius = cases[k].radius;
       const Rendering rendering = render(scene, shot);
-      const std::vector<std::size_t> pixels = receivers(rendering, radius, kEvery, chosen);
+      const std::vector<std::size_t> pixels = receivers(rendering, radius, kEvery, cases[k].chosen);
       ASSERT_GE(pixels.size(), 30u);
       std::vector<double> truth;
       for (const std::size_t i : pixels) truth.push_back(true_ao(scene, rendering.hits[i], radius, kRaysAcross));
@@ -92,7 +63,7 @@ TEST(Pieces, of_a_surface_go_on_behind_what_hides_it) {
         const double all = mean_error(ao_of(rendering.frame, thin(estimator, radius, Completion::all)), pixels, truth);
         const double none =
             mean_error(ao_of(rendering.frame, thin(estimator, radius, Completion::none)), pixels, truth);
-        EXPECT_LE(all, bound) << int(estimator);
+        EXPECT_LE(all, bounds[k]) << int(estimator);
         EXPECT_GE(none, 3 * all) << int(estimator);
       }
     }
@@ -125,25 +96,19 @@ TEST(Pieces, of_a_wall_that_ends_behind_a_column_err_by_what_it_hides_at_most) {
 
 // A picture of a wall whose upper part is cut off, against the whole.
 TEST(Pieces, of_a_wall_go_on_beyond_the_border_as_in_a_wider_picture) {
-  const Scene scene{{kFloor, kWallX}};
   for (const Shot& shot : {oblique(Shot::perspective({5, 0.4, 1.8}, {0.3, 0, 0.6}, 50, 240, 180)),
                            Shot::orthographic({5, 0.4, 1.8}, {0.3, 0, 0.6}, 5, 240, 180)}) {
-    const Rendering whole = render(scene, shot);
-    int cut = 0;  // the first row whose wall is no more than 0.25 high
-    while (whole.at(120, cut).position.z > 0.25) cut++;
-    const HostFrame frame = crop_of(whole.frame, {0, cut, shot.data.width, shot.data.height - cut});
-    std::vector<std::size_t> pixels =
-        receivers(whole, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
+    const CutWall wall(shot);
+    const std::vector<std::size_t> pixels = receivers(wall.whole, 1, kEvery, is_floor_by_the_wall);
     ASSERT_GE(pixels.size(), 30u);
     for (const Estimator estimator : kSampled) {
-      const std::vector<float> expected = ao_of(whole.frame, thin(estimator, 1, Completion::none));
+      const std::vector<float> expected = ao_of(wall.whole.frame, thin(estimator, 1, Completion::none));
       std::vector<double> truth;
       std::vector<std::size_t> below;
-      for (const std::size_t i : pixels) truth.push_back(expected[i]);
-      for (const std::size_t i : pixels) below.push_back(i - std::size_t(cut * frame.data.width));
-      const double none = mean_error(ao_of(frame, thin(estimator, 1, Completion::none)), below, truth);
+      for (const std::size_t i : pixels) truth.push_back(expected[i]), below.push_back(wall.below(i));
+      const double none = mean_error(ao_of(wall.frame, thin(estimator, 1, Completion::none)), below, truth);
       for (const Completion complete : {Completion::border, Completion::all}) {
-        const double error = mean_error(ao_of(frame, thin(estimator, 1, complete)), below, truth);
+        const double error = mean_error(ao_of(wall.frame, thin(estimator, 1, complete)), below, truth);
         EXPECT_LE(error, 0.0095) << "estimator " << int(estimator) << ", completion " << int(complete);
         EXPECT_GE(none, 10 * error) << "estimator " << int(estimator) << ", completion " << int(complete);
       }
@@ -184,20 +149,12 @@ TEST(Pieces, of_a_floor_that_the_border_cuts_stay_below_the_receiver) {
 }
 
 TEST(Pieces, are_not_of_a_thing_alone_before_the_sky) {
-  const Scene things[] = {{{Sphere{.center = {0, 0, 0}, .radius = 1}}},
-                          {{parallelogram({-1, -1, -0.5}, {2, 0.3, 0}, {0, 2, 1})}},
-                          {{parallelogram({-1, 0, -1}, {0.05, 0, 0}, {0, 0, 2})}}};
-  for (const Scene& scene : things) {
-    for (const Shot& shot : {Shot::perspective({3, -4, 2}, {0, 0, 0}, 60, 120, 96),
-                             Shot::orthographic({3, -4, 2}, {0, 0, 0}, 6, 120, 96)}) {
-      const HostFrame frame = render(scene, shot).frame;
-      for (const Estimator estimator : kSampled) {
-        const Planes all = planes_of(frame, thin(estimator, 0.8, Completion::all));
-        EXPECT_TRUE(same_bits(all.ao, ao_of(frame, thin(estimator, 0.8, Completion::none)))) << int(estimator);
-        EXPECT_EQ(all.completed, std::vector<float>(all.ao.size(), 0.0f)) << int(estimator);
-      }
+  for (const HostFrame& frame : things_before_the_sky(120, 96))
+    for (const Estimator estimator : kSampled) {
+      const Planes all = planes_of(frame, thin(estimator, 0.8, Completion::all));
+      EXPECT_TRUE(same_bits(all.ao, ao_of(frame, thin(estimator, 0.8, Completion::none)))) << int(estimator);
+      EXPECT_EQ(all.completed, std::vector<float>(all.ao.size(), 0.0f)) << int(estimator);
     }
-  }
 }
 
 /// The picture in which a plate hides a part of a wall.

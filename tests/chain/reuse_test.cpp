@@ -1,13 +1,7 @@
 // What a frame has in common with the one before it is not computed again, and has the bits of what is; so has an
 // adaptive density, of which neighbours decide.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <array>
-#include <nlohmann/json.hpp>
-
 #include "core/base/estimator_facts.h"
-#include "core/formats/exr.h"
 #include "core/run/frame_run.h"
 #include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"
@@ -18,7 +12,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
 
 std::vector<float> values_of(const FrameOutputs& outputs) {
   std::vector<float> values;
@@ -349,18 +342,14 @@ class ReuseOfFrames : public SequenceFolder {
   }
 
   /// Runs, and expects the same files of a run that computes all of each frame. Returns the frames' statistics.
-  json stats_of(std::vector<std::string> options) const {
-    const std::string path = folder / "stats.json";
-    options.insert(options.end(), {"--threads", "1", "--set", "overwrite=true", "--stats", path});
-    EXPECT_EQ(run(options).code, 0);
-    const json frames = json::parse(read_bytes(path))["frames"];
+  json stats_of(const Options& more) const {
+    const Options options = joined(more, typed("--threads 1 --set overwrite=true"));
+    json frames = SequenceFolder::stats_of(options)["frames"];
     const auto reused = outputs();
-    options.push_back("--no-skip");
-    EXPECT_EQ(run(options).code, 0);
     EXPECT_FALSE(reused.empty());
+    const json all = SequenceFolder::stats_of(joined(options, {"--no-skip"}));
+    for (const auto& frame : all["frames"]) EXPECT_FALSE(frame["passes"].empty());
     for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(reused.at(name) == bytes) << name;
-    const json all = json::parse(read_bytes(path))["frames"];
-    for (const auto& frame : all) EXPECT_FALSE(frame["passes"].empty());
     return frames;
   }
 };
@@ -413,9 +402,8 @@ TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
     passes.push_back(int(report["passes"].size()));
   }
   const int all = kept[2];
-  EXPECT_THAT(kept, testing::ElementsAre(0, all, all, all, testing::AllOf(testing::Gt(0), testing::Lt(all)), all));
-  EXPECT_THAT(passes,
-              testing::ElementsAre(testing::Gt(0), testing::Gt(0), 0, testing::Gt(0), testing::Gt(0), testing::Gt(0)));
+  EXPECT_THAT(kept, ElementsAre(0, all, all, all, AllOf(testing::Gt(0), testing::Lt(all)), all));
+  EXPECT_THAT(passes, ElementsAre(testing::Gt(0), testing::Gt(0), 0, testing::Gt(0), testing::Gt(0), testing::Gt(0)));
 }
 
 TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_directions) {

@@ -1,9 +1,6 @@
 // Several radii in one run: each is the run with it alone, and the AO their mean.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
 #include "core/base/estimator_facts.h"
-#include "core/formats/exr.h"
 #include "core/run/resume.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
@@ -13,8 +10,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::ElementsAre;
-using testing::HasSubstr;
 using Values = std::vector<float>;
 
 EstimatorSettings settings_of(std::vector<double> radii, Estimator estimator = Estimator::gtao) {
@@ -133,23 +128,19 @@ TEST(Scales, share_all_passes_but_the_search) {
 
 class ScaleFiles : public CommandLine {
  protected:
-  Finished scaled(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"run"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    // behind the radii, which must not swallow the input
-    arguments.insert(arguments.end(), {frame, "-o", ao, "--camera", camera});
-    return run_program(arguments);
+  /// The input stands behind the radii, which must not swallow it.
+  Finished run(const Options& more, const Surroundings& surroundings = {}) const override {
+    return run_program(joined(joined({"run"}, more), {frame, "-o", ao, "--camera", camera}), surroundings);
   }
-  Image good(const std::vector<std::string>& more) const {
-    const Finished finished = scaled(more);
-    EXPECT_EQ(finished.code, 0) << finished;
+  Image good(const Options& more) const {
+    done(more);
     return read_exr_image(ao);
   }
 };
 
 TEST_F(ScaleFiles, have_a_channel_each_from_the_smallest_radius_on) {
   const Image both = good({"--type", "float", "--aov", "ao,ao-scales", "--radius", "2", "--radius", "0.5"});
-  EXPECT_THAT(both.names, testing::UnorderedElementsAre("Y", "scale1.Y", "scale2.Y"));
+  EXPECT_THAT(both.names, UnorderedElementsAre("Y", "scale1.Y", "scale2.Y"));
   EXPECT_EQ(text_in(read_header(ao), "alcove/radii"), "0.5 2");
   const Image small = good({"--type", "float", "--radius", "0.5"}), large = good({"--type", "float", "--radius", "2"});
   EXPECT_TRUE(std::ranges::equal(both.plane("scale1.Y"), small.plane("Y")));
@@ -166,11 +157,10 @@ TEST_F(ScaleFiles, may_come_from_a_preset_and_are_printed_as_one) {
   EXPECT_TRUE(
       std::ranges::equal(good({"--preset", preset, "--radius", "3"}).plane("Y"), good({"--radius", "3"}).plane("Y")))
       << "options win";
-  const std::string printed = scaled({"--radius", "0.5", "--radius", "2", "--print-config"}).out;
+  const std::string printed = run({"--radius", "0.5", "--radius", "2", "--print-config"}).out;
   EXPECT_THAT(printed, HasSubstr("radius=[0.5, 2]\n"));
   write_bytes(preset, printed);
-  const Finished again = run_program({"run", frame, "--preset", preset});
-  ASSERT_EQ(again.code, 0) << again;
+  ASSERT_EQ(run_program({"run", frame, "--preset", preset}).code, 0);
   EXPECT_TRUE(std::ranges::equal(read_exr_image(ao).plane("Y"), typed.plane("Y")));
 }
 
@@ -186,10 +176,8 @@ TEST_F(ScaleFiles, count_in_digest_and_statistics) {
   };
   EXPECT_NE(digest({1}), digest({1, 2}));
   EXPECT_EQ(digest({1, 2}), digest({2, 1}));
-  const std::string stats = folder / "stats.json";
-  good({"--radius", "1", "--radius", "2", "--slices", "2", "--steps", "5", "--set", "stride=1", "--stats", stats});
-  EXPECT_NEAR(nlohmann::json::parse(read_bytes(stats)).at("frames")[0].at("samples_per_pixel").get<double>(),
-              2 * 2 * 2 * 5, 1e-9);
+  const json stats = stats_of(typed("--radius 1 --radius 2 --slices 2 --steps 5 --set stride=1"));
+  EXPECT_NEAR(stats["frames"][0]["samples_per_pixel"].get<double>(), 2 * 2 * 2 * 5, 1e-9);
 }
 
 }  // namespace

@@ -1,8 +1,5 @@
 // What is made of the visibility: shaping, multi-bounce, specular occlusion; each against its definition.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <bit>
-#include <random>
-
 #include "core/chain/shading.h"
 #include "kernels/geometry.h"
 #include "tests/support/chain.h"

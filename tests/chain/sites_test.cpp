@@ -1,10 +1,6 @@
 // Which pixels have an estimate of their own: the kernels against their rule written out slowly, and what follows from
 // it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <set>
-
 #include "core/base/estimator_facts.h"
 #include "core/chain/estimate.h"
 #include "core/chain/filters.h"

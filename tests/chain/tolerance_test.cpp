@@ -1,10 +1,5 @@
 // Estimates by their error: as many directions as the tolerance takes.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <array>
-
 #include "core/chain/estimate.h"
 #include "kernels/estimate.h"
 #include "kernels/exact_search.h"
@@ -238,8 +233,8 @@ TEST(Tolerance, a_tile_that_errs_takes_its_eight_neighbours_along) {
         expected.push_back(y * TiledFloor::kColumns + x);
     for (const ivec2 tile : floor.listed_after(8, erring)) found.push_back(tile.y * TiledFloor::kColumns + tile.x);
     EXPECT_THAT(found, testing::UnorderedElementsAreArray(expected));
-    EXPECT_THAT(floor.listed_after(16, kNoTile), testing::IsEmpty()) << "all agree";
-    EXPECT_THAT(floor.listed_after(32, erring), testing::IsEmpty()) << "an empty list begins nothing";
+    EXPECT_THAT(floor.listed_after(16, kNoTile), IsEmpty()) << "all agree";
+    EXPECT_THAT(floor.listed_after(32, erring), IsEmpty()) << "an empty list begins nothing";
   }
 }
 

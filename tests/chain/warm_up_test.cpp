@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/warm_up.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
-
-#include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/preset.h"
 #include "tests/support/scenes.h"

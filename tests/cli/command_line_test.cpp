@@ -1,32 +1,17 @@
 // The command line as an interface: help, misspelt words, presets and devices. What it refuses of inputs stands in
 // bad_input_test.cpp, what a good run leaves behind in outputs_test.cpp.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <nlohmann/json.hpp>
-
+#include "tests/support/command_line.h"
 #include "cli/options.h"
 #include "core/base/error.h"
-#include "tests/support/command_line.h"
 
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
 
 std::string config(const Options& more) {
-  const Finished finished = run_program(joined({"run", "--print-config"}, more));
-  EXPECT_EQ(finished.code, 0) << finished;
+  const Finished finished = run_well(joined({"run", "--print-config"}, more));
   EXPECT_THAT(finished.err, IsEmpty());
   return finished.out;
 }
@@ -45,13 +30,11 @@ TEST_F(CommandLine, no_arguments_give_the_help_and_code_2) {
 
 TEST_F(CommandLine, help_and_version_give_code_0) {
   for (const char* arguments : {"--help", "run --help", "run -h", "presets --help", "devices -h"}) {
-    const Finished finished = run_program(typed(arguments));
-    EXPECT_EQ(finished.code, 0) << arguments << finished;
+    const Finished finished = run_well(typed(arguments));
     EXPECT_THAT(finished.out, HasSubstr("Usage")) << arguments;
     EXPECT_THAT(finished.err, IsEmpty());
   }
-  const Finished finished = run_program({"--version"});
-  EXPECT_EQ(finished.code, 0);
+  const Finished finished = run_well({"--version"});
   EXPECT_THAT(finished.out, testing::MatchesRegex("alcove [0-9]+\\.[0-9]+\\.[0-9]+\n.+, .+\nOpenEXR 3\\..+\n"));
 }
 
@@ -62,7 +45,7 @@ TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
                                  [](const auto& line) { return line.starts_with("  -") && line[3] != ' '; });
   };
   EXPECT_THAT(help, AllOf(HasSubstr("Examples:"), HasSubstr("--radius"), HasSubstr("--output"), HasSubstr("--camera"),
-                          HasSubstr("--help-all"), testing::Not(HasSubstr("sample-kernel"))));
+                          HasSubstr("--help-all"), Not(HasSubstr("sample-kernel"))));
   EXPECT_LE(options_in(help), 16);
   RunOptions options;
   for (const auto& row : option_table(options)) {
@@ -72,7 +55,7 @@ TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
   }
   for (const char* text : {"=auto", "=1000000000", "=none", "=half", "--slices NUMBER=", "--seed NUMBER=0"})
     EXPECT_THAT(all, HasSubstr(text)) << "defaults";
-  EXPECT_THAT(all, testing::Not(HasSubstr("filter-width")));
+  EXPECT_THAT(all, Not(HasSubstr("filter-width")));
   EXPECT_LE(options_in(all), 75);
   EXPECT_EQ(run_program({"compare", "--help"}).out, run_program({"compare", "--help-all"}).out);
 }
@@ -80,8 +63,7 @@ TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
 TEST_F(CommandLine, help_of_a_command_is_what_its_option_prints) {
   EXPECT_EQ(run_program({"help"}).out, run_program({"--help"}).out);
   for (const char* command : {"run", "inspect", "compare", "bench", "presets", "devices", "doctor"}) {
-    const Finished finished = run_program({"help", command});
-    EXPECT_EQ(finished.code, 0) << finished;
+    const Finished finished = run_well({"help", command});
     EXPECT_EQ(finished.out, run_program({command, "--help"}).out) << command;
     EXPECT_THAT(finished.out, HasSubstr(command));
   }
@@ -93,8 +75,7 @@ TEST_F(CommandLine, an_input_without_a_command_is_run) {
   const Options options{"-o", ao, "--camera", camera, "--radius", "1"};
   for (const auto& arguments : {joined({frame}, options), joined(options, {frame})}) {
     fs::remove(ao);
-    const Finished finished = run_program(arguments);
-    EXPECT_EQ(finished.code, 0) << finished;
+    const Finished finished = run_well(arguments);
     EXPECT_EQ(read_bytes(ao), expected) << testing::PrintToString(arguments);
   }
   for (const std::string name : {"/none/shot.0001.EXR", "/none/shot.tif", "/none/shot.####", "/none/shot.$F4.exr"}) {
@@ -186,11 +167,10 @@ TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
 }
 
 TEST_F(CommandLine, presets_are_listed_and_printed) {
-  const Finished list = run_program({"presets", "--json"});
-  ASSERT_EQ(list.code, 0) << list;
+  const Finished list = run_well({"presets", "--json"});
   std::vector<std::string> names;
   for (const auto& preset : json::parse(list.out)) names.push_back(preset["name"]);
-  EXPECT_THAT(names, testing::IsSupersetOf({"draft", "production", "standard", "source/fp-asm", "input/arnold"}));
+  EXPECT_THAT(names, IsSupersetOf({"draft", "production", "standard", "source/fp-asm", "input/arnold"}));
   for (const auto& name : names) {
     EXPECT_EQ(run_program({"presets", name}).out, read_bytes(ALCOVE_SOURCE_DIR "/presets/" + name + ".toml"));
     EXPECT_NE(config({"--preset", name}), "") << name;
@@ -198,8 +178,7 @@ TEST_F(CommandLine, presets_are_listed_and_printed) {
 }
 
 TEST_F(CommandLine, presets_are_listed_with_what_each_is_for_ours_first_and_inputs_last) {
-  const Finished finished = run_program({"presets"});
-  ASSERT_EQ(finished.code, 0) << finished;
+  const Finished finished = run_well({"presets"});
   const auto place = [&](const char* text) {
     EXPECT_THAT(finished.out, HasSubstr(text));
     return finished.out.find(text);
@@ -267,8 +246,7 @@ TEST_F(CommandLine, a_file_in_the_working_directory_is_not_taken_for_a_preset_of
 TEST_F(CommandLine, a_switch_that_a_preset_turns_off_is_off) {
   write_bytes(folder / "on.toml", "no-pipeline-cache = false\nrequire-gpu = false\nvalidate = false\nquiet = false\n");
   const Surroundings surroundings{.environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
-  const Finished finished = run({"--preset", folder / "on.toml"}, surroundings);
-  EXPECT_EQ(finished.code, 0) << finished;
+  done({"--preset", folder / "on.toml"}, surroundings);
   EXPECT_THAT(names_in(folder / "cache"), Contains(StartsWith("alcove/pipelines-")))
       << "no-pipeline-cache = false keeps the cache";
   fs::remove_all(folder / "cache");
@@ -293,9 +271,7 @@ TEST_F(CommandLine, presets_of_another_folder_have_their_path_as_name) {
 }
 
 TEST_F(CommandLine, devices_are_listed_as_text_and_json) {
-  const Finished text = run_program({"devices"}), finished = run_program({"devices", "--json"});
-  EXPECT_EQ(text.code, 0) << text;
-  ASSERT_EQ(finished.code, 0) << finished;
+  const Finished text = run_well({"devices"}), finished = run_well({"devices", "--json"});
   const json devices = json::parse(finished.out);
   EXPECT_EQ(lines_of(text.out).size(), devices.size());
   ASSERT_FALSE(devices.empty());
@@ -311,15 +287,14 @@ TEST_F(CommandLine, devices_are_listed_as_text_and_json) {
 }
 
 TEST_F(CommandLine, doctor_tells_what_a_report_needs) {
-  const Finished text = run_program({"doctor"}), finished = run_program({"doctor", "--json"});
-  EXPECT_EQ(text.code, 0) << text;
+  const Finished text = run_well({"doctor"}), finished = run_well({"doctor", "--json"});
   const json facts = json::parse(finished.out), devices = json::parse(run_program({"devices", "--json"}).out);
   EXPECT_EQ(facts["devices"], devices);
   EXPECT_THAT(facts["problems"], IsEmpty());
   EXPECT_EQ("alcove " + facts["version"].get<std::string>(), lines_of(run_program({"--version"}).out)[0]);
   EXPECT_THAT(facts["presets"].get<std::string>(), StartsWith(std::string(ALCOVE_SOURCE_DIR "/presets, ")));
   EXPECT_THAT(facts["compiled kernels"].get<std::string>(), HasSubstr("/alcove, "));
-  EXPECT_THAT(facts["memory"].get<std::string>(), testing::Not(HasSubstr("0000000")));
+  EXPECT_THAT(facts["memory"].get<std::string>(), Not(HasSubstr("0000000")));
   for (const auto& fact : facts.items())
     if (fact.value().is_string()) EXPECT_THAT(text.out, HasSubstr(fact.key())) << fact.key();
 }

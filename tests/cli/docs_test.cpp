@@ -1,9 +1,6 @@
 // What README.md and docs/ say is so: their commands run, and their links lead somewhere.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <filesystem>
 #include <regex>
-#include <set>
 #include <sstream>
 
 #include "tests/support/dds_file.h"
@@ -13,7 +10,6 @@
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
 using Names = std::vector<std::string>;
 

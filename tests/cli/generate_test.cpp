@@ -1,10 +1,5 @@
 // Man pages and completions say what the help says, and the programs that read them take them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
 #include <regex>
 
 #include "core/base/system.h"
@@ -14,21 +9,12 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::AllOf;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::IsSupersetOf;
-using testing::Not;
-using testing::StartsWith;
 using Names = std::vector<std::string>;
 
 const Names kCommands{"run", "inspect", "compare", "bench", "presets", "devices", "doctor"};
 
 std::string generated(const Names& what) {
-  const Finished finished = run_program(joined({"--generate"}, what));
-  EXPECT_EQ(finished.code, 0) << finished;
+  const Finished finished = run_well(joined({"--generate"}, what));
   EXPECT_THAT(finished.err, IsEmpty());
   return finished.out;
 }
@@ -70,7 +56,7 @@ class Generated : public testing::Test {
 
   /// What a command of the shell prints, also as errors, with our program on the path.
   static std::string said(const std::string& command) {
-    const std::string programs = std::filesystem::path(ALCOVE_PROGRAM).parent_path();
+    const std::string programs = fs::path(ALCOVE_PROGRAM).parent_path();
     return output_of_command("PATH=" + programs + ":$PATH ALCOVE_PRESETS=" ALCOVE_SOURCE_DIR "/presets; export PATH " +
                              "ALCOVE_PRESETS; cd / && { " + command + "; } 2>&1");
   }
@@ -94,8 +80,8 @@ TEST_F(Generated, each_flag_of_the_help_is_in_the_man_page_and_in_all_completion
     const std::string of_zsh = in_zsh.substr(0, in_zsh.find(" ;;\n"));
     for (const auto& flag : flags) {
       EXPECT_THAT(page, HasSubstr("\\fB" + replaced(flag, "-", "\\-") + "\\fR")) << command;
-      EXPECT_THAT(of_bash.substr(of_bash.find('"')), testing::ContainsRegex("[\" ]" + flag + " ")) << command;
-      EXPECT_THAT(of_zsh, testing::ContainsRegex("[)*]" + flag + "[+=]?\\[")) << command;
+      EXPECT_THAT(of_bash.substr(of_bash.find('"')), ContainsRegex("[\" ]" + flag + " ")) << command;
+      EXPECT_THAT(of_zsh, ContainsRegex("[)*]" + flag + "[+=]?\\[")) << command;
       const std::string of_fish = flag.starts_with("--") ? " -l " + flag.substr(2) : " -s " + flag.substr(1);
       EXPECT_THAT(lines_of(fish), Contains(AllOf(StartsWith("complete -c alcove -n '__alcove_command " + command + "'"),
                                                  HasSubstr(of_fish + " "))));

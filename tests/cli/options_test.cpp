@@ -2,16 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/options/options.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <functional>
-#include <nlohmann/json.hpp>
-#include <set>
-#include <type_traits>
-
 #include "core/base/error.h"
 #include "core/base/flat_toml.h"
 #include "core/run/resume.h"
@@ -22,8 +12,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 static_assert(!std::is_constructible_v<OptionGroup, std::vector<OptionRow>&, std::string>,
               "a row without a declared effect must not compile");
@@ -277,11 +265,11 @@ TEST_F(Options, of_the_camera_count_by_what_it_says_and_not_where_it_lies) {
     return text_in(read_header(ao), "alcove/options");
   };
   const std::string before = digest_in_file();
-  nlohmann::json fields = wall_camera();
+  json fields = wall_camera();
   fields["fx"] = 59;
   write_bytes(camera, fields.dump());
   EXPECT_NE(digest_in_file(), before) << "another focal length";
-  std::filesystem::create_directory(folder / "moved");
+  fs::create_directory(folder / "moved");
   write_bytes(folder / "moved/camera.json", wall_camera().dump());
   EXPECT_EQ(run_program({"run", frame, "-o", ao, "--camera", folder / "moved/camera.json", "--radius", "1"}).code, 0);
   EXPECT_EQ(text_in(read_header(ao), "alcove/options"), before) << "the same camera in another folder";

@@ -1,14 +1,5 @@
 // What a good run leaves behind: the AO file, the composite, the preview and the statistics.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <functional>
-#include <nlohmann/json.hpp>
-
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
@@ -16,9 +7,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::ElementsAre;
-using testing::StartsWith;
 
 TEST_F(CommandLine, ao_is_one_half_channel_with_the_windows_and_attributes_of_the_input) {
   const Window display{0, 0, 64, 36};

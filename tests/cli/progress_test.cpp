@@ -2,19 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/progress.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/support/program.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 /// What farms are told while so many frames run, of which the first has done so much, and then so much.
 std::vector<std::string> told_to_farm(const std::string& kind, int frames, const std::vector<double>& done) {

@@ -1,15 +1,9 @@
 // What the driver is told, seen from a fake one that stands before it: memory types, kernels' code, the pipeline cache,
 // extensions and submissions; and what becomes of a device that refuses.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <filesystem>
-#include <optional>
 #include <spirv/unified1/spirv.hpp>
 
 #include "core/chain/chain.h"
-#include "core/chain/compute.h"
 #include "core/gpu/pipeline_cache.h"
 #include "core/run/pipeline.h"
 #include "tests/support/command_line.h"
@@ -21,12 +15,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::AllOf;
-using testing::Contains;
-using testing::Each;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
 
 /// A fake driver as it is at the beginning, for each test.
 class Driver : public testing::Test {
@@ -91,7 +79,7 @@ TEST_F(Driver, maps_only_memory_that_the_host_reads_through_its_cache) {
   fake.has_own_memory = true;
   fake.mapped_types.clear();
   EXPECT_EQ(ao_on(options(), settings_of(0.4)), expected);
-  EXPECT_THAT(fake.mapped_types, AllOf(testing::Not(IsEmpty()), Each(kHostMemory)));
+  EXPECT_THAT(fake.mapped_types, AllOf(Not(IsEmpty()), Each(kHostMemory)));
 }
 
 TEST_F(Driver, maps_a_frame_of_sky_in_memory_of_its_own) {
@@ -185,7 +173,7 @@ TEST_F(Driver, of_a_gpu_is_told_to_keep_nan_in_every_kernel) {
 
 TEST_F(Driver, may_have_a_portable_part_of_vulkan_only) {
   { const gpu::Device whole(options()); }
-  EXPECT_THAT(fake.device_extensions, testing::Not(Contains("VK_KHR_portability_subset")));
+  EXPECT_THAT(fake.device_extensions, Not(Contains("VK_KHR_portability_subset")));
   fake.is_portable = true;
   const gpu::Device device(options());
   EXPECT_TRUE(fake.instance_flags & 1u) << "VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR";
@@ -226,7 +214,7 @@ TEST_F(Driver, gets_a_long_recording_in_parts_that_give_the_same_bits) {
 
 TEST(Kernels, do_not_count_the_workgroups_of_a_dispatch_which_may_be_a_slice) {
   int kernels = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(ALCOVE_SOURCE_DIR "/kernels")) {
+  for (const auto& entry : fs::directory_iterator(ALCOVE_SOURCE_DIR "/kernels")) {
     if (entry.path().extension() != ".comp") continue;
     kernels++;
     const auto code = gpu::kernel_code(entry.path().stem().string());
@@ -372,18 +360,18 @@ TEST_F(CacheFolder, gives_the_driver_what_it_gave_and_nothing_else) {
 TEST_F(CacheFolder, a_cache_that_cannot_be_read_is_an_empty_one) {
   given();
   const std::string path = file();
-  std::filesystem::remove(path);
-  std::filesystem::create_directory(path);
+  fs::remove(path);
+  fs::create_directory(path);
   EXPECT_EQ(given(), "");
-  std::filesystem::remove(path);
-  std::filesystem::create_symlink("/proc/self/mem", path);  // nothing can be read at its beginning
+  fs::remove(path);
+  fs::create_symlink("/proc/self/mem", path);  // nothing can be read at its beginning
   EXPECT_EQ(given(), "");
 }
 
 TEST_F(CacheFolder, a_cache_beyond_all_memory_is_not_kept) {
   fake.has_endless_cache = true;
   given();  // or else the destructor of the device ends the program
-  EXPECT_FALSE(std::filesystem::exists(folder / "alcove"));
+  EXPECT_FALSE(fs::exists(folder / "alcove"));
 }
 
 // Whole runs.
@@ -397,24 +385,21 @@ TEST_F(Runs, in_memory_of_the_devices_own_give_the_bits_of_shared_memory_in_tile
   large.write(frame);
   write_bytes(camera, wall_camera(display).dump());
   const test::Surroundings own_memory{.environment = {{"ALCOVE_FAKE_MEMORY", "1"}}, .preload = ALCOVE_FAKE_DRIVER};
-  const auto outputs = [&](std::vector<std::string> more, const test::Surroundings& surroundings) {
-    more.insert(more.end(), {"--radius", "0.1", "--type", "float", "--composite", folder / "c.exr", "--aov",
-                             "ao,normal,depth,confidence"});
-    std::vector<std::string> arguments{"run", frame, "-o", ao, "--camera", camera, "--device", "cpu"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Finished finished = run_program(arguments, surroundings);
-    EXPECT_EQ(finished.code, 0) << finished;
+  const auto outputs = [&](const std::string& more, const test::Surroundings& surroundings) {
+    done(joined(typed("--radius 0.1 --type float --device cpu --aov ao,normal,depth,confidence " + more),
+                {"--composite", folder / "c.exr"}),
+         surroundings);
     return read_bytes(ao) + read_bytes(folder / "c.exr");
   };
-  const std::string shared = outputs({}, {});
-  EXPECT_TRUE(outputs({}, own_memory) == shared);
-  EXPECT_TRUE(outputs({"--memory", "220M"}, own_memory) == shared);
+  const std::string shared = outputs("", {});
+  EXPECT_TRUE(outputs("", own_memory) == shared);
+  EXPECT_TRUE(outputs("--memory 220M", own_memory) == shared);
 }
 
 TEST_F(Driver, that_cannot_list_extensions_has_none_and_leaves_no_instance) {
   fake.lists_no_extensions = true;
   const auto devices = gpu::list_devices();
-  ASSERT_THAT(devices, testing::Not(IsEmpty()));
+  ASSERT_THAT(devices, Not(IsEmpty()));
   EXPECT_THAT(devices[0].unusable, HasSubstr("VK_KHR_push_descriptor"));
   EXPECT_EQ(fake.live_instances, 0);
 }

@@ -1,22 +1,14 @@
 // Whatever is wrong with files, settings or devices: the exit code, one line that helps, and every output as it was.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <filesystem>
-
-#include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using nlohmann::json;
-using testing::HasSubstr;
 
 constexpr const char* kBefore = "what was here before";
 
@@ -29,16 +21,15 @@ class BadInput : public CommandLine {
 
   /// A run with these arguments must end with this code and one line on stderr, or a list of what is missing. It must
   /// hold the words and name an option, and must leave the output folder as it was.
-  void expect_refused(int code, const std::vector<std::string>& words, std::vector<std::string> arguments,
+  void expect_refused(int code, const Options& words, const Options& arguments,
                       const Surroundings& surroundings = {}) const {
-    arguments.insert(arguments.begin(), "run");
     const auto before = names_in(out);
-    const Finished finished = run_program(arguments, surroundings);
+    const Finished finished = run_program(joined({"run"}, arguments), surroundings);
     EXPECT_EQ(finished.code, code) << testing::PrintToString(arguments) << finished;
     const bool is_list = finished.err.starts_with("alcove: error: missing:");
     EXPECT_TRUE(is_list || lines_of(finished.err).size() == 1) << finished;
     EXPECT_EQ(finished.out, "");
-    EXPECT_THAT(finished.err, testing::ContainsRegex("INPUT|(^|[ (])--?[a-z]")) << "no option is named";
+    EXPECT_THAT(finished.err, ContainsRegex("INPUT|(^|[ (])--?[a-z]")) << "no option is named";
     for (const auto& word : words) EXPECT_THAT(finished.err, HasSubstr(word)) << testing::PrintToString(arguments);
     EXPECT_EQ(names_in(out), before) << finished;
     for (const std::string& file : {ao_out, composite, preview, stats})
@@ -46,10 +37,9 @@ class BadInput : public CommandLine {
   }
 
   /// All that a good run of `input` needs, and these arguments.
-  std::vector<std::string> good(const std::string& input, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments{input, "-o", ao_out, "--camera", camera, "--radius", "1"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+  Options good(const std::string& input, const Options& more = {}) const { return to(ao_out, more, input); }
+  Options to(const std::string& path, const Options& more = {}, const std::string& input = {}) const {
+    return joined({input.empty() ? frame : input, "-o", path, "--camera", camera, "--radius", "1"}, more);
   }
 
   const std::string out = folder / "out", ao_out = out + "/ao.exr", composite = out + "/composite.exr",
@@ -57,10 +47,7 @@ class BadInput : public CommandLine {
 };
 
 TEST_F(BadInput, a_good_run_is_not_refused) {  // or else all below proves nothing
-  std::vector<std::string> arguments = good(frame);
-  arguments.insert(arguments.begin(), "run");
-  const Finished finished = run_program(arguments);
-  EXPECT_EQ(finished.code, 0) << finished;
+  run_well(joined({"run"}, good(frame)));
 }
 
 TEST_F(BadInput, of_every_kind_ends_with_its_code) {
@@ -74,11 +61,7 @@ TEST_F(BadInput, of_every_kind_ends_with_its_code) {
     if (!value.is_null()) fields[field] = value;
     return file(field + ".json", fields.dump());
   };
-  const auto with = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{frame, "-o", ao_out, "--radius", "1"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-  };
+  const auto with = [&](const Options& more) { return joined({frame, "-o", ao_out, "--radius", "1"}, more); };
   const std::string whole = read_bytes(frame), deph = folder / "deph.exr", small = folder / "small.exr",
                     lit = folder / "lit.exr", no_ocio = file("text.ocio", "no configuration");
   std::string claim = whole;
@@ -101,7 +84,7 @@ TEST_F(BadInput, of_every_kind_ends_with_its_code) {
   };
   struct Case {
     int code;
-    std::vector<std::string> arguments, words;
+    Options arguments, words;
   };
   for (const auto& [code, arguments, words] : std::vector<Case>{
            {3, good(folder / "missing.exr"), {"missing.exr", "not found"}},
@@ -163,8 +146,7 @@ TEST_F(BadInput, an_output_that_is_an_input) {
   fs::create_symlink(frame, folder / "link.exr");
   fs::create_hard_link(frame, folder / "hard.exr");
   for (const std::string& path : {frame, folder / "./out/../wall.0042.exr", folder / "link.exr", folder / "hard.exr"})
-    expect_refused(2, {path, "overwrite", "--output"},
-                   {folder / "wall.0042.exr", "-o", path, "--camera", camera, "--radius", "1"});
+    expect_refused(2, {path, "overwrite", "--output"}, to(path));
   expect_refused(2, {"camera.json", "overwrite", "--stats"}, good(frame, {"--stats", camera}));
   expect_refused(2, {"wall.0042.exr", "overwrite", "--composite"}, good(frame, {"--composite", frame}));
   EXPECT_TRUE(read_bytes(frame) == before);
@@ -179,11 +161,6 @@ TEST_F(BadInput, two_outputs_that_are_one_file) {
 TEST_F(BadInput, an_output_where_no_file_can_be) {
   fs::create_directory(out + "/folder.exr");
   fs::create_symlink("loop", folder / "loop");
-  const auto to = [&](const std::string& path, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{frame, "-o", path, "--camera", camera, "--radius", "1"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-  };
   const std::string missing = out + "/missing/ao.exr";
   expect_refused(4, {missing, "--output"}, to(missing, {"--set", "no-mkdir=true"}));
   for (const std::string& path : {ao_out + "/ao.exr", out + "/folder.exr", std::string("/dev/full"),
@@ -204,8 +181,7 @@ TEST_F(BadInput, a_read_only_folder) {
     ASSERT_TRUE(make_read_only(locked));
   else
     fs::permissions(locked, fs::perms::owner_read | fs::perms::owner_exec);
-  for (const char* name : {"/ao.exr", "/new.exr"})
-    expect_refused(4, {locked + name, "--output"}, {frame, "-o", locked + name, "--camera", camera, "--radius", "1"});
+  for (const char* name : {"/ao.exr", "/new.exr"}) expect_refused(4, {locked + name, "--output"}, to(locked + name));
   EXPECT_EQ(names_in(locked), std::vector<std::string>{"ao.exr"});
   EXPECT_EQ(read_bytes(locked + "/ao.exr"), kBefore);
   if (is_mount)
@@ -226,14 +202,11 @@ TEST_F(BadInput, a_full_disk) {
   for (const char* name : {"/ao.exr", "/composite.exr", "/preview.png", "/stats.json"})
     write_bytes(disk + name, kBefore);
   // Without a denoiser, whose smooth pictures would fit.
-  const auto expect_full = [&](const std::string& name, std::vector<std::string> more) {
-    more.insert(more.begin(),
-                {"run", frame, "--camera", camera, "--radius", "1", "--denoise", "none", "--progress", "none"});
-    const Finished finished = run_program(more);
-    EXPECT_EQ(finished.code, 4) << finished;
-    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
-    EXPECT_THAT(finished.err, testing::AllOf(HasSubstr(name), HasSubstr("No space")));
-    EXPECT_THAT(names_in(disk), testing::IsSupersetOf({"ao.exr", "composite.exr", "preview.png", "stats.json"}));
+  const auto expect_full = [&](const std::string& name, const Options& more) {
+    const Options arguments{"run", frame,       "--camera", camera,       "--radius",
+                            "1",   "--denoise", "none",     "--progress", "none"};
+    test::expect_refused(run_program(joined(arguments, more)), 4, {name, "No space"});
+    EXPECT_THAT(names_in(disk), IsSupersetOf({"ao.exr", "composite.exr", "preview.png", "stats.json"}));
     EXPECT_EQ(names_in(disk).size(), fs::exists(disk + "/ballast") ? 5 : 4) << testing::PrintToString(names_in(disk));
     EXPECT_TRUE(read_bytes(disk + name) == kBefore) << name;
   };
@@ -248,15 +221,9 @@ TEST_F(BadInput, a_full_disk) {
 
 TEST_F(BadInput, no_vulkan_driver) {
   const Surroundings none{.environment = {{"VK_ICD_FILENAMES", "/nonexistent"}, {"VK_DRIVER_FILES", "/nonexistent"}}};
-  std::vector<std::string> arguments = good(frame);
-  arguments.insert(arguments.begin(), "run");
   const auto before = names_in(out);
-  for (const auto& words : {arguments, {"devices"}, {"devices", "--json"}}) {
-    const Finished finished = run_program(words, none);
-    EXPECT_EQ(finished.code, 5) << finished;
-    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
-    EXPECT_THAT(finished.err, HasSubstr("Vulkan"));
-  }
+  for (const Options& words : {joined({"run"}, good(frame)), {"devices"}, {"devices", "--json"}})
+    test::expect_refused(run_program(words, none), 5, {"Vulkan"});
   EXPECT_EQ(names_in(out), before);
   EXPECT_TRUE(read_bytes(ao_out) == kBefore);
 }

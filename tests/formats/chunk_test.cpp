@@ -1,13 +1,10 @@
 // Chunks of deep data and of ZIP lines: whatever their bytes say, nothing beyond them is read or written.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "core/formats/deep_chunk.h"
 #include "core/formats/exr.h"
 #include "core/formats/zip_chunk.h"
 #include "tests/support/guarded_bytes.h"
+#include "tests/support/test.h"
 
 namespace alcove {
 namespace {

@@ -3,12 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/color.h"
 
-#include <gmock/gmock.h>
-
-#include <array>
-#include <cmath>
-#include <cstdlib>
-
 #include "tests/support/command_line.h"
 
 namespace alcove {
@@ -27,7 +21,7 @@ TEST_F(Color, built_in_is_srgb) {
   const auto linear = rgb;
   transform.apply(rgb);
   for (std::size_t i = 0; i < rgb.size(); i++) EXPECT_NEAR(rgb[i], srgb(linear[i]), 2e-4) << linear[i];
-  EXPECT_THAT(transform.description(), testing::HasSubstr("sRGB"));
+  EXPECT_THAT(transform.description(), HasSubstr("sRGB"));
 }
 
 TEST_F(Color, a_configuration_is_that_of_the_option_else_of_the_variable) {

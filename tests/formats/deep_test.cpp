@@ -1,13 +1,5 @@
 // Deep EXR files: the surfaces that their samples make, in every way to store them; and damaged and hostile ones.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
-
 #include "core/formats/exr.h"
 #include "tests/support/deep_file.h"
 #include "tests/support/expect_error.h"
@@ -17,7 +9,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::ElementsAre;
 
 constexpr float kNone = kNoDeepSurface;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();

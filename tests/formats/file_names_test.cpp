@@ -1,19 +1,11 @@
 // File names may hold any bytes: what is no UTF-8 is escaped wherever a name is shown, and outputs stay valid.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
 #include "tests/support/command_line.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
 
 /// Bytes of Latin-1, and how they are shown.
 const std::string kName = "caf\xe9 \xff", kShown = "caf\\xe9 \\xff";
@@ -22,10 +14,8 @@ class FileNames : public CommandLine {
  protected:
   FileNames() { wall_frame().write(input); }
 
-  Finished run_on_name(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"run", input, "-o", output, "--camera", camera, "--radius", "1"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_program(arguments);
+  Finished run(const Options& more, const Surroundings& surroundings = {}) const override {
+    return run_program(joined({"run", input, "-o", output, "--camera", camera, "--radius", "1"}, more), surroundings);
   }
 
   /// Nothing but UTF-8, with the name as it is to be shown.
@@ -39,11 +29,9 @@ class FileNames : public CommandLine {
 };
 
 TEST_F(FileNames, in_reports_of_a_run) {
-  const std::string stats = folder / "stats.json", log = folder / "log.json";
-  const Finished finished = run_on_name({"--stats", stats, "--log-json", log, "-v"});
-  ASSERT_EQ(finished.code, 0) << finished;
-  expect_shown(finished.err);
-  const json frame = json::parse(read_bytes(stats))["frames"][0];
+  const std::string log = folder / "log.json";
+  expect_shown(done({"--log-json", log, "-v"}).err);
+  const json frame = stats_of({})["frames"][0];
   EXPECT_EQ(frame["input"], folder / (kShown + ".exr"));
   EXPECT_EQ(frame["output"], folder / (kShown + ".ao.exr"));
   bool is_logged = false;
@@ -53,11 +41,9 @@ TEST_F(FileNames, in_reports_of_a_run) {
 }
 
 TEST_F(FileNames, in_the_plan_of_a_dry_run_and_in_errors) {
-  const Finished plan = run_on_name({"--dry-run"});
-  ASSERT_EQ(plan.code, 0) << plan;
-  expect_shown(plan.out);
+  expect_shown(done({"--dry-run"}).out);
   write_bytes(input, "no picture");
-  const Finished error = run_on_name({});
+  const Finished error = run({});
   EXPECT_EQ(error.code, 3);
   expect_shown(error.err);
 }
@@ -68,9 +54,8 @@ TEST_F(FileNames, in_what_inspect_says_of_them_and_of_channels_and_attributes) {
   file.planes["odd\xff.R"] = file.planes["ViewLayer.Depth.Z"];
   file.write(input);
   const Finished text = run_program({"inspect", input, "--camera", camera}),
-                 quoted = run_program({"inspect", input, "--camera", camera, "--json"});
+                 quoted = run_well({"inspect", input, "--camera", camera, "--json"});
   expect_shown(text.out);
-  ASSERT_EQ(quoted.code, 0) << quoted;
   const json found = json::parse(quoted.out)["files"][0], part = found["parts"][0];
   EXPECT_EQ(found["path"], folder / (kShown + ".exr"));
   EXPECT_EQ(part["attributes"]["note \\xff"], "caf\\xe9");
@@ -79,13 +64,9 @@ TEST_F(FileNames, in_what_inspect_says_of_them_and_of_channels_and_attributes) {
 
 TEST_F(FileNames, in_what_compare_says) {
   const std::string page = folder / "page.html";
-  const std::vector<std::string> arguments{"compare", input, input, "--channel", "ViewLayer.Depth.Z"};
-  std::vector<std::string> quoted = arguments;
-  quoted.insert(quoted.end(), {"--json", "--report", page});
-  const Finished text = run_program(arguments), parsed = run_program(quoted);
-  ASSERT_EQ(text.code, 0) << text;
+  const Options arguments{"compare", input, input, "--channel", "ViewLayer.Depth.Z"};
+  const Finished text = run_well(arguments), parsed = run_well(joined(arguments, {"--json", "--report", page}));
   expect_shown(text.out);
-  ASSERT_EQ(parsed.code, 0) << parsed;
   EXPECT_EQ(json::parse(parsed.out)["result"], folder / (kShown + ".exr"));
   EXPECT_THAT(read_bytes(page), HasSubstr("caf\\\\xe9 \\\\xff"));
 }

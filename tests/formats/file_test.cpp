@@ -2,47 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/file.h"
 
-#include <ImfChannelList.h>
-#include <ImfChromaticitiesAttribute.h>
-#include <ImfFloatAttribute.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfMatrixAttribute.h>
-#include <ImfOutputFile.h>
-#include <ImfRationalAttribute.h>
-#include <ImfStandardAttributes.h>
-#include <ImfStringAttribute.h>
-#include <ImfStringVectorAttribute.h>
-#include <ImfTimeCodeAttribute.h>
-#include <ImfVecAttribute.h>
 #include <OpenImageIO/imageio.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <set>
 
 #include "core/formats/exr.h"
 #include "core/formats/image_io.h"
 #include "core/formats/png.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/exr_header.h"
+#include "tests/support/openexr.h"
 #include "tests/support/program.h"
 
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 
 class Files : public testing::Test {
  protected:
@@ -269,15 +243,7 @@ TEST_F(Files, attributes_of_every_type_are_carried_over_but_those_of_storage) {
   header.lineOrder() = Imf::DECREASING_Y;
   header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
   header.channels().insert("Y", Imf::Channel(Imf::HALF));
-  {
-    const std::vector<float> values(8);
-    Imf::FrameBuffer pixels;
-    pixels.insert("Z", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(values.data())), sizeof(float),
-                                  4 * sizeof(float)));
-    Imf::OutputFile file(path.c_str(), header);
-    file.setFrameBuffer(pixels);
-    file.writePixels(2);
-  }
+  write_openexr(path, header);
   ExrHeader before = kept();
   const std::vector<float> values(8, 0.5f);
   ExrOutput output = output_of({0, 0, 4, 2}, {0, 0, 4, 2});
@@ -300,11 +266,7 @@ TEST_F(Files, our_attributes_replace_those_of_another_type) {
   Imf::Header header(1, 1);
   header.insert("alcove/version", Imf::FloatAttribute(3));
   header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-  {
-    Imf::OutputFile file(path.c_str(), header);
-    file.setFrameBuffer(Imf::FrameBuffer());
-    file.writePixels(1);
-  }
+  write_openexr(path, header);
   const std::vector<float> value(1);
   ExrOutput output = output_of({0, 0, 1, 1}, {0, 0, 1, 1});
   output.attributes = ExrFile(path, "INPUT").attributes(0);

@@ -1,14 +1,12 @@
 // Frame numbers in the names that people give to files.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/sequence.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace alcove {
 namespace {
 
-using testing::HasSubstr;
+using namespace test;
 
 TEST(FrameNumber, is_found_wherever_compositors_write_it) {
   const std::map<int, std::vector<const char*>> names{

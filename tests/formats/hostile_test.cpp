@@ -1,13 +1,5 @@
 // Files made to do harm: what they say is neither believed nor run, and takes no memory that was not allowed.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <filesystem>
-
-#include "core/formats/exr.h"
 #include "core/formats/png.h"
 #include "core/formats/sequence.h"
 #include "core/frame/camera.h"
@@ -18,12 +10,7 @@
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr const char* kScript = "<script>alert(1)</script>";
 
@@ -72,9 +59,7 @@ TEST_F(Hostile, a_channel_and_a_file_called_script_stay_text_in_the_report_of_co
   const std::string name = folder / kScript;  // its slash makes a folder of the first half
   fs::create_directories(fs::path(name).parent_path());
   file.write(name);
-  const Finished finished =
-      run_program({"compare", name, name, "--channel", std::string(kScript) + ".Y", "--report", folder / "page.html"});
-  ASSERT_EQ(finished.code, 0) << finished;
+  run_well({"compare", name, name, "--channel", std::string(kScript) + ".Y", "--report", folder / "page.html"});
   expect_text_only(folder / "page.html");
 }
 
@@ -86,8 +71,7 @@ TEST_F(Hostile, a_frame_and_a_candidate_called_script_stay_text_in_the_report_of
                           "\"wall.0042.exr\"\ncamera = \"camera.json\"\n"
                           "radius = 1\ntruth = [\"ao.exr\"]\n[[candidate]]\nname = \"{0}\"\npreset = \"draft\"\n",
                           kScript));
-  const Finished finished = run_program({"bench", suite, "--report", folder / "page.html"});
-  ASSERT_EQ(finished.code, 0) << finished;
+  run_well({"bench", suite, "--report", folder / "page.html"});
   expect_text_only(folder / "page.html");
 }
 
@@ -96,26 +80,24 @@ TEST_F(Hostile, inspect_prints_names_of_headers_as_text_that_no_terminal_obeys) 
   file.rename("ViewLayer.Depth.Z", std::string(kScript) + "\x1b[2J.Z");
   file.attributes = {{"Software", "\x1b]0;title\x07\r\n`touch x`"}};
   file.write(frame);
-  const Finished text = run_program({"inspect", frame, "--camera", camera, "-v"}),
-                 quoted = run_program({"inspect", frame, "--camera", camera, "--json"});
-  EXPECT_EQ(text.code, 0) << text;
-  EXPECT_THAT(text.out,
-              AllOf(HasSubstr(kScript), HasSubstr("touch x"), Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]"))));
-  EXPECT_TRUE(json::accept(quoted.out)) << quoted;
-  EXPECT_THAT(quoted.out, Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]")));
+  const auto said = [&](const Options& more) {
+    const Finished finished = run_program(joined({"inspect", frame, "--camera", camera}, more));
+    EXPECT_THAT(finished.out + finished.err, Not(ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]")));
+    return finished;
+  };
+  EXPECT_THAT(said({"-v"}).out, AllOf(HasSubstr(kScript), HasSubstr("?]0;title???`touch x`")));
+  EXPECT_TRUE(json::accept(said({"--json"}).out));
+  EXPECT_THAT(said({"--depth-channel", "none"}).out, HasSubstr("?[2J.Z"));
 }
 
 TEST_F(Hostile, a_frame_s_name_is_printed_as_text_that_no_terminal_obeys) {
   const std::string name = folder / "a\nopenjd_fail: \x1b[2J\u009b2J\u202etxt.exr";
   fs::rename(frame, name);
-  for (const std::vector<std::string>& more :
-       {std::vector<std::string>{"-v"}, {"--resume"}, {"--depth", folder / "none\n\u009b.exr"}}) {
-    std::vector<std::string> arguments{"run",  name,       "-o", name + ".ao.exr", "--camera",
-                                       camera, "--radius", "1",  "--progress",     "plain"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Finished finished = run_program(arguments);
+  for (const Options& more : {Options{"-v"}, {"--resume"}, {"--depth", folder / "none\n\u009b.exr"}}) {
+    const Options arguments{"run", name, "-o", name + ".ao.exr", "--camera", camera, "--progress", "plain"};
+    const Finished finished = run_program(joined(joined(arguments, {"--radius", "1"}), more));
     EXPECT_EQ(finished.code, more[0] == "--depth" ? 3 : 0) << finished;
-    EXPECT_THAT(finished.err, Not(testing::ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]"))) << finished;
+    EXPECT_THAT(finished.err, Not(ContainsRegex("[\x01-\x09\x0b-\x1f\x7f]"))) << finished;
     EXPECT_THAT(finished.err,
                 AllOf(Not(HasSubstr("\nopenjd_fail")), Not(HasSubstr("\u009b")), Not(HasSubstr("\u202e"))))
         << finished;
@@ -127,8 +109,7 @@ TEST_F(Hostile, a_frame_s_name_is_printed_as_text_that_no_terminal_obeys) {
 TEST_F(Hostile, the_command_that_inspect_proposes_quotes_what_a_shell_would_run) {
   const std::string name = folder / "$(touch x)`touch x`'; touch x; '.exr";
   fs::rename(frame, name);
-  const Finished inspected = run_program({"inspect", name, "--camera", camera, "--json"});
-  ASSERT_EQ(inspected.code, 0) << inspected;
+  const Finished inspected = run_well({"inspect", name, "--camera", camera, "--json"});
   const std::string command = json::parse(inspected.out)["command"];
   const std::string echo =
       "cd " + folder.path() + " && set -- " + command.substr(std::strlen("alcove ")) + " && printf %s \"$2\"";
@@ -152,12 +133,9 @@ TEST_F(Hostile, no_header_makes_a_run_take_more_memory_than_it_may) {
   for (const auto& [width, height, bytes] :
        {std::tuple(16384, 16384, 5000), {1 << 26, 1, 2000}, {1, 100000, 60000}, {1 << 20, 64, 3000}}) {
     const std::string claim = claiming(width, height, std::size_t(bytes));
-    for (const std::vector<std::string>& more :
-         {std::vector<std::string>{}, {"--roi", "0,0,1,1"}, {"--preview", folder / "p.png"}}) {
-      std::vector<std::string> arguments{"run",  claim,      "-o", ao,         "--fov", "60", "--normal-space",
-                                         "view", "--radius", "1",  "--memory", "184M"};
-      arguments.insert(arguments.end(), more.begin(), more.end());
-      const Finished finished = run_program(arguments);
+    for (const Options& more : {Options{}, {"--roi", "0,0,1,1"}, {"--preview", folder / "p.png"}}) {
+      const Options arguments = typed("--fov 60 --normal-space view --radius 1 --memory 184M");
+      const Finished finished = run_program(joined(joined({"run", claim, "-o", ao}, arguments), more));
       EXPECT_TRUE(finished.code == 2 || finished.code == 3 || finished.code == 5) << finished;
       EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
       EXPECT_LT(finished.peak_mib, plain + 64 + evidence) << width << " x " << height << finished;
@@ -203,8 +181,12 @@ TEST_F(Hostile, no_picture_makes_a_run_take_more_memory_than_its_rows) {
 }
 
 TEST_F(Hostile, a_header_of_more_pixels_than_its_bytes_can_stand_for_is_refused) {
-  expect_error(ErrorKind::input, {"16384 x 16384 pixels", "3000 bytes"},
-               [&] { ExrFile(claiming(1 << 14, 1 << 14, 3000), "INPUT"); });
+  const std::string claim = claiming(1 << 14, 1 << 14, 3000), text = "16384 x 16384 pixels";
+  expect_error(ErrorKind::input, {text, "3000 bytes"}, [&] { ExrFile(claim, "INPUT"); });
+  for (const Options& more : {Options{"inspect", claim, "--camera", camera},
+                              {"inspect", claim, "--camera", camera, "--preview", folder / "sheet.png"},
+                              {"compare", claim, claim}})
+    test::expect_refused(run_program(more), 3, {text});
 }
 
 // Text.
@@ -236,9 +218,7 @@ TEST_F(Hostile, frame_numbers_beyond_all_numbers_and_lists_that_repeat_many_are_
 
 TEST_F(Hostile, a_zero_byte_in_a_preset_is_refused) {  // or it would end a file's name early
   write_bytes(folder / "p.toml", "depth = \"" + frame + "\\u0000.exr\"\n");
-  const Finished finished = run({"--preset", folder / "p.toml"});
-  EXPECT_EQ(finished.code, 2) << finished;
-  EXPECT_THAT(finished.err, HasSubstr("zero byte"));
+  expect_refused(2, {"--preset", folder / "p.toml"}, {"zero byte"});
 }
 
 }  // namespace

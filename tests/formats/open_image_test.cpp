@@ -1,9 +1,5 @@
 // One rule opens files, in every command: what a file is, its first bytes tell, whatever its name ends in.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <filesystem>
-#include <nlohmann/json.hpp>
-
-#include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 #include "tests/support/dds_file.h"
 #include "tests/support/deep_file.h"
@@ -14,9 +10,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::HasSubstr;
 
 class OpenImage : public CommandLine {
  protected:
@@ -54,8 +47,7 @@ TEST_F(OpenImage, compare_reads_dds) {
   const std::string texture = folder / "a.dds";
   write_bytes(texture, dds(64, 36, 41, bytes_of(plane("ViewLayer.Depth.Z"))));
   const Finished finished =
-      run_program({"compare", texture, frame, "--channel", "R=ViewLayer.Depth.Z", "--max-rmse", "0", "--json"});
-  ASSERT_EQ(finished.code, 0) << finished;
+      run_well({"compare", texture, frame, "--channel", "R=ViewLayer.Depth.Z", "--max-rmse", "0", "--json"});
   EXPECT_EQ(json::parse(finished.out)["max"], 0);
 }
 
@@ -63,9 +55,8 @@ TEST_F(OpenImage, an_exr_keeps_its_parts_under_any_name) {
   write_deep(frame, {part_of("ViewLayer.Depth", {"ViewLayer.Depth.Z"}),
                      part_of("ViewLayer.Normal", {"ViewLayer.Normal.X", "ViewLayer.Normal.Y", "ViewLayer.Normal.Z"})});
   for (const char* name : {"parts.exr", "parts.tif", "parts.png", "parts.tga", "parts"}) {
-    std::filesystem::copy_file(frame, folder / name);
-    const Finished finished = run_program({"inspect", folder / name, "--camera", camera, "--json"});
-    ASSERT_EQ(finished.code, 0) << name << finished;
+    fs::copy_file(frame, folder / name);
+    const Finished finished = run_well({"inspect", folder / name, "--camera", camera, "--json"});
     const json found = json::parse(finished.out);
     EXPECT_EQ(found["files"][0]["parts"].size(), 2) << name;
     EXPECT_EQ(found["aovs"]["normal"]["part"], 1) << name;
@@ -76,7 +67,7 @@ TEST_F(OpenImage, pictures_are_known_under_any_name) {
   write_normals(folder / "normal.png");
   const auto expected = red_of(folder / "normal.png");
   for (const char* name : {"normal.exr", "normal.dds", "normal.tif", "normal"}) {
-    std::filesystem::copy_file(folder / "normal.png", folder / name);
+    fs::copy_file(folder / "normal.png", folder / name);
     EXPECT_EQ(red_of(folder / name), expected) << name;
   }
   EXPECT_EQ(run({"--normal", folder / "normal.exr"}).code, 0);
@@ -122,7 +113,7 @@ TEST_F(OpenImage, a_picture_that_is_cut_short_is_named) {
     expect_error(ErrorKind::input, {path, "damaged or incomplete", "--normal"}, [&] { red_of(path); });
   }
   EXPECT_EQ(run({"--normal", folder / "normal.png", "--normal-space", "view"}).code, 3);
-  EXPECT_FALSE(std::filesystem::exists(ao));
+  EXPECT_FALSE(fs::exists(ao));
 }
 
 }  // namespace

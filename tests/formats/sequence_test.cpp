@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/sequence.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-
 #include "tests/support/expect_error.h"
 #include "tests/support/program.h"
 
@@ -14,9 +9,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 TEST(FramePattern, every_token_is_understood_and_a_number_may_be_longer_and_negative) {
   for (const auto& [pattern, frame, path] :

@@ -2,33 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // ALCOVE_TEST_EXR: folders, with colons between them, whose EXR files are compared too.
-#include <ImfOutputFile.h>
-#include <ImfTiledOutputFile.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <half.h>
 
-#include <bit>
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
 #include <list>
-#include <numeric>
-#include <random>
 #include <sstream>
 
 #include "core/base/half.h"
 #include "core/formats/exr.h"
 #include "core/formats/sample_loops.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/openexr.h"
 #include "tests/support/openexr_planes.h"
 #include "tests/support/program.h"
 
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
 using Bytes = std::vector<std::uint8_t>;
 

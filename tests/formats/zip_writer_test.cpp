@@ -1,21 +1,12 @@
 // What our own writer of ZIP and ZIPS writes, OpenEXR reads, and its header is the one that OpenEXR would write.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ImfInputFile.h>
-#include <ImfOutputFile.h>
-#include <ImfStringAttribute.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
-#include <filesystem>
 #include <list>
-#include <random>
 
 #include "core/base/error.h"
 #include "core/base/half.h"
 #include "core/formats/exr.h"
 #include "core/formats/sample_loops.h"
+#include "tests/support/openexr.h"
 #include "tests/support/openexr_planes.h"
 #include "tests/support/program.h"
 
@@ -151,7 +142,7 @@ TEST_F(ZipWriting, a_file_whose_rows_are_too_few_is_not_finished) {
     writer.write(std::vector<std::span<const float>>(3, rows));
     EXPECT_THROW(writer.finish(), Error);
   }
-  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_FALSE(fs::exists(path));
 }
 
 }  // namespace

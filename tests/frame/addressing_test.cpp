@@ -1,8 +1,5 @@
 // Channels as programs and people name them: views, messages that propose names, values, and colours taken for depth.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ImfOutputFile.h>
-#include <ImfStringAttribute.h>
-
 #include <regex>
 
 #include "core/frame/matte.h"
@@ -13,10 +10,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 
 using Views = GBuffer;
 

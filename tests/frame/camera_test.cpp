@@ -2,13 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/camera.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <numbers>
-
 #include "tests/support/expect_error.h"
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
@@ -17,8 +10,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::HasSubstr;
 
 constexpr Window kDisplay{0, 0, 64, 36};
 

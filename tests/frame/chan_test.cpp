@@ -1,8 +1,5 @@
 // .chan files, as Blender's add-on writes them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/frame/camera.h"
 #include "tests/support/command_line.h"
 #include "tests/support/expect_error.h"
@@ -54,8 +51,7 @@ TEST_F(Chan, has_the_camera_that_blender_wrote) {
 TEST_F(Chan, gives_frames_of_a_run_their_cameras) {
   // The camera of the wall: z is up, and it looks along y.
   write_bytes(path, "42 -0.5 3 2 90 0 0 33.398488467987\n");
-  const Finished inspected = run_program({"inspect", frame, "--camera", path, "--write-camera", folder / "c.json"});
-  ASSERT_EQ(inspected.code, 0) << inspected;
+  run_well({"inspect", frame, "--camera", path, "--write-camera", folder / "c.json"});
   const Camera from_chan = read_camera(folder / "c.json", 42), from_json = read_camera(camera, 42);
   EXPECT_NEAR(from_chan.fx, from_json.fx, 1e-6);
   for (std::size_t row = 0; row < 3; row++)

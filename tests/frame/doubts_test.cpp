@@ -1,7 +1,5 @@
 // What the pixels refute is refused with what mends it, and what they cannot decide is said.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <functional>
-
 #include "core/frame/settle.h"
 #include "tests/support/source_frame.h"
 
@@ -9,11 +7,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 class Doubts : public Sources {
  protected:
@@ -146,7 +139,7 @@ TEST_F(Doubts, what_depth_may_be_is_told_by_its_values_its_program_and_its_camer
   header.insert("Software", Imf::StringAttribute("Blender 3.4"));
   give();
   write_depth(root, 1e12f);
-  EXPECT_THAT(said(), testing::ElementsAre(HasSubstr(normalized), HasSubstr("read as planar, as cycles writes it")))
+  EXPECT_THAT(said(), ElementsAre(HasSubstr(normalized), HasSubstr("read as planar, as cycles writes it")))
       << "its Normalize";
 }
 
@@ -376,7 +369,7 @@ TEST_F(Doubts, world_normals_without_a_matrix_are_refused_with_what_works) {
   for (const char* source : {"auto", "cycles"}) {
     settings.source = source;
     expect(Reply::refused, {"world_to_camera", "--normal none"});
-    EXPECT_THAT(said(), testing::Each(testing::Not(HasSubstr("--normal-space view"))));
+    EXPECT_THAT(said(), Each(Not(HasSubstr("--normal-space view"))));
   }
   settings.normal = "none";
   expect(Reply::silent);

@@ -1,13 +1,7 @@
 // What depth means is judged by flat surfaces, however coarsely their depth is stored; noise and steps are measured.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/flatness.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <random>
+#include "tests/support/test.h"
 
 namespace alcove {
 namespace {

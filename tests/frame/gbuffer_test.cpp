@@ -8,11 +8,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 
 // Names.
 

@@ -7,8 +7,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::AllOf;
-using testing::HasSubstr;
 
 class HeaderCameras : public Sources {
  protected:
@@ -191,11 +189,11 @@ TEST_F(HeaderCameras, pixels_of_another_shape_than_the_files_are_of_a_crop) {
   header.insert("worldToNDC", matrix(ndc, true));
   write(settings.input);
   EXPECT_THAT(texts_of(find_frame(settings, false, 0).notes),
-              testing::ElementsAre(AllOf(HasSubstr("the header's worldToCamera, worldToNDC"),
-                                         HasSubstr("1.5 times as wide as high"), HasSubstr("cropped"))));
+              ElementsAre(AllOf(HasSubstr("the header's worldToCamera, worldToNDC"),
+                                HasSubstr("1.5 times as wide as high"), HasSubstr("cropped"))));
   header.pixelAspectRatio() = 1.5;  // as of an anamorphic lens
   write(settings.input);
-  EXPECT_THAT(find_frame(settings, false, 0).notes, testing::IsEmpty());
+  EXPECT_THAT(find_frame(settings, false, 0).notes, IsEmpty());
 }
 
 TEST_F(HeaderCameras, panoramas_are_refused) {

@@ -1,10 +1,7 @@
 // Motion vectors are read as the cameras prove them, and tell what moves.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/motion.h"
-
-#include <gmock/gmock.h>
-
-#include <algorithm>
+#include "tests/support/test.h"
 
 namespace alcove {
 namespace {

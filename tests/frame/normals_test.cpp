@@ -1,9 +1,5 @@
 // Normals of the other side, of nearly the same space, without their signs, and with other lengths are told apart.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-#include <functional>
-#include <numbers>
-
 #include "core/frame/evidence.h"
 #include "tests/support/furnished.h"
 #include "tests/support/settled_file.h"
@@ -12,11 +8,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 
 /// A rendering as a file of Z and N, with a camera that is turned by some degrees within a world of the test's own.
 class NormalFiles : public SettledFile {
@@ -95,7 +86,7 @@ TEST_F(NormalFiles, of_the_other_side_of_some_things_leave_the_reading_as_it_is)
       EXPECT_EQ(source.normal_space, in_view ? NormalSpace::view : NormalSpace::world)
           << what << testing::PrintToString(texts_of(source.notes));
       EXPECT_EQ(to_string(source.flip_normal), "none") << what;
-      EXPECT_THAT(codes_of(source.notes), Not(testing::Contains(NoteCode::normals_disagree))) << what;
+      EXPECT_THAT(codes_of(source.notes), Not(Contains(NoteCode::normals_disagree))) << what;
     }
 }
 
@@ -117,7 +108,7 @@ TEST_F(NormalFiles, that_may_be_flipped_or_mirrored_are_turned_round_and_both_ca
     return hit.primitive == kBall ? Vec3{} : Vec3{-hit.normal.x, hit.normal.y, hit.normal.z};
   });
   EXPECT_EQ(to_string(settled().flip_normal), "none");
-  EXPECT_THAT(texts_of(settled().notes), testing::Contains(HasSubstr("give --flip-normal x")));
+  EXPECT_THAT(texts_of(settled().notes), Contains(HasSubstr("give --flip-normal x")));
 }
 
 TEST_F(NormalFiles, that_are_all_flipped_are_still_found) {
@@ -156,11 +147,11 @@ TEST_F(NormalFiles, are_of_the_space_that_fits_however_little_the_camera_is_turn
         write(bumpy);
         FrameSource source = settled();
         EXPECT_EQ(source.normal_space, NormalSpace::view) << what;
-        EXPECT_THAT(codes_of(source.notes), Not(testing::Contains(NoteCode::field_of_view))) << what;
+        EXPECT_THAT(codes_of(source.notes), Not(Contains(NoteCode::field_of_view))) << what;
         write([&](Vec3 n, const test::Hit& hit) { return world(bumpy(n, hit)); });
         source = settled();
         EXPECT_EQ(source.normal_space, NormalSpace::world) << what;
-        EXPECT_THAT(source.notes, testing::Each(testing::Field(&Note::code, NoteCode::normals_disagree))) << what;
+        EXPECT_THAT(source.notes, Each(testing::Field(&Note::code, NoteCode::normals_disagree))) << what;
       }
   }
 }
@@ -178,7 +169,7 @@ TEST_F(NormalFiles, in_the_wrong_space_by_an_option_are_not_blamed_on_the_lens) 
   settings.normal_space = NormalSpace::world;
   const Notes notes = settled().notes;
   EXPECT_THAT(codes_of(notes), ElementsAre(NoteCode::normals_disagree));
-  EXPECT_THAT(notes.at(0).text, AllOf(HasSubstr("view"), testing::ContainsRegex("turned by (8.9|9.0) degrees")));
+  EXPECT_THAT(notes.at(0).text, AllOf(HasSubstr("view"), ContainsRegex("turned by (8.9|9.0) degrees")));
 }
 
 TEST_F(NormalFiles, of_the_world_without_a_matrix_are_refused_as_such) {
@@ -203,7 +194,7 @@ TEST_F(NormalFiles, without_signs_are_told_from_those_that_need_none) {
   expect(Reply::refused, {"absolute values were saved", "N.X, N.Y, N.Z"});
   write([&](Vec3 n, const test::Hit&) { return clamped(n); });
   expect(Reply::refused, {"values below 0 were cut off"});
-  EXPECT_THAT(said(), testing::Each(Not(HasSubstr("averaged"))));
+  EXPECT_THAT(said(), Each(Not(HasSubstr("averaged"))));
   // A world in which all that is seen faces up its axes.
   settings.normal_space = NormalSpace::automatic;
   const Shot& shot = rendering.shot;
@@ -248,7 +239,7 @@ TEST_F(NormalFiles, are_named_where_they_are_files_of_their_own) {
   settings.input.clear();
   ASSERT_EQ(noted().size(), 1);
   EXPECT_EQ(noted()[0].file, settings.normal);
-  EXPECT_THAT(line_of(noted()[0], settings.depth), testing::StartsWith(settings.normal + ": normal encoding"));
+  EXPECT_THAT(line_of(noted()[0], settings.depth), StartsWith(settings.normal + ": normal encoding"));
   settings.strict = true;
   expect(Reply::refused, {settings.normal + ": --strict, and nothing says the normal space"});
 }

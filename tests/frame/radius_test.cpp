@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/radius.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "tests/support/settled_file.h"
 
 namespace alcove {

@@ -1,9 +1,6 @@
 // Every way to read a frame against every way it may be written: the right one is taken without a word, each wrong one
 // is noted or refused.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-#include <functional>
-
 #include "core/base/option_words.h"
 #include "core/frame/evidence.h"
 #include "tests/support/source_frame.h"
@@ -12,7 +9,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::HasSubstr;
 
 constexpr double kNear = 0.5;
 
@@ -104,9 +100,9 @@ TEST_F(Readings, of_every_kind_of_depth_by_every_other_are_noted) {
       // that is 1/z too, but for a scale and next to nothing
       if (written.kind == DepthKind::inverse && read.reversed) continue;
       if (&written == &read)
-        EXPECT_THAT(said(), testing::IsEmpty()) << word_of(read.kind) << read.reversed;
+        EXPECT_THAT(said(), IsEmpty()) << word_of(read.kind) << read.reversed;
       else
-        EXPECT_THAT(said(), testing::Contains(HasSubstr("--depth-kind")))
+        EXPECT_THAT(said(), Contains(HasSubstr("--depth-kind")))
             << word_of(written.kind) << written.reversed << " as " << word_of(read.kind) << read.reversed;
     }
   }
@@ -122,9 +118,9 @@ TEST_F(Readings, of_orthographic_depth_need_no_option_and_doubt_nothing_that_is_
       render(test::scene(), Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120));
   write(kPlanar, as_it_is, false, parallel);
   EXPECT_EQ(settled().depth_kind, DepthKind::planar);
-  EXPECT_THAT(said(), testing::IsEmpty());
+  EXPECT_THAT(said(), IsEmpty());
   settings.depth_kind = DepthKind::inverse;
-  EXPECT_THAT(said(), testing::Contains(HasSubstr("--depth-kind")));
+  EXPECT_THAT(said(), Contains(HasSubstr("--depth-kind")));
   for (const bool reversed : {false, true}) {
     const auto linear = [&](double z, double) {
       return reversed ? (kFar - z) / (kFar - kNear) : (z - kNear) / (kFar - kNear);
@@ -133,7 +129,7 @@ TEST_F(Readings, of_orthographic_depth_need_no_option_and_doubt_nothing_that_is_
       const Written depth{kind, reversed, linear, reversed ? 0.0f : 1.0f};
       write(depth, as_it_is, false, parallel);
       say(depth);
-      EXPECT_THAT(said(), testing::IsEmpty()) << word_of(kind) << reversed;
+      EXPECT_THAT(said(), IsEmpty()) << word_of(kind) << reversed;
     }
   }
 }
@@ -142,9 +138,8 @@ TEST_F(Readings, of_depth_that_ends_at_1_need_to_be_said) {
   for (const auto& written : all_depths())
     if (written.kind == DepthKind::normalized || written.kind == DepthKind::log) {
       write(written);
-      EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("frame.exr"),
-                                                              HasSubstr("--depth-kind normalized"), HasSubstr("--far"),
-                                                              HasSubstr("log"), HasSubstr("--depth-kind planar"))));
+      EXPECT_THAT(said(), ElementsAre(AllOf(HasSubstr("frame.exr"), HasSubstr("--depth-kind normalized"),
+                                            HasSubstr("--far"), HasSubstr("log"), HasSubstr("--depth-kind planar"))));
       settings.depth_kind = DepthKind::planar;
       EXPECT_EQ(settled().depth_kind, DepthKind::planar) << "what is said is taken";
       settings.depth_kind = DepthKind::automatic;
@@ -156,32 +151,32 @@ TEST_F(Readings, between_wrong_planes_are_noted) {
   write(device);
   say(device);
   settings.depth_range.far = 10;
-  EXPECT_THAT(said(), testing::Contains(HasSubstr("--far"))) << "of device depth";
+  EXPECT_THAT(said(), Contains(HasSubstr("--far"))) << "of device depth";
   say(device);
   settings.depth_range.device = DeviceRange::minus_one_to_one;
-  EXPECT_THAT(said(), testing::Contains(HasSubstr("--set device-range"))) << "0..1 as -1..1";
+  EXPECT_THAT(said(), Contains(HasSubstr("--set device-range"))) << "0..1 as -1..1";
   const Written gl{DepthKind::device, false,
                    [](double z, double) { return 2 * (1 / 2.9 - 1 / z) / (1 / 2.9 - 1 / kFar) - 1; }, 1};
   write(gl);
   say(gl);
   settings.depth_range.near = 2.9;
-  EXPECT_THAT(said(), testing::Contains(HasSubstr("--set device-range"))) << "-1..1 as 0..1";
+  EXPECT_THAT(said(), Contains(HasSubstr("--set device-range"))) << "-1..1 as 0..1";
   settings.depth_range.device = DeviceRange::minus_one_to_one;
-  EXPECT_THAT(said(), testing::IsEmpty());
+  EXPECT_THAT(said(), IsEmpty());
   write(all_depths()[5]);
   say(all_depths()[5]);
   settings.depth_range.near = std::nullopt;
-  EXPECT_THAT(said(), testing::Contains(HasSubstr("--near"))) << "of normalized depth";
+  EXPECT_THAT(said(), Contains(HasSubstr("--near"))) << "of normalized depth";
   write(all_depths()[6]);
   say(all_depths()[6]);
   settings.depth_range.log_constant = 0.1;
-  EXPECT_THAT(said(), testing::Contains(HasSubstr("--depth-kind"))) << "the constant of log depth";
+  EXPECT_THAT(said(), Contains(HasSubstr("--depth-kind"))) << "the constant of log depth";
 }
 
 TEST_F(Readings, by_the_rules_of_another_program_are_noted) {
   write(kPlanar);
   settings.source = "octane";
-  EXPECT_THAT(said(), testing::Contains(HasSubstr("--source"))) << "its depth is along the ray";
+  EXPECT_THAT(said(), Contains(HasSubstr("--source"))) << "its depth is along the ray";
 }
 
 struct Encoded {
@@ -210,9 +205,9 @@ TEST_F(Readings, of_every_encoding_are_found_and_by_every_other_are_noted) {
          {NormalEncoding::signed_float, NormalEncoding::unorm, NormalEncoding::octahedral, NormalEncoding::spheremap}) {
       settings.normal_encoding = read;
       if (read == written.encoding)
-        EXPECT_THAT(said(), testing::IsEmpty()) << int(read) << written.between_0_and_1;
+        EXPECT_THAT(said(), IsEmpty()) << int(read) << written.between_0_and_1;
       else
-        EXPECT_THAT(said(), testing::Contains(HasSubstr("--normal-encoding")))
+        EXPECT_THAT(said(), Contains(HasSubstr("--normal-encoding")))
             << int(written.encoding) << written.between_0_and_1 << " as " << int(read);
     }
   }
@@ -241,9 +236,9 @@ TEST_F(Readings, in_every_space_with_every_flip_are_found_and_by_every_other_are
                                                   : settings.flip_normal.x;
           axis = axis != is_flipped;
           if (as_view == in_view && !is_flipped)
-            EXPECT_THAT(said(), testing::IsEmpty()) << flips;
+            EXPECT_THAT(said(), IsEmpty()) << flips;
           else
-            EXPECT_THAT(said(), testing::Contains(HasSubstr("--normal-space"))) << flips << as_view << is_flipped;
+            EXPECT_THAT(said(), Contains(HasSubstr("--normal-space"))) << flips << as_view << is_flipped;
         }
     }
 }
@@ -251,22 +246,22 @@ TEST_F(Readings, in_every_space_with_every_flip_are_found_and_by_every_other_are
 TEST_F(Readings, that_do_equally_well_are_refused_with_what_decides) {
   attributes["Software"] = "Octane";  // which writes distances along the ray
   write({DepthKind::planar, false, [](double z, double) { return z < 4.2 ? z : 40 / z; }, 1e10f});
-  EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("frame.exr"), HasSubstr("--depth-kind planar"),
-                                                          HasSubstr("--depth-kind inverse"))));
+  EXPECT_THAT(said(), ElementsAre(AllOf(HasSubstr("frame.exr"), HasSubstr("--depth-kind planar"),
+                                        HasSubstr("--depth-kind inverse"))));
   attributes.clear();
   write(kPlanar, as_it_is, true);
   // so that one space is the other with flips
-  nlohmann::json camera = camera_of(shot());
+  json camera = camera_of(shot());
   camera["world_to_camera"] = {{-1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}};
   give(camera);
-  EXPECT_THAT(said(), testing::ElementsAre(testing::AllOf(HasSubstr("view"), HasSubstr("world"), HasSubstr("flips xz"),
-                                                          HasSubstr("--normal-space"), HasSubstr("--flip-normal"))));
+  EXPECT_THAT(said(), ElementsAre(AllOf(HasSubstr("view"), HasSubstr("world"), HasSubstr("flips xz"),
+                                        HasSubstr("--normal-space"), HasSubstr("--flip-normal"))));
 }
 
 TEST_F(Readings, with_a_flip_and_no_space_are_noted_too) {
   write(kPlanar);
   settings.flip_normal.y = true;
-  EXPECT_THAT(said(), testing::Contains(HasSubstr("--flip-normal")));
+  EXPECT_THAT(said(), Contains(HasSubstr("--flip-normal")));
 }
 
 TEST_F(Readings, of_a_z_buffer_need_its_planes_and_take_its_direction_from_the_sky) {
@@ -315,8 +310,7 @@ TEST_F(Readings, of_what_is_beyond_half_floats_are_sky) {
   const FrameSource source = settled();
   EXPECT_TRUE(std::isinf(planar_depth(depth_map_of(source), {65504, 0, 0}, 1)));
   EXPECT_FALSE(std::isinf(planar_depth(depth_map_of(source), {65472, 0, 0}, 1)));
-  EXPECT_THAT(texts_of(source.suspicious),
-              testing::ElementsAre(testing::AllOf(HasSubstr("half float"), HasSubstr("0.0039"))));
+  EXPECT_THAT(texts_of(source.suspicious), ElementsAre(AllOf(HasSubstr("half float"), HasSubstr("0.0039"))));
 }
 
 }  // namespace

@@ -2,15 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/resection.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <random>
-
-#include "core/formats/exr.h"
 #include "core/frame/panorama.h"
 #include "core/inspect/inspect.h"
 #include "tests/support/command_line.h"
@@ -20,9 +11,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 const Window kPicture{0, 0, 320, 180};
 
@@ -228,11 +216,10 @@ class PositionPass : public CommandLine {
     file.write(frame);
   }
 
-  Finished run_by(std::vector<std::string> options) const {
-    options.insert(options.begin(), {"run", frame, "-o", ao, "--type", "float", "--radius", "1"});
-    return run_program(options);
+  Finished run_by(const Options& more) const {
+    return run_program(joined({"run", frame, "-o", ao, "--type", "float", "--radius", "1"}, more));
   }
-  Plane ao_of(const std::vector<std::string>& options) const {
+  Plane ao_of(const Options& options) const {
     const Finished finished = run_by(options);
     EXPECT_EQ(finished.code, 0) << finished;
     return read_exr_image(ao).pixels;
@@ -296,8 +283,7 @@ TEST_F(PositionPass, gives_the_camera_that_nobody_said_and_its_file) {
   EXPECT_LT(difference(by_positions, by_file).max, 0.002);
   EXPECT_LT(difference(ao_of({"--depth-kind", "position"}), by_file).max, 0.002);
   const std::string written = folder / "written.json";
-  const Finished inspected = run_program({"inspect", frame, "--write-camera", written});
-  ASSERT_EQ(inspected.code, 0) << inspected;
+  const Finished inspected = run_well({"inspect", frame, "--write-camera", written});
   EXPECT_THAT(inspected.out, AllOf(HasSubstr("by its positions"), Not(HasSubstr("missing: camera"))));
   expect_same(read_camera(written, 0), read_camera(camera, 0), 1e-5);
   EXPECT_EQ(ao_of({"--camera", written}), by_positions);
@@ -312,8 +298,7 @@ TEST_F(PositionPass, of_a_sequence_is_written_with_its_frames) {
   write_positions("ViewLayer.Position");
   for (const char* number : {"7", "9"}) write_bytes(folder / "shot.000" + number + ".exr", read_bytes(frame));
   const std::string written = folder / "written.json";
-  const Finished inspected = run_program({"inspect", folder / "shot.####.exr", "--write-camera", written});
-  ASSERT_EQ(inspected.code, 0) << inspected;
+  run_well({"inspect", folder / "shot.####.exr", "--write-camera", written});
   expect_same(read_camera(written, 9), read_camera(camera, 0), 1e-5);
   EXPECT_THROW(read_camera(written, 8), Error);
 }
@@ -322,9 +307,8 @@ TEST_F(PositionPass, refutes_a_lens_by_pixels) {
   write_positions("ViewLayer.Position");
   const Camera right = read_camera(camera, 0);
   const double degrees = 2 * std::atan(32 / right.fx) * 180 / std::numbers::pi;
-  const auto warned = [&](std::vector<std::string> options) {
-    options.insert(options.end(), {"--normal", "none"});
-    const Finished finished = run_by(options);
+  const auto warned = [&](const Options& options) {
+    const Finished finished = run_by(joined(options, {"--normal", "none"}));
     EXPECT_EQ(finished.code, 0) << finished;
     return finished.err;
   };
@@ -353,8 +337,7 @@ TEST_F(PositionPass, that_is_none_is_told) {
   const Finished finished = run_by({});
   EXPECT_EQ(finished.code, 2) << finished;
   EXPECT_THAT(finished.err, AllOf(HasSubstr(frame), HasSubstr("its positions tell none"), HasSubstr("--camera")));
-  const Finished inspected = run_program({"inspect", frame});
-  EXPECT_EQ(inspected.code, 0);
+  const Finished inspected = run_well({"inspect", frame});
   EXPECT_THAT(inspected.out, HasSubstr("its positions tell none"));
 }
 

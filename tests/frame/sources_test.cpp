@@ -8,7 +8,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::HasSubstr;
 
 TEST_F(Sources, arnold_without_flags) {
   depth("Z", planar, 1e12f);
@@ -175,7 +174,7 @@ TEST_F(Sources, unreal_in_its_left_handed_world_and_half_depth) {
       {"unreal/camera/FinalImage/fov", kFov}};
   for (const auto& [name, value] : numbers) header.insert(name, Imf::StringAttribute(fmt::format("{}", value)));
   expect_same("unreal", 0.03, 100);  // half floats step by 0.25 cm here, and AO shows it
-  EXPECT_THAT(texts_of(settled().suspicious), testing::ElementsAre(HasSubstr("half float")));
+  EXPECT_THAT(texts_of(settled().suspicious), ElementsAre(HasSubstr("half float")));
 }
 
 TEST_F(Sources, unreal_with_several_cameras_needs_to_be_told_which) {
@@ -283,14 +282,14 @@ TEST_F(Sources, what_went_through_nuke_is_not_nukes) {
 TEST_F(Sources, a_matrix_for_another_depth_range_is_noted) {
   depth(
       "Z", [](const test::Hit& hit) { return 1 - 0.5 / hit.distance; }, 1);
-  nlohmann::json camera = camera_of(shot());
+  json camera = camera_of(shot());
   camera.update({{"near", 0.5}, {"far", "inf"}, {"depth_kind", "device"}});
   camera["projection"] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, -1}, {0, 0, 1, 0}};
   give(camera);
   write(settings.input);
-  EXPECT_THAT(texts_of(settled().notes), testing::Contains(HasSubstr("2 times as large")));
+  EXPECT_THAT(texts_of(settled().notes), Contains(HasSubstr("2 times as large")));
   settings.depth_range.near = 1;
-  EXPECT_THAT(texts_of(settled().notes), testing::Contains(testing::AllOf(HasSubstr("--near"), HasSubstr("2 times"))));
+  EXPECT_THAT(texts_of(settled().notes), Contains(AllOf(HasSubstr("--near"), HasSubstr("2 times"))));
 }
 
 TEST(InputRules, all_names_are_there_and_unknown_ones_name_the_nearest) {

@@ -1,15 +1,6 @@
 // Files as strangers bring them: every case of tests/strangers is read right, or is refused or warned about with its
 // true cause.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <numbers>
 #include <regex>
 
 #include "core/base/half.h"
@@ -24,9 +15,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-namespace fs = std::filesystem;
-using Json = nlohmann::json;
-using Arguments = std::vector<std::string>;
 using Planes = std::map<std::string, std::vector<float>>;
 using Texts = std::map<std::string, std::string>;
 
@@ -155,8 +143,8 @@ void make_files(const std::string& folder) {
         main.with_normals(main.depth(0), [&](std::size_t i) { return times(world_from_view, main.view_normal(i)); }));
 }
 
-const Json& all_cases() {
-  static const Json cases = Json::parse(read_bytes(kFolder + "/cases.json"));
+const json& all_cases() {
+  static const json cases = json::parse(read_bytes(kFolder + "/cases.json"));
   return cases;
 }
 
@@ -171,18 +159,17 @@ class Strangers : public testing::TestWithParam<std::size_t> {
   }
   static void TearDownTestSuite() { folder_.reset(); }
 
-  static Finished call(const std::string& command, const Arguments& arguments, const std::string& output) {
-    Arguments all{command};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    if (command == "run") all.insert(all.end(), {"-o", *folder_ / output, "--progress", "none"});
-    return run_program(all, {.folder = folder_->path()});
+  static Finished call(const std::string& command, const Options& arguments, const std::string& output) {
+    const Options all = joined({command}, arguments);
+    const Options run{"-o", *folder_ / output, "--progress", "none"};
+    return run_program(command == "run" ? joined(all, run) : all, {.folder = folder_->path()});
   }
 
   /// The AO that it should be: by ray tracing, or of the run of a plain form with the rest of its arguments.
-  static std::vector<float> truth_of(const std::string& to, const Arguments& more) {
+  static std::vector<float> truth_of(const std::string& to, const Options& more) {
     if (!to.starts_with("plain/")) return read_exr_image(*folder_ / to, {"Y"}).pixels;
-    static std::map<Arguments, std::vector<float>> computed;
-    Arguments run{to, "--camera", fs::path(to).replace_extension(".json"), "--radius", "0.6", "--depth-kind", "planar"};
+    static std::map<Options, std::vector<float>> computed;
+    Options run{to, "--camera", fs::path(to).replace_extension(".json"), "--radius", "0.6", "--depth-kind", "planar"};
     run.insert(run.end(), more.begin(), more.end());
     auto& ao = computed[run];
     if (!ao.empty()) return ao;
@@ -195,20 +182,20 @@ class Strangers : public testing::TestWithParam<std::size_t> {
 };
 
 TEST_P(Strangers, AreReadRightOrToldWhatIsWrong) {
-  const Json& row = all_cases()[GetParam()];
+  const json& row = all_cases()[GetParam()];
   SCOPED_TRACE(row["what"].get<std::string>());
   const std::string command = row.contains("inspect") ? "inspect" : "run";
-  const Finished finished = call(command, row[command].get<Arguments>(), "ao.exr");
+  const Finished finished = call(command, row[command].get<Options>(), "ao.exr");
   EXPECT_EQ(finished.code, row.value("exit", 0)) << finished;
   const std::string said = command == "inspect" ? finished.out + finished.err : finished.err;
   for (const char* key : {"says", "not_says"})
-    for (const auto& pattern : row.value(key, Arguments()))
+    for (const auto& pattern : row.value(key, Options()))
       EXPECT_EQ(std::regex_search(said, std::regex(pattern, std::regex::icase)), key == std::string("says"))
           << key << " /" << pattern << "/ " << finished;
   if (!row.contains("rmse") || finished.code != 0) return;
   const std::vector<float> ao = read_exr_image(*folder_ / "ao.exr", {"Y"}).pixels,
-                           truth = truth_of(row["to"], row.value("plain", Arguments{"--normal-space", "world",
-                                                                                    "--normal-encoding", "signed"}));
+                           truth = truth_of(row["to"], row.value("plain", Options{"--normal-space", "world",
+                                                                                  "--normal-encoding", "signed"}));
   ASSERT_EQ(ao.size(), truth.size());
   EXPECT_LE(difference(ao, truth).rmse, row["rmse"].get<double>()) << finished;
 }

@@ -1,15 +1,5 @@
 // The Vulkan layer: reflection, checks between host and kernel, staging, and errors that name what is wrong.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <optional>
-#include <set>
-
-#include "core/base/error.h"
-#include "core/chain/compute.h"
 #include "kernels/estimate.h"
 #include "kernels/geometry.h"
 #include "kernels/shading.h"
@@ -19,10 +9,7 @@
 namespace alcove {
 namespace {
 
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::UnorderedElementsAre;
+using namespace test;
 
 /// The text of the Error that `work` throws, or "" when it throws none.
 template <class Work>

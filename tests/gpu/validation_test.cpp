@@ -1,15 +1,7 @@
 // Every kernel once under the Vulkan validation layer, which checks their synchronization too: tests/CMakeLists.txt
 // asks it to.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstdlib>
-#include <filesystem>
-#include <set>
-
 #include "core/chain/chain.h"
-#include "core/chain/compute.h"
 #include "core/chain/warp.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
@@ -150,7 +142,7 @@ std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
 
 std::set<std::string> kernels_there_are() {
   std::set<std::string> names{"horizon_layers"};  // made of horizon.comp
-  for (const auto& entry : std::filesystem::directory_iterator(ALCOVE_SOURCE_DIR "/kernels"))
+  for (const auto& entry : fs::directory_iterator(ALCOVE_SOURCE_DIR "/kernels"))
     if (entry.path().extension() == ".comp") names.insert(entry.path().stem().string());
   return names;
 }

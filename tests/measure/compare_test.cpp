@@ -1,8 +1,5 @@
 // `alcove compare` as scripts see it: files in, JSON and exit code out.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-#include <filesystem>
-#include <limits>
 #include <regex>
 
 #include "core/formats/png.h"
@@ -13,10 +10,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
 using Plane = std::vector<float>;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -466,7 +459,7 @@ TEST_F(CompareSequence, the_report_is_one_page_with_pictures) {
 
 TEST_F(Compare, files_of_one_name_are_told_apart_on_the_page) {
   const std::string page = folder / "page.html";
-  for (const char* place : {"old", "new"}) std::filesystem::create_directory(folder / place);
+  for (const char* place : {"old", "new"}) fs::create_directory(folder / place);
   const auto a = exr("old/ao.exr", {{"Y", box}}), b = exr("new/ao.exr", {{"Y", ramp}});
   ASSERT_EQ(compare({a, b, "--report", page}).code, 0);
   EXPECT_THAT(read_bytes(page), AllOf(HasSubstr("\"title\": \"" + a + " against " + b), HasSubstr("\"name\": \"" + a)));

@@ -2,13 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/flip.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numeric>
-
 #include "tests/support/formula_images.h"
+#include "tests/support/test.h"
 
 namespace alcove {
 namespace {
@@ -59,7 +54,7 @@ TEST(LdrFlip, lies_between_0_and_1_whatever_comes_in) {
   ColorImage wild = noise_result();
   for (auto& plane : wild)
     for (auto& value : plane) value = 5 * value - 2;
-  EXPECT_THAT(formula_flip(wild, noise_reference()), testing::Each(testing::AllOf(testing::Ge(0), testing::Le(1))));
+  EXPECT_THAT(formula_flip(wild, noise_reference()), Each(AllOf(testing::Ge(0), testing::Le(1))));
 }
 
 TEST(LdrFlip, values_outside_of_0_and_1_are_clamped) {
@@ -67,7 +62,7 @@ TEST(LdrFlip, values_outside_of_0_and_1_are_clamped) {
 }
 
 TEST(LdrFlip, of_equal_pictures_is_0_and_is_the_same_for_exchanged_and_turned_ones) {
-  EXPECT_THAT(formula_flip(noise_result(), noise_result()), testing::Each(0));
+  EXPECT_THAT(formula_flip(noise_result(), noise_result()), Each(0));
   EXPECT_EQ(formula_flip(noise_result(), noise_reference()), formula_flip(noise_reference(), noise_result()));
   const auto turned = [](ColorImage image) {
     for (auto& plane : image) std::ranges::reverse(plane);
@@ -142,7 +137,7 @@ TEST(HdrFlip, stored_values_of_a_second_implementation) {
 
 TEST(HdrFlip, of_equal_pictures_is_0_and_is_the_same_for_twice_the_light) {
   auto result = bright(noise_result()), reference = bright(noise_reference());
-  EXPECT_THAT(hdr_flip(kFormulaWidth, kFormulaHeight, planes_of(result), planes_of(result)), testing::Each(0));
+  EXPECT_THAT(hdr_flip(kFormulaWidth, kFormulaHeight, planes_of(result), planes_of(result)), Each(0));
   const Plane once = hdr_flip(kFormulaWidth, kFormulaHeight, planes_of(result), planes_of(reference));
   for (auto* image : {&result, &reference})
     for (auto& plane : *image)

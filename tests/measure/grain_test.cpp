@@ -1,27 +1,12 @@
 // Grain against closed forms and against its definition, written out slowly; and its limit as scripts see it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
-#include <numbers>
-#include <random>
-
 #include "core/measure/metrics.h"
 #include "tests/support/compare_command.h"
-#include "tests/support/program.h"
-#include "tests/support/wall_frame.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::Each;
-using testing::HasSubstr;
 using Plane = std::vector<float>;
 using Bytes = std::vector<std::uint8_t>;
 

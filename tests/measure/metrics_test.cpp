@@ -2,21 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/metrics.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "core/base/error.h"
 #include "tests/support/formula_images.h"
+#include "tests/support/test.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
-using testing::Each;
-using testing::HasSubstr;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
 using Plane = std::vector<float>;
@@ -136,7 +129,7 @@ TEST(MakeComparable, no_pixel_left_is_an_error_that_says_why) {
   EXPECT_THAT(input_error_of([] {
                 make_comparable("a against b", 2, Plane{kNan, 1}, Plane{0, 0}, {}, Bytes{1, 0});
               }),
-              testing::AllOf(HasSubstr("a against b"), HasSubstr("1 are left out by the mask and 1 are NaN")));
+              AllOf(HasSubstr("a against b"), HasSubstr("1 are left out by the mask and 1 are NaN")));
 }
 
 double formula_ssim(const Plane& a, const Plane& b, Mask mask = {}, double peak = 1) {

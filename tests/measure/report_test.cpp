@@ -1,16 +1,12 @@
 // The report page as text: nothing in the data can end its block, nothing in the page would be fetched.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/report.h"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
+#include "tests/support/test.h"
 
 #include <regex>
 
+using namespace alcove::test;
 using alcove::report_page;
-using testing::HasSubstr;
-using testing::Not;
 
 namespace {
 
@@ -55,17 +51,17 @@ TEST(Report, the_block_holds_no_less_than_sign) {
   EXPECT_THAT(json_block(report_page(small_report("<a><!--</script>").dump())), Not(HasSubstr("<")));
 }
 
-TEST(Report, all_marks_are_filled) { EXPECT_THAT(found("(\\{\\{[a-z_]+\\.[a-z.]+\\}\\})"), testing::IsEmpty()); }
+TEST(Report, all_marks_are_filled) { EXPECT_THAT(found("(\\{\\{[a-z_]+\\.[a-z.]+\\}\\})"), IsEmpty()); }
 
 TEST(Report, nothing_would_be_fetched) {
-  EXPECT_THAT(found("<script[^>]*\\s(src)"), testing::IsEmpty());
-  EXPECT_THAT(found("<link[^>]*\\shref\\s*=\\s*[\"']?([^\"'>\\s]*)"), testing::Each(testing::StartsWith("data:")));
+  EXPECT_THAT(found("<script[^>]*\\s(src)"), IsEmpty());
+  EXPECT_THAT(found("<link[^>]*\\shref\\s*=\\s*[\"']?([^\"'>\\s]*)"), Each(StartsWith("data:")));
   EXPECT_THAT(found("<(?:img|iframe|object|embed|video|audio|source|base|form)\\b[^>]*\\s(?:src|data|href|action)\\s*="
                     "\\s*[\"']?([^\"'>\\s]*)"),
-              testing::IsEmpty());
-  EXPECT_THAT(found("(@import)"), testing::IsEmpty());
-  EXPECT_THAT(found("\\burl\\(([^)]*)\\)"), testing::IsEmpty());
-  EXPECT_THAT(found("(sourceMappingURL)"), testing::IsEmpty());
+              IsEmpty());
+  EXPECT_THAT(found("(@import)"), IsEmpty());
+  EXPECT_THAT(found("\\burl\\(([^)]*)\\)"), IsEmpty());
+  EXPECT_THAT(found("(sourceMappingURL)"), IsEmpty());
 }
 
 TEST(Report, the_browser_is_told_to_fetch_nothing) {

@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/options/options.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <set>
-
 #include "cli/options.h"
 #include "core/base/error.h"
 #include "tests/support/program.h"
@@ -14,11 +9,7 @@
 namespace alcove {
 namespace {
 
-using test::joined;
-using test::typed;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using namespace test;
 
 /// A setting that may have no effect.
 struct Case {
@@ -211,8 +202,7 @@ TEST_F(Said, what_has_no_effect_is_refused_where_it_is_typed_and_left_out_of_pre
     const Value value = one.is_key() ? Value{words[1].substr(0, equals), words[1].substr(equals + 1)}
                                      : Value{words[0].substr(2), words.size() > 1 ? words[1] : "true"};
     for (const auto& beside : one.refused) {
-      EXPECT_THAT(refusal(one.setting + " " + beside), testing::StartsWith(one.option() + " has no effect: "))
-          << beside;
+      EXPECT_THAT(refusal(one.setting + " " + beside), StartsWith(one.option() + " has no effect: ")) << beside;
       const Words by_preset = joined(preset("some.toml", {value}), typed(beside));
       ASSERT_EQ(refusal(by_preset), "") << beside;
       EXPECT_EQ(value_of(value.key, read(by_preset)), usual_value_of(value.key)) << beside;
@@ -323,7 +313,7 @@ TEST_F(Said, a_density_is_taken_where_the_other_one_would_share_estimates) {
 // Whether it applies shows only with the frame: then what a preset says is left out, and what is typed is refused.
 TEST_F(Said, options_that_only_presets_say_are_known_as_such) {
   const Words far = preset("far.toml", {{"far", "100"}, {"near", "1"}});
-  EXPECT_THAT(read(far).settings.input.from_presets, testing::UnorderedElementsAre("--near", "--far"));
+  EXPECT_THAT(read(far).settings.input.from_presets, UnorderedElementsAre("--near", "--far"));
   EXPECT_THAT(read(joined(far, {"--far", "9"})).settings.input.from_presets, ElementsAre("--near"));
 }
 

@@ -1,13 +1,5 @@
 // The layers hold: who includes what, who prints, what has a kernel's name, how long files are, what docs/ shows.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
-#include <algorithm>
-#include <filesystem>
-#include <functional>
-#include <map>
 #include <regex>
 
 #include "cli/options.h"
@@ -16,9 +8,7 @@
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using testing::HasSubstr;
 using Names = std::vector<std::string>;
 
 struct SourceFile {
@@ -140,7 +130,7 @@ TEST(Layers, rooms_include_only_what_the_table_allows) {
       if (!std::regex_search(line, name, include)) continue;
       const std::string other = fs::path(name.str(1)).parent_path().string();
       if (other == room || (room == "kernels" && other.empty())) continue;
-      EXPECT_THAT(kRooms.at(room), testing::Contains(other)) << file.name << ": " << line;
+      EXPECT_THAT(kRooms.at(room), Contains(other)) << file.name << ": " << line;
     }
   }
 }

@@ -1,12 +1,5 @@
 // The rules of completed surfaces one by one, in single slices: which ends go on, how far, and how thick runs are.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-#include <vector>
-
 #include "core/reference/reference.h"
 #include "tests/support/scenes.h"
 

@@ -3,19 +3,10 @@
 //
 // The scenes are of flat things without thickness, so the reference is told that occluders are thin. Without completed
 // surfaces it then misses exactly what is hidden, and each test shows that this is a lot.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <string>
-#include <vector>
 
 #include "core/reference/reference.h"
 #include "tests/support/hidden_truth.h"
 #include "tests/support/random_scenes.h"
-#include "tests/support/scenes.h"
 
 namespace alcove {
 namespace {
@@ -25,8 +16,6 @@ using namespace test;
 constexpr double kThin = 1e-4;  // scene units
 constexpr int kRaysAcross = 160;
 constexpr int kEvery = 5;  // px from one receiver to the next
-const Plane kFloor{.point = {}, .normal = {0, 0, 1}};
-const Plane kWall{.point = {}, .normal = {1, 0, 0}};
 
 ReferenceSettings thin(double radius, Completion complete) {
   ReferenceSettings settings;
@@ -53,73 +42,47 @@ Errors errors_of(const std::vector<float>& ao, const std::vector<std::size_t>& p
   return errors;
 }
 
-/// The same frame as if its data window began so many rows lower.
-HostFrame without_upper_rows(const HostFrame& frame, int rows) {
-  HostFrame lower = frame;
-  lower.data.y += rows;
-  lower.data.height -= rows;
-  lower.depth = cropped(frame.depth, frame.data, lower.data);
-  lower.normal = cropped(frame.normal, frame.data, lower.data);
-  return lower;
-}
-
-/// Completed, the chosen surfaces have their true AO to the bound, which is a pixel's size; without, they are `gain`
-/// times as far off.
-void expect_completed(const char* what, const Scene& scene, const Shot& shot, double radius, const Chosen& chosen,
-                      double bound, double gain) {
-  const Rendering rendering = render(scene, shot);
-  ReferenceSettings settings = thin(radius, Completion::all);
-  settings.pixels = receivers(rendering, radius, kEvery, chosen);
-  ASSERT_GE(settings.pixels.size(), 30u) << what;
-  std::vector<double> truth;
-  for (const std::size_t i : settings.pixels) truth.push_back(true_ao(scene, rendering.hits[i], radius, kRaysAcross));
-  const Errors all = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
-  settings.complete = Completion::none;
-  const Errors none = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
-  EXPECT_LE(all.mean, bound) << what << ", worst " << all.worst << ", not completed " << none.mean;
-  EXPECT_LE(all.worst, 5 * bound) << what;
-  EXPECT_GE(none.mean, gain * bound) << what;
-}
-
+// Completed, the chosen surfaces have their true AO to the bound, which is a pixel's size; without, they are `gain`
+// times as far off. The column is 15 pixels wide, of which each slice misses half a one at either edge.
 TEST(Completion, what_stands_before_a_surface_hides_nothing_of_it) {
-  const Shot of_plate = Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240);
-  for (const Shot& shot : {of_plate, Shot::orthographic({5, 0.3, 1.8}, {0.3, 0, 0.6}, 5, 320, 240)})
-    expect_completed(
-        "plate", {{kFloor, kWall, parallelogram({0.8, -0.5, 0.3}, {0, 1, 0}, {0, 0, 0.8})}}, shot, 1,
-        [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; }, 0.002, 30);
-  // The column is 15 pixels wide, of which each slice misses half a one at either edge.
-  for (const Shot& shot : {Shot::perspective({4, 4, 1}, {0.3, 0.3, 0}, 45, 320, 240),
-                           Shot::orthographic({4, 4, 1}, {0.3, 0.3, 0}, 4, 320, 240)})
-    expect_completed(
-        "column",
-        {{Plane{.point = {}, .normal = {0, 1, 0}}, kWall,
-          parallelogram({0.75, 0.35, -9}, {-0.15, 0.15, 0}, {0, 0, 18})}},
-        shot, 0.8, [](const Hit& hit) { return hit.primitive == 1 && hit.position.y < 0.6; }, 0.005, 20);
-  // Half a sphere, all of which is seen.
-  const Sphere half{.center = {0.9, 0, 0.8}, .radius = 0.3, .axis = unit({2.1, 0, 2.7}), .cos_half_angle = 0.15};
-  for (const Shot& shot : {Shot::perspective({3, 0, 3.5}, {0.3, 0, 0.3}, 50, 320, 240),
-                           Shot::orthographic({3, 0, 3.5}, {0.3, 0, 0.3}, 4, 320, 240)})
-    expect_completed(
-        "sphere", {{kFloor, kWall, half}}, shot, 0.8,
-        [](const Hit& hit) { return hit.primitive == 1 && hit.position.z < 0.5; }, 0.001, 30);
+  const struct { double bound, gain; } limits[]{{0.002, 27}, {0.005, 20}, {0.001, 30}};
+  const std::vector<Hiding> cases = hidings(320, 240);
+  for (std::size_t k = 0; k < cases.size(); k++)
+    for (const Shot& shot : {cases[k].perspective, cases[k].orthographic}) {
+      SCOPED_TRACE(cases[k].what);
+      const auto& [what, scene, radius, chosen, perspective, orthographic] = cases[k];
+      const auto [bound, gain] = limits[k];
+      const Rendering rendering = render(scene, shot);
+      ReferenceSettings settings = thin(radius, Completion::all);
+      settings.pixels = receivers(rendering, radius, kEvery, chosen);
+      ASSERT_GE(settings.pixels.size(), 30u);
+      std::vector<double> truth;
+      for (const std::size_t i : settings.pixels)
+        truth.push_back(true_ao(scene, rendering.hits[i], radius, kRaysAcross));
+      const Errors all = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
+      settings.complete = Completion::none;
+      const Errors none = errors_of(reference_ao(rendering.frame, settings), settings.pixels, truth);
+      EXPECT_LE(all.mean, bound) << "worst " << all.worst << ", not completed " << none.mean;
+      EXPECT_LE(all.worst, 5 * bound);
+      EXPECT_GE(none.mean, gain * bound);
+    }
 }
 
 // What is blocked weighs by its distance, for which the segment is cut into parts; and bent normals lean away from it.
 TEST(Completion, falloffs_and_bent_normals_take_what_goes_on) {
-  const Scene scene{{kFloor, kWall, parallelogram({0.8, -0.5, 0.45}, {0, 1, 0}, {0, 0, 0.8})}};
-  const Rendering rendering = render(scene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240));
+  const Rendering rendering = render(kPlateScene, Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 320, 240));
   ReferenceSettings settings = thin(1, Completion::all);
-  settings.pixels =
-      receivers(rendering, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
+  settings.pixels = receivers(rendering, 1, kEvery, is_floor_by_the_wall);
   const std::vector<float> bent = reference_bent(rendering.frame, settings);
   std::vector<double> truth;
   const std::size_t plane = rendering.frame.data.pixels();
   for (const std::size_t i : settings.pixels) {
     Vec3 open;
-    truth.push_back(mean_over_rays(scene, rendering.hits[i], kRaysAcross, [&](const Hit& hit, const Vec3& direction) {
-      if (hit.distance >= 1) open = open + direction;
-      return std::min(1.0, hit.distance);
-    }));
+    truth.push_back(
+        mean_over_rays(kPlateScene, rendering.hits[i], kRaysAcross, [&](const Hit& hit, const Vec3& direction) {
+          if (hit.distance >= 1) open = open + direction;
+          return std::min(1.0, hit.distance);
+        }));
     const Vec3 mean = rendering.shot.view_from_world((1.0 / double(kRaysAcross * kRaysAcross)) * open);
     EXPECT_LE(length(mean - Vec3{bent[i], bent[i + plane], bent[i + 2 * plane]}), 0.01) << i;
   }
@@ -154,55 +117,40 @@ TEST(Completion, a_wall_that_ends_behind_a_column_errs_by_what_the_column_hides_
 
 // A picture of a wall whose upper part is cut off, against the whole.
 TEST(Completion, beyond_the_border_a_wall_goes_on_as_in_a_wider_picture) {
-  const Scene scene{{kFloor, kWall}};
-  for (const bool orthographic : {false, true}) {
-    const Rendering whole = render(scene, orthographic ? Shot::orthographic({5, 0.4, 1.8}, {0.3, 0, 0.6}, 5, 320, 240)
-                                                       : Shot::perspective({5, 0.4, 1.8}, {0.3, 0, 0.6}, 50, 320, 240));
-    // the first row whose wall is no more than 0.25 high
-    int cut = 0;
-    while (whole.at(160, cut).position.z > 0.25) cut++;
-    const HostFrame frame = without_upper_rows(whole.frame, cut);
+  for (const Shot& shot : {Shot::perspective({5, 0.4, 1.8}, {0.3, 0, 0.6}, 50, 320, 240),
+                           Shot::orthographic({5, 0.4, 1.8}, {0.3, 0, 0.6}, 5, 320, 240)}) {
+    const CutWall wall(shot);
     ReferenceSettings settings = thin(1, Completion::none);
-    settings.pixels =
-        receivers(whole, 1, kEvery, [](const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; });
+    settings.pixels = receivers(wall.whole, 1, kEvery, is_floor_by_the_wall);
     ASSERT_GE(settings.pixels.size(), 30u);
-    const std::vector<float> expected = reference_ao(whole.frame, settings);
-    const std::size_t rows = std::size_t(cut) * std::size_t(frame.data.width);
+    const std::vector<float> expected = reference_ao(wall.whole.frame, settings);
     std::vector<double> truth;
     for (std::size_t& i : settings.pixels) {
       truth.push_back(expected[i]);
-      i -= rows;
+      i = wall.below(i);
     }
-    const Errors none = errors_of(reference_ao(frame, settings), settings.pixels, truth);
-    EXPECT_GE(none.mean, 0.1) << orthographic;
+    const Errors none = errors_of(reference_ao(wall.frame, settings), settings.pixels, truth);
+    EXPECT_GE(none.mean, 0.1) << shot.camera.orthographic;
     for (const Completion complete : {Completion::border, Completion::all}) {
       settings.complete = complete;
-      const Errors errors = errors_of(reference_ao(frame, settings), settings.pixels, truth);
-      EXPECT_LE(errors.worst, 2e-3) << orthographic << ", completion " << int(complete);
+      const Errors errors = errors_of(reference_ao(wall.frame, settings), settings.pixels, truth);
+      EXPECT_LE(errors.worst, 2e-3) << shot.camera.orthographic << ", completion " << int(complete);
     }
   }
 }
 
 TEST(Completion, of_a_thing_before_the_sky_changes_no_bit) {
-  const Scene things[] = {{{Sphere{.center = {0, 0, 0}, .radius = 1}}},
-                          {{parallelogram({-1, -1, -0.5}, {2, 0.3, 0}, {0, 2, 1})}},
-                          {{parallelogram({-1, 0, -1}, {0.05, 0, 0}, {0, 0, 2})}}};
-  for (const Scene& scene : things) {
-    for (const bool orthographic : {false, true}) {
-      const HostFrame frame = render(scene, orthographic ? Shot::orthographic({3, -4, 2}, {0, 0, 0}, 6, 60, 48)
-                                                         : Shot::perspective({3, -4, 2}, {0, 0, 0}, 60, 60, 48))
-                                  .frame;
-      ReferenceSettings settings;
-      settings.radius = 0.8;
-      settings.slices = 8;
-      settings.thickness = ThicknessRule::width;
-      const std::vector<float> ao = reference_ao(frame, settings);
-      const std::vector<float> bent = reference_bent(frame, settings);
-      settings.complete = Completion::all;
-      EXPECT_EQ(reference_ao(frame, settings), ao);
-      EXPECT_EQ(reference_bent(frame, settings), bent);
-      EXPECT_EQ(reference_completed(frame, settings), std::vector<float>(ao.size(), 0.0f));
-    }
+  for (const HostFrame& frame : things_before_the_sky(60, 48)) {
+    ReferenceSettings settings;
+    settings.radius = 0.8;
+    settings.slices = 8;
+    settings.thickness = ThicknessRule::width;
+    const std::vector<float> ao = reference_ao(frame, settings);
+    const std::vector<float> bent = reference_bent(frame, settings);
+    settings.complete = Completion::all;
+    EXPECT_EQ(reference_ao(frame, settings), ao);
+    EXPECT_EQ(reference_bent(frame, settings), bent);
+    EXPECT_EQ(reference_completed(frame, settings), std::vector<float>(ao.size(), 0.0f));
   }
 }
 

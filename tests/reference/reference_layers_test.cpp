@@ -1,17 +1,9 @@
 // Hidden surfaces in the CPU reference: analytic peels against rays, and what must change nothing.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "core/reference/reference.h"
 #include "tests/support/hidden_truth.h"
 #include "tests/support/peels.h"
 #include "tests/support/random_scenes.h"
-#include "tests/support/scenes.h"
 
 namespace alcove {
 namespace {
@@ -19,8 +11,6 @@ namespace {
 using namespace test;
 
 constexpr int kRaysAcross = 120;
-const Plane kFloor{.point = {}, .normal = {0, 0, 1}};
-const Plane kWall{.point = {}, .normal = {1, 0, 0}};
 
 /// Occluders without thickness, but for what is known to be solid, and nothing guessed.
 ReferenceSettings known_alone(double radius) {
@@ -57,14 +47,14 @@ void expect_known(const char* what, const Scene& scene, const Shot& shot, double
 }
 
 TEST(Hidden, what_is_known_behind_others_has_its_true_ao) {
-  expect_known("a plate before a wall", {{kFloor, kWall, parallelogram({0.8, -0.5, 0.3}, {0, 1, 0}, {0, 0, 0.8})}},
+  expect_known("a plate before a wall", {{kFloor, kWallX, parallelogram({0.8, -0.5, 0.3}, {0, 1, 0}, {0, 0, 0.8})}},
                Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, 240, 180), 1, 0.01);
   expect_known(
       "a sphere before a sphere, which is solid",
       {{kFloor, Sphere{.center = {0.7, 0.1, 0.45}, .radius = 0.35}, Sphere{.center = {-0.3, 0, 0.5}, .radius = 0.4}}},
       Shot::perspective({5, 0.3, 2.6}, {0.2, 0, 0.3}, 40, 240, 180), 1, 0.01);
   expect_known("a corridor behind posts",
-               {{kFloor, kWall, Plane{.point = {0, 1.2, 0}, .normal = {0, -1, 0}},
+               {{kFloor, kWallX, Plane{.point = {0, 1.2, 0}, .normal = {0, -1, 0}},
                  parallelogram({0.9, -0.6, 0.1}, {0, 0.5, 0}, {0, 0, 1.2}),
                  parallelogram({1.2, 0.3, 0.1}, {0, 0.4, 0}, {0, 0, 1.2})}},
                Shot::perspective({5, -0.3, 1.8}, {0.3, 0.2, 0.5}, 50, 240, 180), 0.9, 0.01);

@@ -1,8 +1,6 @@
 // --accumulate where frames differ: turned cameras, other windows, damaged files, and a shot that grows; how many
 // estimates are kept; and runs that stop.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
 #include "core/run/frame_files.h"
 #include "core/run/memory.h"
 #include "core/run/plan.h"
@@ -13,11 +11,7 @@
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using nlohmann::json;
-using testing::ContainsRegex;
-using testing::HasSubstr;
 
 const Room kMuchRoom{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
 

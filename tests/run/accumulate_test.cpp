@@ -1,17 +1,12 @@
 // Runs with --accumulate: what a mean of many frames gains, what it leaves alone, and that nothing changes its bits.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
 #include "tests/support/long_tests.h"
 #include "tests/support/walked_shot.h"
 
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using nlohmann::json;
-using testing::HasSubstr;
 
 constexpr int kFrames = 9;
 constexpr Window kWindow{0, 0, 96, 54};
@@ -203,7 +198,7 @@ TEST_F(Accumulated, what_does_not_count_blocks_in_no_frame_of_a_mean) {
   }
   write_plane(everything, "Y", std::vector<float>(kWindow.pixels(), 1), kWindow);
   for (const auto& plane : ao_of(typed("--accumulate 2 --set ignore=" + everything), kShort))
-    EXPECT_THAT(plane, testing::Each(1.0f));
+    EXPECT_THAT(plane, Each(1.0f));
   const Options ignored = typed("--set ignore=" + folder.path() + "/board.%04d.exr");
   const Frames with = ao_of(kSmooth, kShort), truth = ao_of(joined(kSmooth, ignored), kShort);
   EXPECT_GT(rmse_of(with, truth), 0.02) << "the board blocks";
@@ -308,8 +303,8 @@ TEST_F(Accumulated, a_frame_beside_it_that_lacks_its_place_is_refused_by_the_opt
     const Finished finished = run(typed("--normal none --frames 1 --threads 1 --camera " + folder.path() +
                                         "/camera.%d.json --motion " + in + "/f.%04d.exr " + option + " 1"));
     EXPECT_EQ(finished.code, 3) << finished;
-    EXPECT_THAT(finished.err, testing::AllOf(HasSubstr("f.0002.exr"), HasSubstr(std::string(option) + " needs"),
-                                             testing::Not(HasSubstr(other))));
+    EXPECT_THAT(finished.err,
+                AllOf(HasSubstr("f.0002.exr"), HasSubstr(std::string(option) + " needs"), Not(HasSubstr(other))));
   }
 }
 

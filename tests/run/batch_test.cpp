@@ -1,22 +1,12 @@
 // Sequences: which frames are computed, from and to which files, and what is told of them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
 #include "core/run/plan.h"
 #include "tests/support/sequence_folder.h"
 
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::StartsWith;
 
 class Batch : public SequenceFolder {
  protected:
@@ -123,7 +113,7 @@ TEST_F(Batch, a_dry_run_tells_the_plan_and_does_nothing) {
   EXPECT_EQ(names_in(folder.path()), before);
   done();
   fs::remove(output(2));
-  EXPECT_THAT(lines_of(run({"--dry-run", "--resume"}).out), testing::Contains(testing::MatchesRegex("kept +3: .*")));
+  EXPECT_THAT(lines_of(run({"--dry-run", "--resume"}).out), Contains(testing::MatchesRegex("kept +3: .*")));
 }
 
 TEST_F(Batch, guesses_are_made_once_by_the_first_frame_that_shows_anything) {
@@ -182,10 +172,9 @@ TEST_F(Batch, progress_for_farms_goes_to_the_standard_output) {
     EXPECT_TRUE(std::ranges::is_sorted(percents)) << out;
     return percents;
   };
-  EXPECT_THAT(percents_of(run({"--progress", "percent", "--threads", "1"}).out),
-              testing::IsSupersetOf({25, 50, 75, 100}));
+  EXPECT_THAT(percents_of(run({"--progress", "percent", "--threads", "1"}).out), IsSupersetOf({25, 50, 75, 100}));
   const Finished quiet = run({"--progress", "percent", "--threads", "1", "-q"});
-  EXPECT_THAT(percents_of(quiet.out), testing::IsSupersetOf({25, 50, 75, 100})) << quiet;
+  EXPECT_THAT(percents_of(quiet.out), IsSupersetOf({25, 50, 75, 100})) << quiet;
   EXPECT_THAT(quiet.err, IsEmpty());
   const auto lines = lines_of(run({"--progress", "openjd", "--threads", "1"}).out);
   const auto at = [&](const char* begin) {

@@ -1,35 +1,13 @@
 // The composite is the beauty's file with another beauty: every other channel, part and attribute as it was.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ImfChannelList.h>
-#include <ImfDeepFrameBuffer.h>
-#include <ImfDeepScanLineInputPart.h>
-#include <ImfDeepScanLineOutputPart.h>
-#include <ImfFrameBuffer.h>
-#include <ImfInputPart.h>
-#include <ImfMultiPartInputFile.h>
-#include <ImfMultiPartOutputFile.h>
-#include <ImfOutputFile.h>
-#include <ImfOutputPart.h>
-#include <ImfPartType.h>
-#include <ImfStringAttribute.h>
-#include <ImfTiledInputPart.h>
-#include <ImfTiledOutputPart.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <half.h>
-
-#include <cstring>
-
 #include "tests/support/command_line.h"
+#include "tests/support/openexr.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
-using testing::HasSubstr;
 using Plane = std::vector<float>;
-
-Imath::Box2i box_of(const Window& w) { return {{w.x, w.y}, {w.x + w.width - 1, w.y + w.height - 1}}; }
 
 /// What a part holds: its attributes as they are stored, and of each channel the samples, bit for bit.
 struct PartContent {
@@ -301,7 +279,7 @@ TEST_F(CompositeLayers, may_take_the_ao_too) {
   composited("--set ao-name=shadow.Y");
   EXPECT_EQ(read_exr_image(ao).names, Options{"shadow.Y"});
   composited("--set ao-name=shadow --set ao-channels=rgb");
-  EXPECT_THAT(read_exr_image(ao).names, testing::UnorderedElementsAre("shadow.R", "shadow.G", "shadow.B"));
+  EXPECT_THAT(read_exr_image(ao).names, UnorderedElementsAre("shadow.R", "shadow.G", "shadow.B"));
 }
 
 TEST_F(CompositeLayers, of_a_region_are_cut_to_it_where_they_are_of_its_window) {
@@ -333,9 +311,9 @@ TEST_F(CompositeLayers, of_frames_that_are_done_are_left_by_resume_and_others_ar
   EXPECT_TRUE(is_made("--set append-ao=AO"));
   EXPECT_TRUE(is_made("--set gain=2"));
   EXPECT_TRUE(is_made("")) << "what is there is another one";
-  const auto whole = std::filesystem::file_size(composite);
+  const auto whole = fs::file_size(composite);
   for (const double part : {0.999, 0.9, 0.5}) {
-    std::filesystem::resize_file(composite, std::uintmax_t(part * double(whole)));
+    fs::resize_file(composite, std::uintmax_t(part * double(whole)));
     EXPECT_TRUE(is_made("")) << part << " of it is left";
   }
 }
@@ -371,7 +349,7 @@ TEST_F(CompositeLayers, mistakes_are_named_in_one_line) {
     expect_refused(code, more, texts);
   }
   // The file is cut within its pixels.
-  std::filesystem::resize_file(beauty, std::filesystem::file_size(beauty) * 3 / 4);
+  fs::resize_file(beauty, fs::file_size(beauty) * 3 / 4);
   expect_refused(3, options, {beauty});
   // A beauty of one colour is none.
   FrameFile file = wall_frame();
@@ -382,10 +360,10 @@ TEST_F(CompositeLayers, mistakes_are_named_in_one_line) {
     file.write(frame);
     const Finished finished = run({"--composite", composite});
     EXPECT_EQ(finished.code, 3) << finished;
-    EXPECT_THAT(finished.err, testing::AllOf(HasSubstr(frame), HasSubstr("Combined"), HasSubstr("--beauty")));
+    EXPECT_THAT(finished.err, AllOf(HasSubstr(frame), HasSubstr("Combined"), HasSubstr("--beauty")));
     EXPECT_EQ(finished.err.find("black") != std::string::npos, color == 0) << finished;
   }
-  EXPECT_FALSE(std::filesystem::exists(composite));
+  EXPECT_FALSE(fs::exists(composite));
 }
 
 /// A beauty of several lights, and the composite by plain arithmetic.

@@ -1,13 +1,6 @@
 // Runs with deep files: the bits of --behind, a frame of samples alone, what inspect says, and every mistake in files
 // and options.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-
 #include "tests/support/command_line.h"
 #include "tests/support/deep_file.h"
 
@@ -15,9 +8,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::HasSubstr;
-using testing::Not;
 
 /// A plate before the wall and the floor, and what lies behind them, as peels and as samples.
 class DeepRun : public CommandLine {
@@ -90,8 +80,7 @@ class DeepRun : public CommandLine {
     return finished.code == 0 ? read_exr_image(ao).pixels : std::vector<float>();
   }
   json inspected(const Options& inputs) const {
-    const Finished finished = run_program(joined({"inspect", "--json", "--camera", camera}, inputs));
-    EXPECT_EQ(finished.code, 0) << finished;
+    const Finished finished = run_well(joined({"inspect", "--json", "--camera", camera}, inputs));
     return json::parse(finished.out);
   }
 
@@ -161,7 +150,7 @@ TEST_F(DeepRun, samples_are_the_depth_of_the_frames_around_too) {
   json cameras = wall_camera();
   for (int number = 1; number <= 3; number++) {
     normals.write(folder / fmt::format("n.{}.exr", number));
-    std::filesystem::copy_file(deep, folder / fmt::format("d.{}.exr", number));
+    fs::copy_file(deep, folder / fmt::format("d.{}.exr", number));
     json matrix = cameras["world_to_camera"];
     matrix[0][3] = -0.2 * number;
     cameras["frames"].push_back({{"frame", number}, {"world_to_camera", matrix}});
@@ -169,10 +158,8 @@ TEST_F(DeepRun, samples_are_the_depth_of_the_frames_around_too) {
   write_bytes(camera, cameras.dump());
   for (const Options& inputs :
        {Options{folder / "n.%d.exr", "--deep", folder / "d.%d.exr"}, Options{folder / "d.%d.exr"}}) {
-    const Finished finished =
-        run_program(joined(joined({"run"}, inputs), typed("-o " + folder.path() + "/out.%d.exr --camera " + camera +
-                                                          " --radius 1 --around 1 --frames 2 --aov depth,hidden")));
-    ASSERT_EQ(finished.code, 0) << finished;
+    run_well(joined(joined({"run"}, inputs), typed("-o " + folder.path() + "/out.%d.exr --camera " + camera +
+                                                   " --radius 1 --around 1 --frames 2 --aov depth,hidden")));
     EXPECT_THAT(attribute_of_whole_exr(folder / "out.2.exr", "alcove/hidden").value_or(""), HasSubstr("frames 1, 3"));
   }
 }
@@ -277,7 +264,7 @@ TEST_F(DeepRun, inspect_says_what_samples_hold) {
   const std::string text = run_program({"inspect", deep, "--camera", camera, "-v"}).out;
   EXPECT_THAT(text, HasSubstr("rendered in one go"));
   EXPECT_THAT(text, Not(HasSubstr("behind1"))) << "no pixel has a second surface";
-  EXPECT_THAT(text, testing::ContainsRegex("as planar alone [0-9.]+ % of the smooth places are flat"));
+  EXPECT_THAT(text, ContainsRegex("as planar alone [0-9.]+ % of the smooth places are flat"));
 }
 
 }  // namespace

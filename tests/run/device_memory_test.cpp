@@ -1,18 +1,12 @@
 // Runs keep within the memory that there is: a GPU with little of its own gets fewer frames at once, then tiles, and
 // always the same bits; the host keeps within --memory as the kernel counts it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
 #include "tests/support/sequence_folder.h"
 
 namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr double kMiB = 1 << 20, kRich = 1024;
 constexpr int kFrames = 8;
@@ -37,8 +31,7 @@ class DeviceMemory : public SequenceFolder {
   json expect_whole(const Surroundings& surroundings, const Options& more = kOptions) {
     remove_outputs();
     said = "";
-    const Finished finished = run(joined(more, {"--stats", folder / "stats.json"}), surroundings);
-    EXPECT_EQ(finished.code, 0) << finished;
+    const Finished finished = done(joined(more, {"--stats", folder / "stats.json"}), surroundings);
     said = finished.err;
     if (whole.empty()) whole = outputs();
     EXPECT_TRUE(outputs() == whole);
@@ -106,7 +99,7 @@ TEST_F(DeviceMemory, that_is_not_enough_fails_the_frame_by_name) {
     const Finished finished = run(joined(kOptions, typed(more)), with(mebibytes, kRich));
     EXPECT_EQ(finished.code, 5) << finished;
     EXPECT_THAT(finished.err, AllOf(HasSubstr(text), HasSubstr("no room for a buffer")));
-    EXPECT_THAT(names_in(out), testing::IsEmpty());
+    EXPECT_THAT(names_in(out), IsEmpty());
   }
 }
 

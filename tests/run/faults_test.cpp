@@ -2,13 +2,11 @@
 // --resume makes good.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcntl.h>
-#include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <thread>
 
@@ -17,14 +15,7 @@
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
-using testing::StartsWith;
 
 class Faults : public SequenceFolder {
  protected:
@@ -108,10 +99,8 @@ TEST_F(Faults, a_run_that_nohup_started_outlives_its_terminal) {
   write_frames(1, 60);
   Surroundings surroundings = signalled(out, 3, SIGHUP);
   surroundings.program = "/bin/sh";
-  const Finished finished = run_program(
-      joined({"-c", "trap '' HUP; exec \"$0\" \"$@\"", ALCOVE_PROGRAM, "run"}, arguments({"--noise", "animated"})),
-      surroundings);
-  EXPECT_EQ(finished.code, 0) << finished;
+  run_well(joined({"-c", "trap '' HUP; exec \"$0\" \"$@\"", ALCOVE_PROGRAM, "run"}, arguments({"--noise", "animated"})),
+           surroundings);
   EXPECT_THAT(names_in(out), SizeIs(60));
 }
 

@@ -1,22 +1,12 @@
 // What is looked at before a run: holes of sequences, the frame's number, all that is missing, the radius.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
 #include "tests/support/exr_header.h"
 #include "tests/support/sequence_folder.h"
 
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 
 class Holes : public SequenceFolder {
  protected:
@@ -207,9 +197,9 @@ TEST_F(Missing, is_all_listed_at_once_with_the_command_that_would_do) {
   EXPECT_EQ(some.code, 2);
   EXPECT_THAT(some.err, Not(HasSubstr("a camera: ")));
   const std::string program = "alcove ", proposed = lines_of(some.err).back();
-  ASSERT_THAT(proposed, testing::StartsWith(program));
+  ASSERT_THAT(proposed, StartsWith(program));
   const Options arguments = typed(proposed.substr(program.size()));
-  EXPECT_THAT(arguments, testing::IsSupersetOf({"--type", "float", "--camera", "-o", "ao.exr", "--radius"}));
+  EXPECT_THAT(arguments, IsSupersetOf({"--type", "float", "--camera", "-o", "ao.exr", "--radius"}));
   EXPECT_EQ(run_program(arguments, {.folder = folder.path()}).code, 0);
   EXPECT_THAT(run_program({"inspect", frame, "--camera", camera}).out,
               HasSubstr(" --radius " + *(std::ranges::find(arguments, "--radius") + 1)));

@@ -1,12 +1,6 @@
 // Runs with --behind: which bits depend on it and which do not, what is counted and written, and every mistake in the
 // files.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <filesystem>
-
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
@@ -14,10 +8,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 /// A plate that stands 2 in front of the wall and above the floor, and layers of what it hides and of what the wall
 /// hides.
@@ -116,7 +106,7 @@ TEST_F(HiddenRun, counts_what_is_kept_and_what_is_dropped) {
 
 TEST_F(HiddenRun, draws_how_many_there_are) {
   done(behind("plate wall", "--set debug=hidden"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "ao.hidden.png"));
+  EXPECT_TRUE(fs::exists(folder / "ao.hidden.png"));
 }
 
 TEST_F(HiddenRun, resume_sees_a_layer_that_is_changed_or_added) {
@@ -129,9 +119,9 @@ TEST_F(HiddenRun, resume_sees_a_layer_that_is_changed_or_added) {
   EXPECT_TRUE(kept("plate wall"));
   EXPECT_FALSE(kept("plate wall", "--behind-kind fronts"));
   EXPECT_FALSE(kept("plate wall"));
-  const auto written = std::filesystem::last_write_time(folder / "wall.exr");
+  const auto written = fs::last_write_time(folder / "wall.exr");
   write_layer("wall.exr", std::vector<float>(kWallWindow.pixels(), 7));
-  std::filesystem::last_write_time(folder / "wall.exr", written);
+  fs::last_write_time(folder / "wall.exr", written);
   EXPECT_FALSE(kept("plate wall")) << "by its bytes, since its time is as it was";
 }
 
@@ -220,7 +210,7 @@ TEST_F(HiddenRun, layers_without_use_are_noted) {
                                     {"wall same", "--behind-kind surfaces,backs"},  // that they are backs is new
                                     {"thickness", "--behind-kind thickness"}})
     EXPECT_THAT(said(names, more),
-                Not(testing::ContainsRegex("nothing-hidden|empty-layer|before-first|nothing new|said-otherwise")));
+                Not(ContainsRegex("nothing-hidden|empty-layer|before-first|nothing new|said-otherwise")));
 }
 
 TEST_F(HiddenRun, a_dry_run_names_the_files_and_their_memory) {
@@ -242,17 +232,16 @@ TEST_F(HiddenRun, a_dry_run_names_the_files_and_their_memory) {
 
 TEST_F(HiddenRun, layers_of_a_sequence_go_with_its_frames) {
   for (int number = 1; number <= 2; number++) {
-    std::filesystem::copy_file(frame, folder / fmt::format("f.{}.exr", number));
+    fs::copy_file(frame, folder / fmt::format("f.{}.exr", number));
     write_layer(fmt::format("peel.{}.exr", number), std::vector<float>(kWallWindow.pixels(), float(8 + number)));
   }
   const Options sequence{
       "run",      folder / "f.%d.exr",    "-o",    folder / "out.%d.exr", "--camera", camera,    "--radius", "1",
       "--behind", folder / "peel.%d.exr", "--aov", "ao,hidden",           "--set",    "hidden=1"};
-  const Finished finished = run_program(sequence);
-  ASSERT_EQ(finished.code, 0) << finished;
+  run_well(sequence);
   for (int number = 1; number <= 2; number++)
     EXPECT_EQ(read_exr_image(folder / fmt::format("out.{}.exr", number), {"hidden1.Z"}).pixels[7], float(8 + number));
-  std::filesystem::remove(folder / "peel.2.exr");
+  fs::remove(folder / "peel.2.exr");
   test::expect_refused(run_program(sequence), 3, {"--behind"});
 }
 
@@ -264,7 +253,7 @@ TEST_F(HiddenRun, inspect_proposes_channels_that_may_be_hidden_and_reads_none_of
   const json found = json::parse(run_program({"inspect", frame, "--camera", camera, "--json"}).out);
   std::vector<std::string> channels;
   for (const auto& guess : found["hidden"]) channels.push_back(guess["channel"]);
-  EXPECT_THAT(channels, testing::UnorderedElementsAre("Layer2.Z", "zback", "Peel3.Z", "depth_back"));
+  EXPECT_THAT(channels, UnorderedElementsAre("Layer2.Z", "zback", "Peel3.Z", "depth_back"));
   EXPECT_THAT(found["hidden_options"].get<std::string>(),
               AllOf(HasSubstr("--behind " + frame), HasSubstr("--set behind-channel"), HasSubstr("backs")));
   EXPECT_THAT(found["command"].get<std::string>(), Not(HasSubstr("--behind")));

@@ -1,7 +1,5 @@
 // Exact searches count the pixels of a line in 16 bits: longer frames are cut, and never wrong in silence.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
 #include "core/chain/compute.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
@@ -10,8 +8,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::AllOf;
-using testing::HasSubstr;
 
 constexpr int kLongest = 65535;  // px that an exact search can number along a line
 
@@ -40,7 +36,7 @@ class LongLines : public CommandLine {
   int parts(const std::string& more = {}) const {
     const Finished finished = search("--search exact --radius 4 " + more);
     EXPECT_EQ(finished.code, 0) << finished;
-    return nlohmann::json::parse(read_bytes(stats))["frames"][0]["parts"];
+    return json::parse(read_bytes(stats))["frames"][0]["parts"];
   }
   const std::string stats = folder / "stats.json";
   int columns = 0;
@@ -71,15 +67,11 @@ TEST_F(LongLines, that_no_part_can_hold_or_number_are_refused_with_what_mends_it
   write_steps(kLongest + 1, 2);
   for (const auto& [more, text] : {std::pair(std::string("--radius 60000"), "65535"),
                                    {"--radius 4 --preview " + (folder / "p.png"), "--preview"}}) {
-    const Finished finished = search("--search exact " + more);
-    EXPECT_EQ(finished.code, 5) << finished;
-    EXPECT_THAT(finished.err, AllOf(HasSubstr(text), HasSubstr("--search steps")));
+    test::expect_refused(search("--search exact " + more), 5, {text, "--search steps"});
   }
   EXPECT_EQ(search("--search steps --steps 4 --radius 60000").code, 0);
   write_steps(131072, 1);
-  const Finished finished = search("--search exact --radius 4");
-  EXPECT_EQ(finished.code, 3) << finished;
-  EXPECT_THAT(finished.err, AllOf(HasSubstr("131072 px"), HasSubstr("131070"), HasSubstr("--search steps")));
+  test::expect_refused(search("--search exact --radius 4"), 3, {"131072 px", "131070", "--search steps"});
 }
 
 TEST(Chain, refuses_lines_that_an_exact_search_cannot_number) {

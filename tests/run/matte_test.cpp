@@ -1,12 +1,7 @@
 // AO only where it is wanted: within a matte as without one, and nothing computed elsewhere.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <bit>
-#include <cmath>
-
-#include "core/frame/channels.h"
 #include "core/frame/matte.h"
+#include "core/frame/channels.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 
@@ -14,10 +9,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 using Plane = std::vector<float>;
 
 const Window kWindow{0, 0, 160, 90};
@@ -88,11 +79,11 @@ TEST_F(Matte, within_it_the_ao_is_that_of_the_whole_frame_and_elsewhere_what_is_
 }
 
 TEST_F(Matte, of_zeros_everything_is_outside_and_nothing_is_computed) {
-  EXPECT_THAT(within(Plane(kWindow.pixels(), 0)), testing::Each(1.0F));
+  EXPECT_THAT(within(Plane(kWindow.pixels(), 0)), Each(1.0F));
   EXPECT_EQ(tiles()["computed"], 0);
   Plane none(kWindow.pixels(), std::numeric_limits<float>::quiet_NaN());
   none[0] = -1;
-  EXPECT_THAT(within(none), testing::Each(1.0F)) << "no number";
+  EXPECT_THAT(within(none), Each(1.0F)) << "no number";
 }
 
 TEST_F(Matte, may_be_a_file_of_its_own_or_what_numbered_objects_cover) {
@@ -328,10 +319,8 @@ TEST_F(Matte, one_that_moves_along_a_sequence_gives_each_frame_its_own) {
     alone.push_back(within(matte));
     with("Matte.Y", matte).write(folder / fmt::format("shot.{:04}.exr", i));
   }
-  const Finished finished =
-      run_program(typed("run " + folder.path() + "/shot.####.exr -o " + folder.path() + "/out.####.exr --camera " +
-                        camera + " --radius 1 --type float --threads 1 --set matte-channel=Matte.Y"));
-  ASSERT_EQ(finished.code, 0) << finished;
+  run_well(typed("run " + folder.path() + "/shot.####.exr -o " + folder.path() + "/out.####.exr --camera " + camera +
+                 " --radius 1 --type float --threads 1 --set matte-channel=Matte.Y"));
   for (int i = 1; i <= 3; i++)
     EXPECT_EQ(read_exr_image(folder / fmt::format("out.{:04}.exr", i)).pixels, alone[std::size_t(i - 1)]) << i;
 }

@@ -1,7 +1,5 @@
 // The memory that a frame is expected to take, before its pixels are read, is no less than what its buffers then take.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
 #include "core/run/frame_files.h"
 #include "core/run/shot.h"
 #include "core/run/tiles.h"

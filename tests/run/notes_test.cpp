@@ -1,9 +1,5 @@
 // Warnings and notes: where they are said and recorded, and how they end a run.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <cmath>
-
 #include "core/base/note.h"
 #include "tests/support/dwa_frame.h"
 #include "tests/support/exr_header.h"
@@ -12,16 +8,7 @@
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::StartsWith;
 
 /// A frame with a warning, since its depth is half.
 FrameFile half_frame() {
@@ -144,8 +131,8 @@ TEST_F(Notes, that_are_warnings_fail_where_they_count_as_errors) {
       const Finished finished =
           run({option, "--depth-kind", "planar", "--normal-space", "world", "--normal-encoding", "signed"});
       EXPECT_EQ(finished.code, 3) << finished;
-      EXPECT_THAT(finished.err, AllOf(HasSubstr(frame), HasSubstr(said),
-                                      testing::ContainsRegex("\\[(half-depth|repaired-normals)\\]")));
+      EXPECT_THAT(finished.err,
+                  AllOf(HasSubstr(frame), HasSubstr(said), ContainsRegex("\\[(half-depth|repaired-normals)\\]")));
       EXPECT_EQ(read_bytes(ao), "what was there");
       EXPECT_THAT(names_in(folder.path()), ElementsAre("ao.exr", "camera.json", "wall.0042.exr"));
     }

@@ -1,10 +1,5 @@
 // What does not count blocks nothing: as if it were not there where it is known what is behind it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <bit>
-#include <cmath>
-
 #include "core/frame/matte.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
@@ -76,7 +71,7 @@ class Occluders : public CommandLine {
 
 TEST_F(Occluders, a_choice_that_ignores_everything_leaves_all_open) {
   set_matte(Plane(kWindow.pixels(), 1));
-  for (const std::string search : kSearches) EXPECT_THAT(ao_of(search + ignore), testing::Each(1.0F)) << search;
+  for (const std::string search : kSearches) EXPECT_THAT(ao_of(search + ignore), Each(1.0F)) << search;
 }
 
 TEST_F(Occluders, what_is_ignored_is_as_if_it_were_not_there_where_it_is_known_what_is_behind) {
@@ -203,13 +198,12 @@ TEST_F(Occluders, that_change_along_a_sequence_are_each_frame_s_own) {
     set_matte(matte);
     alone.push_back(ao_of(ignore));
     file.write(folder / fmt::format("shot.{:04}.exr", alone.size()));
-    std::filesystem::copy_file(board, folder / fmt::format("matte.{:04}.exr", alone.size()));
+    fs::copy_file(board, folder / fmt::format("matte.{:04}.exr", alone.size()));
   }
   EXPECT_NE(alone[0], alone[1]);
   const std::string shot = folder / "shot.####.exr", mattes = folder / "matte.####.exr";
-  const Finished finished = run_program(typed("run " + shot + " -o " + folder.path() + "/out.####.exr --camera " +
-                                              camera + " --radius 1 --type float --threads 1 --set ignore=" + mattes));
-  ASSERT_EQ(finished.code, 0) << finished;
+  run_well(typed("run " + shot + " -o " + folder.path() + "/out.####.exr --camera " + camera +
+                 " --radius 1 --type float --threads 1 --set ignore=" + mattes));
   for (std::size_t i = 0; i < alone.size(); i++)
     EXPECT_EQ(read_exr_image(folder / fmt::format("out.{:04}.exr", i + 1)).pixels, alone[i]) << i;
 }

@@ -1,9 +1,5 @@
 // What a preview shows: the AO, the composite, or the beauty beside it, through the display and view that are named.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 
 namespace alcove {
@@ -81,7 +77,7 @@ TEST_F(Preview, of_the_composite_may_be_of_the_ao_or_have_the_beauty_beside_it) 
   ASSERT_EQ(split.window.height, kWallWindow.height);
   EXPECT_EQ(columns(split, 0, width), columns(beauty, 0, width));
   EXPECT_EQ(columns(split, width + 4, width), columns(composite, 0, width));
-  EXPECT_THAT(columns(split, width, 4), testing::Each(testing::FloatNear(0.5F, 0.01F)));
+  EXPECT_THAT(columns(split, width, 4), Each(testing::FloatNear(0.5F, 0.01F)));
 }
 
 TEST_F(Preview, goes_through_the_display_and_the_view_that_are_named) {

@@ -1,7 +1,5 @@
 // Other ways to the same result give the same bits: threads, chunks, orders, and regions of frames.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
 #include <regex>
 
 #include "tests/support/deep_file.h"
@@ -11,7 +9,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
 
 constexpr Window kWindow{0, 0, 128, 72}, kOverscan{-16, -8, 160, 88};
 constexpr int kOverscanFrame = 9;
@@ -109,10 +106,8 @@ TEST_F(SameBits, of_a_region_and_the_whole_at_less_cost) {
 TEST_F(SameBits, of_a_region_by_error_take_the_tiles_that_decide) {
   const std::string interior = ALCOVE_SOURCE_DIR "/examples/interior", stats = folder / "stats.json";
   const auto width_of = [&](const std::string& search) {
-    const Finished finished =
-        run_program(typed("run " + interior + ".gbuffer.exr --camera " + interior + ".camera.json -o " + output(1) +
-                          " --stats " + stats + " --roi 480,270,20,16 --radius 0.02 --set complete=none " + search));
-    EXPECT_EQ(finished.code, 0) << finished;
+    run_well(typed("run " + interior + ".gbuffer.exr --camera " + interior + ".camera.json -o " + output(1) +
+                   " --stats " + stats + " --roi 480,270,20,16 --radius 0.02 --set complete=none " + search));
     return std::sqrt(json::parse(read_bytes(stats))["frames"][0]["pixels"].get<double>());
   };
   EXPECT_GE(width_of("--tolerance 0.004"), width_of("--search exact --denoise none") + 70) << "39 px on either side";
@@ -134,8 +129,7 @@ TEST_F(SameBits, of_a_region_that_shows_too_little_are_read_as_those_of_the_whol
   silent.erase("depth");
   write_bytes(camera, silent.dump());
   const auto computed = [&](const char* more) {
-    EXPECT_THAT(done(typed(more)).err, testing::HasSubstr("depth kind taken as inverse"))
-        << "or else nothing is proved";
+    EXPECT_THAT(done(typed(more)).err, HasSubstr("depth kind taken as inverse")) << "or else nothing is proved";
     return read_exr_image(output(1));
   };
   const Image whole = computed("--radius 0.1"), part = computed("--radius 0.1 --roi 10,12,24,9");

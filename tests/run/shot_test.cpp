@@ -1,11 +1,9 @@
 // What the frames of a shot take from each other: the same whatever is computed beside them, each read once.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
+#include "core/run/shot.h"
 #include "core/run/frame_files.h"
 #include "core/run/memory.h"
 #include "core/run/plan.h"
-#include "core/run/shot.h"
 #include "tests/support/deep_file.h"
 #include "tests/support/device.h"
 #include "tests/support/walked_shot.h"
@@ -13,14 +11,8 @@
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::ElementsAre;
 using testing::Eq;
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr int kFrames = 7;
 

@@ -1,11 +1,8 @@
 // The same run under other surroundings: threads, homes, folders, names, links. What it computes stays the same.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "core/base/file.h"
@@ -15,11 +12,7 @@
 namespace alcove {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 
 class SurroundingsTest : public CommandLine {
  protected:
@@ -46,8 +39,7 @@ TEST_F(SurroundingsTest, that_repeat_or_thread_a_run_give_the_same_file_and_a_se
 }
 
 TEST_F(SurroundingsTest, a_quiet_run_prints_nothing_and_a_verbose_one_every_pass) {
-  const Finished quiet = run({"--quiet"}), plain = run({}), verbose = run({"-v"});
-  EXPECT_EQ(quiet.code, 0);
+  const Finished quiet = done({"--quiet"}), plain = run({}), verbose = run({"-v"});
   EXPECT_EQ(quiet.out + quiet.err, "");
   EXPECT_THAT(plain.out, IsEmpty());
   EXPECT_THAT(plain.err, HasSubstr("wall.0042.exr"));
@@ -110,7 +102,7 @@ TEST_F(SurroundingsTest, presets_are_found_beside_the_program_above_it_and_in_sh
     write_bytes(install + "/" + place + "/mine.toml", "slices = 4\n");
     const Finished finished = run_program(
         {"presets"}, {.environment = {{"ALCOVE_PRESETS", std::nullopt}}, .program = install + "/bin/alcove"});
-    EXPECT_THAT(finished.out, testing::HasSubstr("\n  mine\n")) << place << " " << finished;
+    EXPECT_THAT(finished.out, HasSubstr("\n  mine\n")) << place << " " << finished;
   }
 }
 
@@ -122,9 +114,7 @@ TEST_F(SurroundingsTest, help_needs_no_presets) {
 
 TEST_F(SurroundingsTest, relative_paths_are_relative_to_the_working_directory_and_may_begin_with_a_dash) {
   const auto run_here = [&](const std::string& arguments) {
-    const Finished finished = run_program(typed("run --camera camera.json --radius 1 " + arguments),
-                                          {.folder = folder.path(), .environment = {}});
-    EXPECT_EQ(finished.code, 0) << finished;
+    run_well(typed("run --camera camera.json --radius 1 " + arguments), {.folder = folder.path(), .environment = {}});
   };
   run_here("wall.0042.exr -o ./ao.exr");
   const std::string relative = read_bytes(ao);
@@ -139,13 +129,11 @@ TEST_F(SurroundingsTest, file_names_may_hold_spaces_and_any_script) {
     const std::string shot = folder / (name + "/"), of = shot + name;
     fs::create_directory(shot);
     for (const char* file : {"wall.0042.exr", "camera.json"}) fs::copy_file(folder / file, of + file);
-    const Finished finished =
-        run_program({"run", of + "wall.0042.exr", "-o", of + " ao.exr", "--camera", of + "camera.json", "--radius", "1",
-                     "--preview", of + ".png", "--stats", of + ".json"});
-    EXPECT_EQ(finished.code, 0) << name << finished;
+    run_well({"run", of + "wall.0042.exr", "-o", of + " ao.exr", "--camera", of + "camera.json", "--radius", "1",
+              "--preview", of + ".png", "--stats", of + ".json"});
     EXPECT_EQ(names_in(shot).size(), 5) << name;
     EXPECT_EQ(text_in(read_header(of + " ao.exr"), "alcove/input"), name + "wall.0042.exr");
-    EXPECT_TRUE(nlohmann::json::accept(read_bytes(of + ".json"))) << name;
+    EXPECT_TRUE(json::accept(read_bytes(of + ".json"))) << name;
   }
 }
 
@@ -185,7 +173,7 @@ TEST_F(SurroundingsTest, a_folder_that_is_a_symbolic_link_is_followed) {
   fs::create_directory(folder / "v2");
   fs::create_directory_symlink("v2", folder / "latest");
   EXPECT_EQ(run_program({"run", frame, "-o", folder / "latest/ao.exr", "--camera", camera, "--radius", "1"}).code, 0);
-  EXPECT_THAT(names_in(folder / "v2"), testing::ElementsAre("ao.exr"));
+  EXPECT_THAT(names_in(folder / "v2"), ElementsAre("ao.exr"));
 }
 
 TEST_F(SurroundingsTest, what_poses_as_an_unfinished_file_is_neither_followed_nor_waited_for) {
@@ -209,8 +197,7 @@ TEST_F(SurroundingsTest, a_run_replaces_what_was_there_and_no_reader_sees_half_a
   std::string word;
   before >> word;
   EXPECT_EQ(word, "before");
-  EXPECT_THAT(names_in(folder.path()),
-              testing::UnorderedElementsAre("ao.exr", "camera.json", "p.png", "wall.0042.exr"));
+  EXPECT_THAT(names_in(folder.path()), UnorderedElementsAre("ao.exr", "camera.json", "p.png", "wall.0042.exr"));
 }
 
 }  // namespace

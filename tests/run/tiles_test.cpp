@@ -1,10 +1,5 @@
 // Frames that are computed in tiles have the bits of frames that are computed at once.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <cstdlib>
-
 #include "tests/support/exr_header.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/walked_shot.h"
@@ -13,9 +8,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using nlohmann::json;
-using testing::AllOf;
-using testing::HasSubstr;
 
 /// Bytes for frames: too few for any frame of this test as a whole.
 constexpr std::uint64_t kLittleMemory = 6 << 20;
@@ -238,10 +230,10 @@ TEST_F(Tiles, that_are_refused_leave_no_folder) {
   const RunReport report = run_with(2 * little_memory, options);
   ASSERT_TRUE(report.stop);
   EXPECT_THAT(report.stop->what(), HasSubstr("repaired-normals")) << "or else no tile was begun";
-  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
-  std::filesystem::create_directories(inner);
+  EXPECT_FALSE(fs::exists(folder / "new"));
+  fs::create_directories(inner);
   ASSERT_TRUE(run_with(2 * little_memory, options).stop);
-  EXPECT_TRUE(std::filesystem::exists(inner)) << "it was there before";
+  EXPECT_TRUE(fs::exists(inner)) << "it was there before";
 }
 
 TEST_F(Tiles, are_told_of_in_a_note_and_decode_each_row_once) {

@@ -3,7 +3,6 @@
 #include "tests/support/bent.h"
 
 #include "core/chain/chain.h"
-#include "core/chain/compute.h"
 #include "core/chain/estimate.h"
 #include "tests/support/device.h"
 

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "core/base/settings.h"
 #include "core/frame/reading.h"
 #include "tests/support/scenes.h"

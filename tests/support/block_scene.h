@@ -3,9 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
-#include <numbers>
-
 #include "tests/support/scenes.h"
 
 namespace alcove::test {

@@ -4,8 +4,6 @@
 
 #include "core/frame/gbuffer.h"
 
-#include <fmt/format.h>
-
 namespace alcove::test {
 
 EstimatorSettings sampled(Estimator estimator, double radius, int slices, int steps) {

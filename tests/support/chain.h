@@ -2,23 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "core/chain/chain.h"
-#include "core/chain/compute.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/long_tests.h"
-#include "tests/support/scenes.h"
 #include "tests/support/single_pass.h"
 
 namespace alcove::test {

@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/formats/exr.h"
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
@@ -26,9 +22,16 @@ class Runs : public testing::Test {
     return finished;
   }
   /// What such a run's statistics say.
-  nlohmann::json stats_of(const Options& more, const Surroundings& surroundings = {}) const {
+  json stats_of(const Options& more, const Surroundings& surroundings = {}) const {
     done(joined(more, {"--stats", folder / "stats.json"}), surroundings);
-    return nlohmann::json::parse(read_bytes(folder / "stats.json"));
+    return json::parse(read_bytes(folder / "stats.json"));
+  }
+  /// The passes of its first frame.
+  std::vector<std::string> passes_of(const Options& more) const {
+    const json stats = stats_of(more);
+    std::vector<std::string> names;
+    for (const auto& pass : stats["frames"][0]["passes"]) names.push_back(pass["name"]);
+    return names;
   }
   /// A run that must end with this code and one line that holds these texts.
   void expect_refused(int code, const Options& more, const Options& texts,
@@ -64,9 +67,7 @@ class CommandLine : public Runs {
 
   /// The same without a radius.
   Image written(const Options& more) const {
-    const Finished finished =
-        run_program(joined({"run", frame, "-o", ao, "--camera", camera, "--type", "float"}, more));
-    EXPECT_EQ(finished.code, 0) << finished;
+    run_well(joined({"run", frame, "-o", ao, "--camera", camera, "--type", "float"}, more));
     return read_exr_image(ao);
   }
   /// Expects that a region has the bits of the whole, in all channels, and returns the whole.

@@ -2,14 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
 
@@ -27,23 +19,16 @@ class CompareCommand : public testing::Test {
     return folder / name;
   }
 
-  Finished compare(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "compare");
-    return run_program(arguments);
+  Finished compare(const Options& arguments) const { return run_program(joined({"compare"}, arguments)); }
+
+  json measured(const Options& arguments, int code = 0) const {
+    const Finished finished = compare(joined(arguments, {"--json"}));
+    EXPECT_EQ(finished.code, code) << finished;
+    return json::parse(finished.out);
   }
 
-  nlohmann::json measured(std::vector<std::string> arguments, int code = 0) const {
-    arguments.push_back("--json");
-    const Finished finished = compare(arguments);
-    EXPECT_EQ(finished.code, code) << finished;
-    return nlohmann::json::parse(finished.out);
-  }
-
-  void expect_error(int code, const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
-    const Finished finished = compare(arguments);
-    EXPECT_EQ(finished.code, code) << finished;
-    EXPECT_EQ(lines_of(finished.err).size(), 1) << finished;
-    for (const auto& word : words) EXPECT_THAT(finished.err, testing::HasSubstr(word));
+  void expect_error(int code, const Options& arguments, const Options& words) const {
+    expect_refused(compare(arguments), code, words);
   }
 
   TemporaryFolder folder;

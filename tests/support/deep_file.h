@@ -2,26 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ImfChannelList.h>
-#include <ImfDeepFrameBuffer.h>
-#include <ImfDeepImageStateAttribute.h>
-#include <ImfDeepScanLineOutputPart.h>
-#include <ImfDeepTiledOutputPart.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfMultiPartOutputFile.h>
-#include <ImfOutputPart.h>
-#include <ImfPartType.h>
-#include <ImfStandardAttributes.h>
-
-#include <cstdint>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "core/base/image.h"
+#include "tests/support/openexr.h"
 
 namespace alcove::test {
 
@@ -48,8 +29,6 @@ class DeepFileWriter {
   }
 
  private:
-  static Imath::Box2i box(const Window& w) { return {{w.x, w.y}, {w.x + w.width - 1, w.y + w.height - 1}}; }
-
   static Imf::PixelType type_of(const DeepFilePart& part, const std::string& channel) {
     const auto type = part.types.find(channel);
     return type == part.types.end() ? Imf::FLOAT : type->second;
@@ -59,7 +38,7 @@ class DeepFileWriter {
                                                         const Window& display) {
     std::vector<Imf::Header> headers;
     for (const auto& part : parts) {
-      Imf::Header header(box(display), box(part.data));
+      Imf::Header header(box_of(display), box_of(part.data));
       header.compression() = part.compression;
       header.setName(part.name);
       if (!part.view.empty()) header.setView(part.view);
@@ -82,7 +61,7 @@ class DeepFileWriter {
       for (const auto& pixel : part.pixels) planes.back().push_back(pixel[0][c]);
     }
     for (std::size_t c = 0; c < part.channels.size(); c++)
-      buffer.insert(part.channels[c], Imf::Slice::Make(Imf::FLOAT, planes[c].data(), box(part.data)));
+      buffer.insert(part.channels[c], Imf::Slice::Make(Imf::FLOAT, planes[c].data(), box_of(part.data)));
     Imf::OutputPart out(*file_, number);
     out.setFrameBuffer(buffer);
     out.writePixels(part.data.height);

@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/device.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-
 #include "tests/support/threads.h"
 
 namespace alcove::test {

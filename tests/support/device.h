@@ -4,6 +4,7 @@
 
 #include "core/base/settings.h"
 #include "core/gpu/recorder.h"
+#include "tests/support/test.h"
 
 namespace alcove::test {
 

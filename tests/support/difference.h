@@ -2,15 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "core/chain/compute.h"
+#include "tests/support/test.h"
 
 namespace alcove::test {
 

@@ -2,11 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfOutputFile.h>
-
+#include "tests/support/openexr.h"
 #include "tests/support/wall_frame.h"
 
 namespace alcove::test {
@@ -17,14 +13,7 @@ inline void write_with_dwa(const std::string& path, Imf::Compression compression
     file.rename(std::string("ViewLayer.Normal.") + axis, std::string("ViewLayer.Normal.") + color);
   Imf::Header header(file.data.width, file.data.height);
   header.compression() = compression;
-  Imf::FrameBuffer pixels;
-  for (const auto& [name, plane] : file.planes) {
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    pixels.insert(name, Imf::Slice::Make(Imf::FLOAT, plane.data(), header.dataWindow()));
-  }
-  Imf::OutputFile out(path.c_str(), header);
-  out.setFrameBuffer(pixels);
-  out.writePixels(file.data.height);
+  write_openexr(path, header, file.planes);
 }
 
 }  // namespace alcove::test

@@ -2,13 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "core/base/error.h"
+#include "tests/support/test.h"
 
 namespace alcove::test {
 
@@ -19,7 +14,7 @@ std::string error_of(ErrorKind kind, const Action& action) {
     action();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), kind) << error.what();
-    EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));
+    EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
     return error.what();
   }
   ADD_FAILURE() << "no error";
@@ -30,7 +25,7 @@ std::string error_of(ErrorKind kind, const Action& action) {
 template <class Action>
 void expect_error(ErrorKind kind, const std::vector<std::string>& words, const Action& action) {
   const std::string text = error_of(kind, action);
-  for (const auto& word : words) EXPECT_THAT(text, testing::HasSubstr(word));
+  for (const auto& word : words) EXPECT_THAT(text, HasSubstr(word));
 }
 
 }  // namespace alcove::test

@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/exr_header.h"
 
-#include <cstdint>
-#include <cstring>
 #include <ostream>
-#include <stdexcept>
 
 #include "tests/support/program.h"
 

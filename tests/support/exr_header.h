@@ -3,9 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
-#include <string>
-#include <vector>
+#include "tests/support/test.h"
 
 namespace alcove::test {
 

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
-#include <functional>
-
 #include "tests/support/scenes.h"
 
 namespace alcove::test {

@@ -2,13 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <numbers>
-#include <vector>
-
-#include "tests/support/scenes.h"
+#include "tests/support/chain.h"
 
 namespace alcove::test {
 
@@ -41,7 +35,7 @@ inline double true_ao(const Scene& scene, const Hit& receiver, double radius, in
 struct EndingWall {
   Vec3 eye{5, 0.2, 1.2};
   Polygon column = parallelogram({0.8, -0.15, 0.02}, {0, 0.3, 0}, {0, 0, 5});
-  Scene scene{{Plane{.point = {}, .normal = {0, 0, 1}}, parallelogram({0, -4, 0}, {0, 4, 0}, {0, 0, 4}), column}};
+  Scene scene{{kFloor, parallelogram({0, -4, 0}, {0, 4, 0}, {0, 0, 4}), column}};
 
   struct Share {
     double open = 0, wall = 0;
@@ -76,6 +70,62 @@ inline std::vector<std::size_t> receivers(const Rendering& rendering, double rad
     }
   }
   return pixels;
+}
+
+/// Surfaces that something hides a part of, and from which of them one sees it.
+struct Hiding {
+  const char* what;
+  Scene scene;
+  double radius;
+  Chosen chosen;
+  Shot perspective, orthographic;
+};
+const Scene kPlateScene{{kFloor, kWallX, parallelogram({0.8, -0.5, 0.45}, {0, 1, 0}, {0, 0, 0.8})}};
+inline bool is_floor_by_the_wall(const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0.7; }
+
+inline std::vector<Hiding> hidings(int width, int height) {
+  const Sphere half{.center = {0.9, 0, 0.8}, .radius = 0.2, .axis = unit({2.1, 0, 2.7}), .cos_half_angle = 0.15};
+  return {{"a plate", kPlateScene, 1, is_floor_by_the_wall,
+           Shot::perspective({5, 0.3, 1.8}, {0.3, 0, 0.6}, 50, width, height),
+           Shot::orthographic({5, 0.3, 1.8}, {0.3, 0, 0.6}, 5, width, height)},
+          {"a column",
+           {{kWallY, kWallX, parallelogram({0.75, 0.35, -9}, {-0.15, 0.15, 0}, {0, 0, 18})}},
+           0.8,
+           [](const Hit& hit) { return hit.primitive == 1 && hit.position.y < 0.6; },
+           Shot::perspective({4, 4, 1}, {0.3, 0.3, 0}, 45, width, height),
+           Shot::orthographic({4, 4, 1}, {0.3, 0.3, 0}, 4, width, height)},
+          {"half a sphere",
+           {{kFloor, kWallX, half}},
+           0.8,
+           [](const Hit& hit) { return hit.primitive == 1 && hit.position.z < 0.5; },
+           Shot::perspective({3, 0, 3.5}, {0.3, 0, 0.3}, 50, width, height),
+           Shot::orthographic({3, 0, 3.5}, {0.3, 0, 0.3}, 4, width, height)}};
+}
+
+/// A picture of a wall, and what is left of it when all of the wall but a height of 0.25 is cut off.
+struct CutWall {
+  explicit CutWall(const Shot& shot) : whole(render({{kFloor, kWallX}}, shot)) {
+    while (whole.at(shot.data.width / 2, rows).position.z > 0.25) rows++;
+    frame = crop_of(whole.frame, {0, rows, shot.data.width, shot.data.height - rows});
+  }
+  /// The pixel of the frame that shows what that pixel of the whole shows.
+  std::size_t below(std::size_t pixel) const { return pixel - std::size_t(rows * frame.data.width); }
+
+  Rendering whole;
+  int rows = 0;
+  HostFrame frame;
+};
+
+/// Things that have nothing but the sky about them, and so nothing that could go on.
+inline std::vector<HostFrame> things_before_the_sky(int width, int height) {
+  std::vector<HostFrame> frames;
+  for (const Scene& scene : {Scene{{Sphere{.center = {0, 0, 0}, .radius = 1}}},
+                             Scene{{parallelogram({-1, -1, -0.5}, {2, 0.3, 0}, {0, 2, 1})}},
+                             Scene{{parallelogram({-1, 0, -1}, {0.05, 0, 0}, {0, 0, 2})}}})
+    for (const Shot& shot : {Shot::perspective({3, -4, 2}, {0, 0, 0}, 60, width, height),
+                             Shot::orthographic({3, -4, 2}, {0, 0, 0}, 6, width, height)})
+      frames.push_back(render(scene, shot).frame);
+  return frames;
 }
 
 }  // namespace alcove::test

@@ -2,14 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "api/alcove/alcove.h"
 #include "core/chain/compute.h"
 #include "core/frame/gbuffer.h"
@@ -18,8 +10,6 @@
 #include "tests/support/program.h"
 
 namespace alcove::test {
-
-using testing::HasSubstr;
 
 struct Free {
   void operator()(alcove_session* handle) const { alcove_free(handle); }

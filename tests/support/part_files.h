@@ -2,18 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfMultiPartOutputFile.h>
-#include <ImfOutputPart.h>
-#include <ImfPartType.h>
-#include <ImfStandardAttributes.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "core/frame/gbuffer.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/openexr.h"
 #include "tests/support/program.h"
 
 namespace alcove::test {

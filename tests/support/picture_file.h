@@ -3,10 +3,8 @@
 #pragma once
 
 #include <OpenImageIO/imageio.h>
-#include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
+#include "tests/support/test.h"
 
 namespace alcove::test {
 

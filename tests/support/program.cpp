@@ -3,8 +3,6 @@
 #include "tests/support/program.h"
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <poll.h>
 #include <sched.h>
 #include <signal.h>
@@ -16,14 +14,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <ostream>
 #include <sstream>
-#include <stdexcept>
 #include <system_error>
 
 #include "tests/support/threads.h"
@@ -32,8 +25,6 @@ namespace alcove::test {
 namespace {
 
 [[maybe_unused]] const bool kOneThread = compute_in_one_thread();
-
-namespace fs = std::filesystem;
 
 void require(bool condition, const char* what) {
   if (!condition) throw std::system_error(errno, std::generic_category(), what);
@@ -129,7 +120,7 @@ std::ostream& operator<<(std::ostream& stream, const Finished& finished) {
   return stream << "exit code " << finished.code << "\nstdout: " << finished.out << "\nstderr: " << finished.err;
 }
 
-Finished run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings) {
+Finished run_program(const Options& arguments, const Surroundings& surroundings) {
   const Capture out("stdout"), err("stderr");
   std::vector<std::string> words = on_test_device(arguments), variables = environment_with(surroundings);
   words.insert(words.begin(), surroundings.program);
@@ -161,6 +152,12 @@ Finished run_program(const std::vector<std::string>& arguments, const Surroundin
   return {code, out.text(), without_durations(err.text()), usage.ru_maxrss >> 10};
 }
 
+Finished run_well(const Options& arguments, const Surroundings& surroundings) {
+  Finished finished = run_program(arguments, surroundings);
+  EXPECT_EQ(finished.code, 0) << testing::PrintToString(arguments) << finished;
+  return finished;
+}
+
 Options typed(const std::string& text) {
   std::istringstream stream(text);
   return {std::istream_iterator<std::string>(stream), {}};
@@ -177,7 +174,7 @@ void expect_refused(const Finished& finished, int code, const Options& texts) {
   std::vector<std::string> lines = lines_of(finished.err);
   std::erase_if(lines, is_summary);
   EXPECT_EQ(lines.size(), 1) << finished;
-  for (const auto& text : texts) EXPECT_THAT(finished.err, testing::HasSubstr(text));
+  for (const auto& text : texts) EXPECT_THAT(finished.err, HasSubstr(text));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

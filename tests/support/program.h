@@ -2,12 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
-#include <iosfwd>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
+#include "tests/support/test.h"
 
 namespace alcove::test {
 
@@ -32,14 +27,17 @@ struct Surroundings {
   std::function<void(int)> meanwhile = {};  // called with its process id while it runs
 };
 
+/// The words of a command line.
+using Options = std::vector<std::string>;
+
 /// Runs the program with these arguments and waits for its end. It finds the presets of the project unless the
 /// surroundings say otherwise, and computes on the device that ALCOVE_TEST_DEVICE names unless the arguments do. What
 /// slow machines alone print, how long a frame takes, is left out of Finished::err.
-Finished run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
+Finished run_program(const Options& arguments, const Surroundings& surroundings = {});
+/// The same of a run that must succeed.
+Finished run_well(const Options& arguments, const Surroundings& surroundings = {});
 
-/// The words of a command line.
-using Options = std::vector<std::string>;
-/// Those of a text with blanks between them.
+/// The words of a text with blanks between them.
 Options typed(const std::string& text);
 Options joined(Options options, const Options& more);
 

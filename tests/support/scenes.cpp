@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/scenes.h"
 
-#include <algorithm>
-#include <numbers>
-#include <utility>
-
 namespace alcove::test {
 namespace {
 
@@ -175,34 +171,6 @@ Rendering render(const Scene& scene, const Shot& shot) {
     }
   }
   return result;
-}
-
-void add_peels(Rendering& rendering, const Scene& scene, int peels) {
-  constexpr double kPast = 1e-7;  // of the depth, so that a ray does not meet the same surface again
-  HostFrame& frame = rendering.frame;
-  const Shot& shot = rendering.shot;
-  const std::size_t pixels = frame.data.pixels(), planes = std::size_t(peels);
-  frame.behind_depth.assign(2 * planes * pixels, kSky);
-  for (const BehindKind kind : {BehindKind::surfaces, BehindKind::backs})
-    for (int i = 0; i < peels; i++) frame.behind.push_back({.kind = kind});
-  for (std::size_t index = 0; index < pixels; index++) {
-    const int x = int(index % std::size_t(shot.data.width)), y = int(index / std::size_t(shot.data.width));
-    Ray ray = shot.ray(shot.data.x - shot.display.x + x + 0.5, shot.data.y - shot.display.y + y + 0.5);
-    Hit last = rendering.hits[index];
-    double depth = last.distance;
-    bool is_inside = true;  // of the sphere that was hit last, if it was one
-    for (std::size_t i = 0; i < planes && last.primitive >= 0; i++) {
-      ray.origin = last.position + (kPast * depth) * ray.direction;
-      const Hit hit = scene.hit(ray);
-      if (hit.primitive < 0) break;
-      depth += kPast * depth + hit.distance;
-      const bool closes = is_inside && hit.primitive == last.primitive &&
-                          std::holds_alternative<Sphere>(scene.primitives[std::size_t(hit.primitive)]);
-      frame.behind_depth[(closes ? planes + i : i) * pixels + index] = float(depth);
-      is_inside = !closes;
-      last = hit;
-    }
-  }
 }
 
 }  // namespace alcove::test

@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
-#include <limits>
-#include <variant>
-#include <vector>
-
 #include "core/chain/compute.h"
+#include "tests/support/test.h"
 
 namespace alcove::test {
 
@@ -100,9 +96,5 @@ struct Rendering {
   double footprint(int x, int y) const;
 };
 Rendering render(const Scene& scene, const Shot& shot);
-
-/// Gives the frame the next surfaces of each ray behind the first: so many planes of what is seen from outside, and so
-/// many of what closes a sphere that the ray went into.
-void add_peels(Rendering& rendering, const Scene& scene, int peels);
 
 }  // namespace alcove::test

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "core/chain/warp.h"
 #include "kernels/hidden.h"
 #include "kernels/warp.h"

@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <filesystem>
-
 #include "tests/support/command_line.h"
 
 namespace alcove::test {
@@ -14,13 +9,13 @@ namespace alcove::test {
 class SequenceFolder : public Runs {
  protected:
   SequenceFolder() {
-    std::filesystem::create_directory(in);
-    std::filesystem::create_directory(out);
+    fs::create_directory(in);
+    fs::create_directory(out);
   }
 
   void write_frames(int first, int last, const FrameFile& frame = wall_frame()) const {
     frame.write(input(first));
-    for (int other = first + 1; other <= last; other++) std::filesystem::copy_file(input(first), input(other));
+    for (int other = first + 1; other <= last; other++) fs::copy_file(input(first), input(other));
   }
   std::string input(int frame) const { return fmt::format("{}/f.{:04}.exr", in, frame); }
   std::string output(int frame) const { return fmt::format("{}/ao.{:04}.exr", out, frame); }
@@ -38,8 +33,8 @@ class SequenceFolder : public Runs {
   }
 
   void remove_outputs() const {
-    std::filesystem::remove_all(out);
-    std::filesystem::create_directory(out);
+    fs::remove_all(out);
+    fs::create_directory(out);
   }
 
   /// The bytes of every output, by name.

@@ -2,15 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
-#include "core/base/error.h"
 #include "core/frame/settle.h"
 #include "tests/support/program.h"
 #include "tests/support/scenes.h"
@@ -30,11 +21,11 @@ inline FrameSource settled(const InputSettings& settings) {
 }
 
 /// The camera file of a shot.
-inline nlohmann::json camera_of(const Shot& shot) {
+inline json camera_of(const Shot& shot) {
   const Camera& c = shot.camera;
   const Vec3 offset = -shot.view_from_world(shot.eye);
-  const auto row = [](Vec3 axis, double by) { return nlohmann::json{axis.x, axis.y, axis.z, by}; };
-  nlohmann::json camera = {{"resolution", {c.width, c.height}}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}};
+  const auto row = [](Vec3 axis, double by) { return json{axis.x, axis.y, axis.z, by}; };
+  json camera = {{"resolution", {c.width, c.height}}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}};
   if (c.orthographic) camera["projection"] = "orthographic";
   camera["world_to_camera"] = {
       row(shot.right, offset.x), row(shot.up, offset.y), row(shot.back, offset.z), {0, 0, 0, 1}};
@@ -65,7 +56,7 @@ class SettledFile : public testing::Test {
  protected:
   SettledFile() { settings.input = folder / "frame.exr"; }
 
-  void give(const nlohmann::json& camera) {
+  void give(const json& camera) {
     settings.camera = folder / "camera.json";
     write_bytes(settings.camera, camera.dump());
   }
@@ -94,7 +85,7 @@ class SettledFile : public testing::Test {
     if (lines.empty()) return;
     EXPECT_EQ(lines[0].starts_with("refused: "), reply == Reply::refused);
     EXPECT_EQ(lines[0].starts_with("usage: "), reply == Reply::usage);
-    for (const auto& word : words) EXPECT_THAT(lines[0], testing::HasSubstr(word));
+    for (const auto& word : words) EXPECT_THAT(lines[0], HasSubstr(word));
   }
 
   TemporaryFolder folder;

@@ -2,12 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/single_pass.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <random>
-
-#include "core/chain/compute.h"
 #include "core/chain/filters.h"
 #include "tests/support/device.h"
 

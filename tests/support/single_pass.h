@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
-#include <vector>
-
-#include "core/chain/compute.h"
 #include "tests/support/scenes.h"
 
 namespace alcove::test {

@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-
 #include "tests/support/scenes.h"
 
 namespace alcove::test {

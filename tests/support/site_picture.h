@@ -2,14 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include "core/chain/compute.h"
 #include "core/chain/sites.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"

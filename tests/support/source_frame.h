@@ -2,24 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ImfChannelList.h>
-#include <ImfFloatAttribute.h>
-#include <ImfFloatVectorAttribute.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfIntAttribute.h>
-#include <ImfMatrixAttribute.h>
-#include <ImfOutputFile.h>
-#include <ImfStringAttribute.h>
-#include <ImfVecAttribute.h>
-
-#include <cmath>
-#include <numbers>
-
-#include "core/chain/compute.h"
 #include "core/frame/input_rules.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
+#include "tests/support/openexr.h"
 #include "tests/support/settled_file.h"
 
 namespace alcove::test {
@@ -107,21 +93,11 @@ class Sources : public SettledFile {
   static Vec3 world_normal(const Hit& hit) { return hit.normal; }
   static Vec3 view_normal(const Hit& hit) { return in_view(hit.normal); }
 
-  void write(const std::string& path) {
-    Imf::Header h = header;
-    Imf::FrameBuffer buffer;
-    std::vector<std::vector<half>> halves;
-    for (auto& [name, plane] : planes) {
-      const bool is_half = name.ends_with("WorldDepth.R");
-      h.channels().insert(name, Imf::Channel(is_half ? Imf::HALF : Imf::FLOAT));
-      if (is_half) halves.emplace_back(plane.begin(), plane.end());
-      char* base = is_half ? reinterpret_cast<char*>(halves.back().data()) : reinterpret_cast<char*>(plane.data());
-      const std::size_t bytes = is_half ? 2 : 4;
-      buffer.insert(name, Imf::Slice(is_half ? Imf::HALF : Imf::FLOAT, base, bytes, bytes * 160));
-    }
-    Imf::OutputFile file(path.c_str(), h);
-    file.setFrameBuffer(buffer);
-    file.writePixels(120);
+  void write(const std::string& path) const {
+    Imf::Header with_halves = header;
+    for (const auto& [name, plane] : planes)
+      if (name.ends_with("WorldDepth.R")) with_halves.channels().insert(name, Imf::Channel(Imf::HALF));
+    write_openexr(path, with_halves, planes);
   }
 
   /// The camera file of the scene, for programs that write none.

@@ -2,12 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "cli/options.h"
-#include "core/formats/exr.h"
 #include "core/run/batch.h"
 #include "tests/support/difference.h"
 #include "tests/support/sequence_folder.h"
@@ -56,9 +51,9 @@ class WalkedShot : public SequenceFolder {
  protected:
   /// Frames 1 to `frames`, and their cameras.
   void write_shot(int frames, const Window& window = kWallWindow) const {
-    nlohmann::json cameras = wall_camera(window);
+    json cameras = wall_camera(window);
     for (int frame = 1; frame <= frames; frame++) {
-      nlohmann::json matrix = cameras["world_to_camera"];
+      json matrix = cameras["world_to_camera"];
       matrix[0][3] = -kStep * frame;
       cameras["frames"].push_back({{"frame", frame}, {"world_to_camera", matrix}});
       with_board(frame, window).write(input(frame));

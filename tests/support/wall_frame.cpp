@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/wall_frame.h"
 
-#include <cmath>
-
 #include "core/formats/exr.h"
 
 namespace alcove::test {
@@ -100,7 +98,7 @@ FrameFile beauty_over(const Window& data, const Window& display) {
   return file;
 }
 
-nlohmann::json wall_camera(const Window& display, double pixel_aspect) {
+json wall_camera(const Window& display, double pixel_aspect) {
   return {{"resolution", {display.width, display.height}},
           {"fx", focal_px(display)},
           {"fy", focal_px(display) * pixel_aspect},

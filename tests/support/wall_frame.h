@@ -2,15 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "core/base/image.h"
+#include "tests/support/test.h"
 
 namespace alcove::test {
 
@@ -51,6 +44,6 @@ float beauty_at(int x, int y, int channel);
 FrameFile beauty_over(const Window& data, const Window& display);
 
 /// The camera file that fits the frame.
-nlohmann::json wall_camera(const Window& display = kWallWindow, double pixel_aspect = 1);
+json wall_camera(const Window& display = kWallWindow, double pixel_aspect = 1);
 
 }  // namespace alcove::test

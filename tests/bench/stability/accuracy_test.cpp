@@ -14,13 +14,8 @@
 // reference guess in two ways: the kernels by the plane of the normal at a sample and only where it rises by a tenth of
 // the radius, the reference by the mean of that plane and of the line through 4 pixels. The exact search joins pixels
 // to strokes first. Where most of the sphere is beyond the border, a bound of its own says how far they may differ.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
 
 #include "core/base/estimator_facts.h"
-#include "core/chain/compute.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"
 #include "tests/bench/stability/cases.h"

@@ -2,17 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/bench/stability/cases.h"
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <functional>
-#include <limits>
-#include <numbers>
-#include <random>
-
 #include "cli/options.h"
 #include "tests/support/device.h"
 #include "tests/support/program.h"
@@ -219,7 +208,7 @@ std::vector<Variant> variants() {
   std::vector<Variant> all;
   std::vector<Variant> full = estimators();
   for (const auto& file : names_in(ALCOVE_SOURCE_DIR "/presets")) {
-    const std::filesystem::path path(file);
+    const fs::path path(file);
     if (path.extension() == ".toml" && !file.starts_with("input/"))
       full.push_back({path.stem().string(), preset((path.parent_path() / path.stem()).string())});
   }

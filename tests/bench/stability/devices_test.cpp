@@ -1,8 +1,5 @@
 // Every other device of this machine gives the AO that the tests' device gives, to an RMSE of 1e-4.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include "core/chain/compute.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

@@ -4,17 +4,11 @@
 //
 // ALCOVE_STABILITY_DRAWS=N takes N random draws of all axes at once instead of a round; ALCOVE_STABILITY_SEED=S, the
 // number of the first, repeats those of a run. Both are printed.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <iostream>
-#include <random>
 
 #include "core/base/estimator_facts.h"
 #include "core/chain/chain.h"
-#include "core/chain/compute.h"
 #include "core/chain/estimate.h"
 #include "core/chain/pass_common.h"
 #include "tests/bench/stability/cases.h"

@@ -1,12 +1,6 @@
 // What `alcove bench --stability` says: every estimator on every axis, and no breakdown that a run would pass over in
 // silence.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <set>
-
 #include "core/bench/stability.h"
 #include "tests/support/device.h"
 #include "tests/support/long_tests.h"
@@ -14,8 +8,7 @@
 namespace alcove {
 namespace {
 
-using nlohmann::json;
-using testing::HasSubstr;
+using namespace test;
 
 TEST(StabilityReport, says_where_each_estimator_breaks_down_and_that_a_run_notes_it) {
   int lines = 0;
