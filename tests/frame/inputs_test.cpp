@@ -1,19 +1,7 @@
 // Every way to say depth and normals gives the same AO; what pixels tell of them is found, and what they do not tell is
 // refused.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
-
-#include "core/base/error.h"
 #include "core/base/option_words.h"
-#include "core/chain/compute.h"
-#include "core/formats/exr.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
 #include "core/run/resume.h"
@@ -26,7 +14,6 @@ namespace alcove {
 namespace {
 
 using namespace test;
-using testing::HasSubstr;
 
 constexpr double kFar = 100;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::numeric_limits<float>::infinity();
@@ -67,6 +54,7 @@ struct Planar {
     EXPECT_LE(difference(result.ao, near).rmse, 1e-4);
     EXPECT_LE(difference(ao_of(frame, 1e3, ThicknessKind::automatic), far).rmse, 1e-4);
     EXPECT_EQ(result.sky_pixels, sky_pixels);
+    EXPECT_EQ(result.repaired_depth, 0u);
   }
 
   std::vector<float> whole, far, near;
@@ -186,6 +174,8 @@ TEST(Depth, of_every_sentinel_is_sky) {
       EXPECT_LE(difference(result.ao, planar.near).rmse, kind == DepthKind::planar ? 0 : 1e-4)
           << word_of(kind) << " " << sentinel;
       EXPECT_EQ(result.sky_pixels, planar.sky_pixels) << word_of(kind) << " " << sentinel;
+      if (kind == DepthKind::planar)
+        EXPECT_EQ(result.repaired_depth, std::isnan(sentinel) || sentinel < 0 ? planar.sky_pixels : 0) << sentinel;
     }
   };
   const auto distance = [](const test::Hit& hit) { return hit.distance; };

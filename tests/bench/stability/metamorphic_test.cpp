@@ -1,19 +1,10 @@
-// What is the same scene has the same AO, for every estimator: other units, mirrors, crops, projections; and what is
-// more blocked is darker. Kinds of depth and marks of sky: tests/frame/inputs_test.cpp.
+// What is the same scene has the same AO, for every estimator: mirrors, projections; and what is more blocked is
+// darker. Other units and crops: tests/chain/property_test.cpp; kinds of depth and marks of sky:
+// tests/frame/inputs_test.cpp.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <numbers>
-
 #include "core/base/estimator_facts.h"
-#include "core/chain/compute.h"
 #include "tests/bench/stability/cases.h"
-#include "tests/support/device.h"
-#include "tests/support/difference.h"
-#include "tests/support/single_pass.h"
+#include "tests/support/chain.h"
 
 namespace alcove {
 namespace {
@@ -21,10 +12,6 @@ namespace {
 using namespace test;
 
 constexpr double kRadius = 0.6;
-
-std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) {
-  return compute_ao(recorder(), frame, settings).ao;
-}
 
 /// So many samples that what is left to see is the estimator.
 EstimatorSettings converged(EstimatorSettings settings, double radius) {
@@ -46,69 +33,18 @@ std::vector<Variant> solid_estimators() {
   return all;
 }
 
-TEST(Metamorphic, scale_by_powers_of_two_changes_no_bit) {
-  HostFrame frame = room(55, 1, 0, 40, 30).frame;
-  for (const bool normals : {true, false}) {
-    if (!normals) frame.normal.clear();
-    for (const auto& variant : variants()) {
-      EstimatorSettings settings = with_radius(variant.settings, kRadius);
-      const std::vector<float> expected = run(frame, settings);
-      const double bias = settings.bias;
-      for (const int exponent : {-20, 7, 30}) {
-        HostFrame other = scaled(frame, exponent);
-        settings = with_radius(settings, std::ldexp(kRadius, exponent));
-        if (settings.estimator == Estimator::crytek) settings.bias = std::ldexp(bias, exponent);  // scene units
-        const std::vector<float> ao = run(other, settings);
-        EXPECT_TRUE(same_bits(ao, expected)) << variant.name << " 2^" << exponent
-                                             << (normals ? ": " : " without normals: ") << difference(ao, expected).max;
-      }
-    }
-  }
-}
-
 // The noise isn't mirrored: two estimates of the same.
 TEST(Metamorphic, a_mirrored_frame_has_the_mirrored_ao) {
   const HostFrame frame = room(55, 1, 0.1, 48, 36).frame;
   for (const auto& variant : estimators()) {
     const EstimatorSettings settings = converged(variant.settings, kRadius);
-    const std::vector<float> upright = run(frame, settings);
+    const std::vector<float> upright = ao_of(frame, settings);
     for (const bool left_right : {true, false}) {
-      const Difference d = difference(run(mirrored(frame, left_right), settings), mirrored(upright, frame, left_right));
+      const Difference d =
+          difference(ao_of(mirrored(frame, left_right), settings), mirrored(upright, frame, left_right));
       EXPECT_LE(std::abs(d.bias), 2e-3) << variant.name << " " << left_right;
       EXPECT_LE(d.rmse, 0.02) << variant.name << " " << left_right;
     }
-  }
-}
-
-// Of a pixel that sees all that its AO depends on: the sphere of the radius and, where occluders are as deep as they
-// are wide, what their width is measured over, which ends where it is the sphere's: 3 radii. Not of an exact search,
-// whose lines are the whole's only in a crop with a wider margin; exact_test has one.
-TEST(Metamorphic, ao_of_a_crop_is_the_crop_of_ao) {
-  constexpr double kSmall = 0.2;
-  const Rendering whole = room(55, 1, 0, 96, 72);
-  Shot shot = whole.shot;
-  shot.data = {17, 11, 60, 50};
-  Rendering part = whole;
-  part.shot = shot;
-  part.frame.data = shot.data;
-  part.frame.depth = cropped(whole.frame.depth, whole.frame.data, shot.data);
-  part.frame.normal = cropped(whole.frame.normal, whole.frame.data, shot.data);
-  auto all = solid_estimators();
-  std::ranges::copy(estimators(), std::back_inserter(all));
-  for (const auto& variant : all) {
-    if (searches_exactly(variant.settings)) continue;
-    const EstimatorSettings settings = with_radius(variant.settings, kSmall);
-    const double seen = (settings.thickness == ThicknessKind::automatic ? 3 : 1) * kSmall;
-    const std::vector<float> of_whole = cropped(run(whole.frame, settings), whole.frame.data, shot.data),
-                             of_part = run(part.frame, settings);
-    int compared = 0;
-    for (std::size_t i = 0; i < of_part.size(); i++) {
-      const Hit& hit = whole.at(shot.data.x + int(i) % shot.data.width, shot.data.y + int(i) / shot.data.width);
-      if (hit.primitive < 0 || !shot.sees_ball(hit.position, seen)) continue;
-      compared++;
-      EXPECT_EQ(of_part[i], of_whole[i]) << variant.name << " pixel " << i;
-    }
-    EXPECT_GT(compared, 300);
   }
 }
 
@@ -116,7 +52,7 @@ TEST(Metamorphic, orthographic_is_the_limit_of_a_small_field_of_view) {
   const Rendering parallel = room(0, 1, 0, 48, 36), narrow = room(0.25, 1, 0, 48, 36);
   for (const auto& variant : estimators()) {
     const EstimatorSettings settings = converged(variant.settings, kRadius);
-    const Difference d = difference(run(narrow.frame, settings), run(parallel.frame, settings));
+    const Difference d = difference(ao_of(narrow.frame, settings), ao_of(parallel.frame, settings));
     EXPECT_LE(d.rmse, 0.02) << variant.name << " " << place(d, narrow.frame);
     EXPECT_LE(std::abs(d.bias), 2e-3) << variant.name;
   }
@@ -131,7 +67,7 @@ TEST(Metamorphic, an_orthographic_eye_may_be_anywhere_on_its_ray) {
       if (z < kSky) z = float(z + farther);
     for (const auto& variant : estimators()) {
       const EstimatorSettings settings = with_radius(variant.settings, kRadius);
-      const Difference d = difference(run(moved, settings), run(frame, settings));
+      const Difference d = difference(ao_of(moved, settings), ao_of(frame, settings));
       EXPECT_LE(d.rmse, 5e-3) << variant.name << " " << farther << " " << place(d, frame) << " " << d.max;
       EXPECT_LE(std::abs(d.bias), 5e-4) << variant.name << " " << farther;
     }
@@ -158,7 +94,7 @@ TEST(Metamorphic, a_larger_radius_only_darkens) {
       EstimatorSettings settings = converged(variant.settings, radius);
       settings.thickness_length = 0.2;
       settings.complete = Completion::none;
-      const std::vector<float> ao = run(frame, settings);
+      const std::vector<float> ao = ao_of(frame, settings);
       for (std::size_t i = 0; i < ao.size(); i++)
         EXPECT_LE(ao[i], smaller[i] + slack) << variant.name << " radius " << radius << " pixel " << i;
       EXPECT_LE(difference(ao, smaller).bias, 0) << variant.name << " radius " << radius;
@@ -188,12 +124,12 @@ TEST(Metamorphic, completing_only_darkens) {
       EstimatorSettings settings = converged(variant.settings, radius);
       settings.thickness_length = 0.2;
       settings.complete = Completion::none;
-      const std::vector<float> seen = run(frame, settings);
+      const std::vector<float> seen = ao_of(frame, settings);
       std::vector<float> before = seen;
       for (const Completion completion : {Completion::border, Completion::all}) {
         settings.complete = completion;
         if (completion == Completion::all && settings.thickness == ThicknessKind::automatic) continue;
-        const std::vector<float> ao = run(frame, settings);
+        const std::vector<float> ao = ao_of(frame, settings);
         for (std::size_t i = 0; i < ao.size(); i++) {
           EXPECT_LE(ao[i], before[i] + slack)
               << variant.name << " completion " << int(completion) << " radius " << radius << " pixel " << i;
@@ -216,7 +152,7 @@ TEST(Metamorphic, an_added_occluder_never_brightens_what_is_still_seen) {
   for (const auto& variant : solid_estimators()) {
     EstimatorSettings settings = converged(variant.settings, 100);
     if (variant.settings.estimator == Estimator::crytek) settings.radius = 1;
-    const std::vector<float> before = run(without.frame, settings), after = run(with.frame, settings);
+    const std::vector<float> before = ao_of(without.frame, settings), after = ao_of(with.frame, settings);
     int same = 0, darker = 0;
     for (std::size_t i = 0; i < before.size(); i++) {
       if (with.hits[i].primitive != without.hits[i].primitive) continue;
@@ -246,16 +182,13 @@ bool is_cut_by_border(const HostFrame& frame) {
 TEST(Metamorphic, a_convex_body_alone_is_open) {
   const Sphere ball{.center = {6, 0.4, -0.3}, .radius = 1.5};
   const Plane plane{.point = {5, 0, 0}, .normal = unit({-1, 0.5, 0.7})};
-  const Vec3 a = 1.6 * unit({1, 0.5, 0.3}), b = 1.2 * unit(cross(a, {0, 0, 1})), c = 1.4 * unit(cross(a, b)),
-             corner{5, -0.5, 0.3};
-  const Scene box{{parallelogram(corner, a, b), parallelogram(corner, b, c), parallelogram(corner, c, a),
-                   parallelogram(corner + c, a, b), parallelogram(corner + a, b, c), parallelogram(corner + b, c, a)}};
+  const Vec3 a = 1.6 * unit({1, 0.5, 0.3}), b = 1.2 * unit(cross(a, {0, 0, 1})), c = 1.4 * unit(cross(a, b));
+  Scene box;
+  box.add(parallelepiped({5, -0.5, 0.3}, a, b, c));
   int whole = 0;
   for (const Scene& scene : {Scene{{ball}}, Scene{{plane}}, box})
     for (const double fov : {0.0, 0.5, 20.0, 90.0, 150.0, 170.0}) {
-      const Shot shot =
-          fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 48, 36) : Shot::orthographic({}, {1, 0, 0}, 5, 48, 36);
-      const HostFrame frame = render(scene, shot).frame;
+      const HostFrame frame = render(scene, along_x(fov, 48, 36, 5)).frame;
       const bool is_cut = is_cut_by_border(frame);
       whole += !is_cut;
       for (const auto& variant : estimators())
@@ -266,9 +199,9 @@ TEST(Metamorphic, a_convex_body_alone_is_open) {
           const bool has_edges = scene.primitives.size() > 1;
           EstimatorSettings settings = with_radius(variant.settings, radius);
           settings.complete = Completion::none;
-          const std::vector<float> seen = run(frame, settings);
+          const std::vector<float> seen = ao_of(frame, settings);
           settings.complete = Completion::all;
-          const std::vector<float> completed = run(frame, settings);
+          const std::vector<float> completed = ao_of(frame, settings);
           if (!is_cut) EXPECT_TRUE(same_bits(completed, seen)) << variant.name << " fov " << fov;
           for (const bool completes : {false, true}) {
             const double worst_edge = completes && is_cut ? 0.22 : 0.2;
@@ -287,25 +220,14 @@ TEST(Metamorphic, a_convex_body_alone_is_open) {
 // To 89.99 degrees. From 85 on a pixel's own footprint is longer than the radius, and rounded normals (4e-5 rad) tilt
 // the plane by part of what is left.
 TEST(Metamorphic, a_plane_at_a_grazing_angle_is_open) {
-  for (const double tilt : {60.0, 85.0, 89.0, 89.9, 89.99})
-    for (const double turn : {0.0, 37.0, 90.0, 200.0}) {
-      const double t = tilt * std::numbers::pi / 180, u = turn * std::numbers::pi / 180;
-      const Plane plane{.point = {60, 0, 0},
-                        .normal = {-std::cos(t), std::sin(t) * std::cos(u), std::sin(t) * std::sin(u)}};
-      for (const double fov : {0.0, 0.01, 60.0}) {
-        const Shot shot =
-            fov > 0 ? Shot::perspective({}, {1, 0, 0}, fov, 48, 36) : Shot::orthographic({}, {1, 0, 0}, 0.01, 48, 36);
-        const HostFrame frame = render({{plane}}, shot).frame;
-        for (const auto& variant : estimators())
-          for (const double radius : {0.05, 1.0, 1e6}) {
-            const Difference d =
-                difference(run(frame, with_radius(variant.settings, radius)), [](std::size_t) { return 1.0; });
-            EXPECT_LE(d.max, searches_exactly(variant.settings) ? 3e-3 : 1e-3)
-                << variant.name << " tilt " << tilt << " turn " << turn << " fov " << fov << " radius " << radius << " "
-                << place(d, frame);
-          }
+  for (const auto& [what, rendering] :
+       slanted_planes({60, 85, 89, 89.9, 89.99}, {0, 37, 90, 200}, {0, 0.01, 60}, 48, 36))
+    for (const auto& variant : estimators())
+      for (const double radius : {0.005, 0.1, 1e5}) {
+        const EstimatorSettings settings = with_radius(variant.settings, radius);
+        SCOPED_TRACE(what + ", " + variant.name);
+        expect_open(rendering.frame, settings, searches_exactly(settings) ? 3e-3 : 1e-3);
       }
-    }
 }
 
 }  // namespace
