@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/image.h"
 #include "core/base/option_words.h"
-#include "core/base/windows.h"
 #include "kernels/geometry.h"
 
 namespace alcove {

@@ -146,7 +146,7 @@ struct Reading : Meaning {
   std::vector<AmbientReading> ambient;  // the lights that AO may dim; none: it dims the whole beauty
 };
 
-/// The part of the picture that is written for a part of the frame: see core/base/windows.h.
+/// The part of the picture that is written for a part of the frame: see core/base/image.h.
 Window picture_of(const Reading& reading, const Window& part);
 
 /// Takes over the meaning of another frame of the sequence. The clip planes stay this frame's own, as its own camera

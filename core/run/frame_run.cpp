@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
-#include "core/base/windows.h"
+#include "core/base/image.h"
 #include "core/chain/aov.h"
 #include "core/chain/debug_view.h"
 #include "core/frame/settle.h"

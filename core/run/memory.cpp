@@ -10,7 +10,7 @@
 #include "core/base/system.h"
 #include "core/chain/chain.h"
 #include "core/chain/margin.h"
-#include "core/formats/exr_copy.h"
+#include "core/formats/exr.h"
 #include "core/frame/channels.h"
 #include "core/run/frame_files.h"
 #include "core/run/shot.h"

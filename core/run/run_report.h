@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/note.h"
-#include "core/gpu/pass_time.h"
+#include "core/gpu/device_info.h"
 #include "kernels/shared.h"
 
 namespace alcove {

@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
+#include "core/base/image.h"
 #include "core/base/system.h"
-#include "core/base/windows.h"
 #include "core/chain/aov.h"
 #include "core/chain/estimate.h"
 #include "core/chain/reduce.h"

@@ -10,7 +10,7 @@
 
 #include "core/chain/compute.h"
 #include "core/chain/hidden.h"
-#include "core/reference/reference_layers.h"
+#include "core/reference/reference_scene.h"
 #include "kernels/hidden.h"
 #include "tests/support/device.h"
 #include "tests/support/peels.h"

@@ -88,8 +88,8 @@ TEST(Layers, only_one_file_includes_each_library) {
                     [](const SourceFile& file) { return !file.name.starts_with("core/formats/exr"); }),
             Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"](Imath/)?half\.h)", unless("core/base/half.h")), Names{});
-  EXPECT_EQ(matches(product(), R"(#include [<"]zlib)", unless("core/formats/deep_chunk.cpp")), Names{});
-  EXPECT_EQ(matches(product(), R"(#include [<"]libdeflate)", unless("core/formats/zip_chunk.cpp")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include [<"]zlib)", unless("core/formats/exr_deep.cpp")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include [<"]libdeflate)", unless("core/formats/exr_zip.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenImageIO)", unless("core/formats/image_io.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenColorIO)", unless("core/formats/color.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]png\.h)", unless("core/formats/png.cpp")), Names{});

@@ -1,4 +1,4 @@
-// OpenEXR's C++ API, wrapped.
+// Reads EXR files through OpenEXR's C++ API, and ZIP lines and deep samples by our own readers.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/exr.h"
 
