@@ -161,18 +161,6 @@ struct EstimatorSettings {
   bool no_skip = false;  // estimate sky too, and what is as in the frame before; the result is the same
 };
 
-/// Where to compute.
-struct DeviceSettings {
-  std::string device = "auto";  // auto | cpu | index | name | UUID
-  bool require_gpu = false;
-  bool validate = false;
-  bool no_pipeline_cache = false;
-  int threads = 0;           // of the CPU device and of the codecs; 0: one per core
-  std::uint64_t memory = 0;  // bytes that the process may take; 0: half of what is free
-  // bytes that frames get however little `memory` is; no option: tests cut small frames into tiles by it
-  std::uint64_t least_memory = 0;
-};
-
 /// How AO goes into the beauty: see composite.comp.
 struct CompositeLook {
   // 1 / scene units, >= 0: of the exponential fog in the beauty, which hides AO
@@ -226,6 +214,18 @@ struct OutputSettings {
   bool no_mkdir = false;  // a folder that is missing is an error, and is not made
   // a file of JSON objects, one per line, or - for the standard output; whoever watches the run writes it
   std::string log_json;
+};
+
+/// Where to compute.
+struct DeviceSettings {
+  std::string device = "auto";  // auto | cpu | index | name | UUID
+  bool require_gpu = false;
+  bool validate = false;
+  bool no_pipeline_cache = false;
+  int threads = 0;           // of the CPU device and of the codecs; 0: one per core
+  std::uint64_t memory = 0;  // bytes that the process may take; 0: half of what is free
+  // bytes that frames get however little `memory` is; no option: tests cut small frames into tiles by it
+  std::uint64_t least_memory = 0;
 };
 
 struct Settings {
