@@ -13,7 +13,7 @@
 
 namespace alcove::gpu {
 
-/// The SPIR-V of kernels/STEM.comp, embedded at build time; empty when there is none of that stem.
+/// The SPIR-V of kernels/FOLDER/STEM.comp, embedded at build time; empty when there is none of that stem.
 std::span<const std::uint32_t> kernel_code(std::string_view stem);
 
 class Kernel {
