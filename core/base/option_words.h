@@ -42,7 +42,7 @@ enum class Density { uniform, adaptive };
 enum class Resolution { full = 1, half = 2, quarter = 4 };
 enum class Denoise { none, bilateral, box };
 enum class Noise { fixed, animated };  // whether frames share one pattern of sample noise
-// how a renderer makes a pixel from samples around its centre; see core/chain/reduce.h
+// how a renderer makes a pixel from samples around its centre; see core/chain/results/reduce.h
 enum class PixelFilterKind { box, gaussian, blackman_harris };
 enum class AoChannels { mono, rgb };
 enum class OutputType { half_float, single_float };

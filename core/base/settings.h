@@ -185,7 +185,7 @@ struct OutputSettings {
   std::string output;     // the AO EXR
   std::string composite;  // the composite EXR
   std::string preview;    // a PNG, see preview_style
-  // what the file of `output` holds: names of AOVs with commas, see core/chain/outputs.h
+  // what the file of `output` holds: names of AOVs with commas, see core/chain/results/outputs.h
   std::string aovs = "ao";
   // mono: Y; rgb: R, G, B, as compositors' shuffles expect, and coloured with multi_bounce
   AoChannels ao_channels = AoChannels::mono;
@@ -202,7 +202,7 @@ struct OutputSettings {
   std::string append_ao;  // a channel of the composite that the AO becomes, or its layer; empty: none
   // of the AO in `output`: its channel, or with rgb its layer; empty: Y, or R, G, B
   std::string ao_name;
-  // names of core/chain/debug_view.h with commas: a picture of each beside `output`
+  // names of core/chain/results/debug_view.h with commas: a picture of each beside `output`
   std::string debug;
   OutputType type = OutputType::half_float;  // of all channels of `output` but depth, which is float
   std::string compression = "zip";           // of the AO file: none, rle, zips, zip or piz

@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/image.h"
 #include "core/base/option_words.h"
-#include "kernels/geometry.h"
+#include "kernels/geometry/geometry.h"
 
 namespace alcove {
 namespace {

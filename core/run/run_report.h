@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/note.h"
 #include "core/gpu/device_info.h"
-#include "kernels/shared.h"
+#include "kernels/base/shared.h"
 
 namespace alcove {
 
