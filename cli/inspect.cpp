@@ -52,10 +52,11 @@ void write_cameras(const std::string& path, const FramePlan& plan, const InputSe
                    const Inspection& inspected) {
   if (!plan.is_sequence()) {
     const auto& known = inspected.camera;
-    return write_whole(path, camera_file(known ? known->camera : find_frame(input, false, frame).camera));
+    return write_whole(path, camera_file(known ? known->camera : find_frame(input, false, frame).reading.camera));
   }
   std::map<int, Camera> cameras;
-  for (const int number : plan.frames()) cameras[number] = find_frame(plan.at(number).input, false, number).camera;
+  for (const int number : plan.frames())
+    cameras[number] = find_frame(plan.at(number).input, false, number).reading.camera;
   write_whole(path, camera_file(cameras));
 }
 

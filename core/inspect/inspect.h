@@ -74,7 +74,7 @@ struct Distances {
   double sky_share = 0;
   std::optional<double> nearest, median, farthest;
 };
-/// `raw` is the depth of a settled frame over source.data, as it was read.
+/// `raw` is the depth of a settled frame, as it was read.
 Distances distances_of(const FrameSource& source, std::span<const float> raw);
 
 struct InspectedDepth {

@@ -184,7 +184,7 @@ class Batch {
     const std::uint64_t bytes = memory_of_host(settings_.device).host_bytes;
     set_exr_memory(bytes / kCodecPart);
     const auto settled = plan_.is_sequence() ? settle_first(plan_, bytes) : std::nullopt;
-    if (settled) note(FrameTally::notes_on(*settled));
+    if (settled) note(FrameTally::notes_on(*settled, settings_.input));
     std::optional<DisplayTransform> transform;
     if (shows_composite(settings_.output)) {
       const OutputSettings& output = settings_.output;
@@ -220,7 +220,7 @@ class Batch {
     int lanes = int(std::min(frames.size(), std::size_t(most)));
     const auto has_room = [&] {
       const RunMemory left = beside_shot(memory, plan_, *run.settled, settings_, frames, lanes);
-      return frames_in(left, frame, run.settled->file_data) >= std::uint64_t(lanes);
+      return frames_in(left, frame, run.settled->reading.data) >= std::uint64_t(lanes);
     };
     while (lanes > 1 && !has_room()) lanes--;
     return lanes;

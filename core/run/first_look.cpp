@@ -60,9 +60,9 @@ std::optional<double> radius_for(const FramePlan& plan, bool has_camera, std::op
     try {
       const InputSettings given = plan.at(frame).input, settings = has_camera ? given : with_some_camera(given);
       FrameSource source = find_frame(settings, false, frame);
-      source.camera_is_assumed = !has_camera;
+      source.open.camera = !has_camera;
       settle_by_rows(source, settings);
-      if (const auto radius = proposed_radius(source.camera, source.median_depth)) return radius;
+      if (const auto radius = proposed_radius(source.reading.camera, source.evidence.median_depth)) return radius;
     } catch (const Error& failure) {
       if (!error) error = failure;
     }
@@ -88,15 +88,15 @@ std::optional<FrameSource> settle_first(const FramePlan& plan, std::uint64_t mos
       const Settings settings = plan.at(frame);
       FrameSource source = open_frame(settings, frame);
       settle_by_rows(source, settings.input, most_bytes);
-      if (!best || source.has_evidence) best = std::move(source);
-      if (best->has_evidence) break;
+      if (!best || source.evidence.tells) best = std::move(source);
+      if (best->evidence.tells) break;
     } catch (const Error&) {
       // The frame is computed like all others, and its report says then what is wrong with it.
       is_refused = true;
     }
   }
   // A frame that shows nothing, such as one of sky, must not have others read that are refused by themselves.
-  if (is_refused && best && !best->has_evidence) return std::nullopt;
+  if (is_refused && best && !best->evidence.tells) return std::nullopt;
   if (best)
     for (auto& file : best->files) file.close();
   return best;
@@ -222,21 +222,22 @@ std::string plan_text(const Settings& given) {
   // Frames of a sequence are read as one of them that shows enough.
   if (!plan.is_sequence()) settle_by_rows(source, first.input, memory_of_host(first.device).host_bytes);
   std::vector<std::string> channels;
-  for (const auto& plane : source.planes.entries)
+  for (const auto& plane : source.channels.planes.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);
   line("channels", fmt::format("{}", fmt::join(channels, ", ")));
   line("camera",
-       fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
-                   source.camera.fx, source.camera.fy, source.camera.orthographic ? "per scene unit" : "focal length"));
+       fmt::format("{}, {:.6g} x {:.6g} px {}", source.reading.camera.orthographic ? "orthographic" : "perspective",
+                   source.reading.camera.fx, source.reading.camera.fy,
+                   source.reading.camera.orthographic ? "per scene unit" : "focal length"));
   const FrameMemory frame = memory_with_others(plan, source, first);
-  const std::uint64_t bytes = frame.of(source.file_data).host;
+  const std::uint64_t bytes = frame.of(source.reading.data).host;
   const auto wanted = frames_to_compute(plan, settings);
   require_room_for_others(memory_of_host(first.device), plan, source, first, wanted);
   const RunMemory run = beside_shot(memory_of_host(first.device), plan, source, first, wanted, 1);
   const std::uint64_t memory = run.host_bytes;
   line("size", to_string(written_picture(source)));
   const std::string at_once =
-      bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.file_data));
+      bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.reading.data));
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
   if (around_of(first.input) > 0)
     line("around",

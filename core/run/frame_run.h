@@ -28,8 +28,8 @@ class FrameTally {
 
   /// A window is about to be computed.
   void begin(const Window& computed);
-  /// What was read of that window, source.data; `written` is all that is written of the frame.
-  void add_inputs(const FrameSource& source, const FrameInputs& inputs, const Window& written);
+  /// What was read of that window; `written` is all that is written of the frame.
+  void add_inputs(const FrameSource& source, const Window& computed, const FrameInputs& inputs, const Window& written);
   /// What preparing others took comes before the passes of the frame.
   void add_others(const PreparedOthers& took);
   /// What the frame's own estimate found, where it is a mean of many; `others`: that the frame itself takes beside it.
@@ -39,7 +39,7 @@ class FrameTally {
   void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
 
   /// What the user should know before the frame is computed.
-  static Notes notes_on(const FrameSource& source);
+  static Notes notes_on(const FrameSource& source, const InputSettings& settings);
 
   /// Writes the sums into the report, and what the user should know. Fails with ErrorKind::input where the pixels show
   /// that a layer of hidden surfaces cannot be one.
