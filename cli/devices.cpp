@@ -7,7 +7,6 @@
 #include "cli/commands.h"
 #include "cli/parsing.h"
 #include "core/base/error.h"
-#include "core/base/json_text.h"
 #include "core/base/text.h"
 #include "core/gpu/device_info.h"
 

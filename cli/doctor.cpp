@@ -11,7 +11,6 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "core/base/error.h"
-#include "core/base/json_text.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"

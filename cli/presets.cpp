@@ -10,7 +10,6 @@
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/base/json_text.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/options/options.h"

@@ -1,7 +1,8 @@
-// Host pixels: named float planes over a data window, within a display window. A value type.
+// Windows of pixels, and pictures of the host: named float planes over a data window, within a display window.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -38,5 +39,42 @@ struct Image {
   /// Gives the plane of that name. Fails with ErrorKind::input, listing the planes that there are.
   std::span<const float> plane(std::string_view name) const;
 };
+
+/// The pixels that both have; a window without any where they have none.
+Window common_part(const Window& a, const Window& b);
+
+/// Copies the pixels that both windows have from one plane into the other.
+void copy_common(const float* from, const Window& from_window, float* to, const Window& to_window);
+
+/// Copies a part of planes over `from` into planes over `whole`, which gets room for all of them.
+template <class T>
+void put_in(std::span<const T> planes, const Window& from, const Window& part, const Window& whole,
+            std::vector<T>& all) {
+  const std::size_t count = planes.size() / from.pixels(), width = std::size_t(part.width);
+  all.resize(count * whole.pixels());
+  for (std::size_t k = 0; k < count; k++)
+    for (int y = part.y; y < part.y + part.height; y++) {
+      const auto place = [&](const Window& of) {
+        return k * of.pixels() + std::size_t(y - of.y) * std::size_t(of.width) + std::size_t(part.x - of.x);
+      };
+      std::copy_n(planes.begin() + std::ptrdiff_t(place(from)), width, all.begin() + std::ptrdiff_t(place(whole)));
+    }
+}
+
+// Below, each pixel of a smaller picture is a block of `factor` x `factor` pixels of a larger one, counted from the
+// upper left corner of the larger one's display window. That of the smaller one's is as much nearer to 0, rounded down.
+
+/// The pixels of the smaller picture whose middle, to the right and below where there are two, the window has.
+Window reduced(const Window& window, const Window& display, int factor);
+/// All pixels of the blocks of a window of the smaller picture.
+Window enlarged(const Window& small, const Window& display, int factor);
+/// The window of the smaller picture whose blocks cover a window.
+Window covering(const Window& window, const Window& display, int factor);
+
+/// The middle pixel of each block of a plane over `window`: a plane over its reduced() window.
+std::vector<float> middle_pixels(std::span<const float> plane, const Window& window, const Window& display, int factor);
+/// Copies each pixel of a plane over `small` to those of its block that `to_window` has.
+void copy_enlarged(const float* from, const Window& small, float* to, const Window& to_window, const Window& display,
+                   int factor);
 
 }  // namespace alcove

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -56,8 +57,7 @@ int caught_signal();
 /// The address of a symbol in a library, which is loaded if it is not yet; null where there is none, and why in `why`.
 void* symbol_of(const char* library, const char* symbol, std::string& why);
 
-// How much memory the process may still take, after the limits of containers, systemd and batch systems:
-// memory_limit.cpp.
+// How much memory the process may still take, after the limits of containers, systemd and batch systems.
 
 constexpr std::uint64_t kMebibyte = 1 << 20;  // bytes
 constexpr std::uint64_t kNoMemoryLimit = std::numeric_limits<std::uint64_t>::max();
@@ -119,6 +119,18 @@ class LockedFile {
  private:
   int descriptor_ = -1;
   bool is_locked_ = false;
+};
+
+/// It runs from its construction on.
+class Stopwatch {
+ public:
+  /// Milliseconds so far.
+  double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace alcove

@@ -3,6 +3,7 @@
 #include "core/base/text.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -209,5 +210,26 @@ std::string for_shell(const std::string& word) {
 std::string typed(std::string_view option, std::string_view value) {
   return fmt::format("{}{}{}", option, option.starts_with("--set ") ? '=' : ' ', value);
 }
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json with_valid_strings(const Json& json) {
+  if (json.is_string()) return as_utf8(json.get_ref<const std::string&>());
+  if (!json.is_structured()) return json;
+  Json valid = json.is_array() ? Json::array() : Json::object();
+  for (const auto& [key, value] : json.items()) {
+    if (json.is_array())
+      valid.push_back(with_valid_strings(value));
+    else
+      valid[as_utf8(key)] = with_valid_strings(value);
+  }
+  return valid;
+}
+
+}  // namespace
+
+std::string json_text(const nlohmann::ordered_json& json, int indent) { return with_valid_strings(json).dump(indent); }
 
 }  // namespace alcove

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <optional>
 #include <span>
 #include <string>
@@ -48,5 +50,9 @@ std::optional<double> number_of(std::string_view text);
 
 /// Gives " (did you mean a or b?)" to be put behind a message, or an empty text if no candidate is near.
 std::string suggestion(std::string_view name, std::span<const std::string> candidates);
+
+/// The document in valid UTF-8, on one line or with `indent` spaces per level. Keys and strings may hold names of
+/// files, which may be no UTF-8: as_utf8() escapes them.
+std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
 }  // namespace alcove

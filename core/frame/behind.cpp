@@ -11,10 +11,10 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/image.h"
 #include "core/base/option_words.h"
 #include "core/base/ranks.h"
 #include "core/base/text.h"
-#include "core/base/windows.h"
 #include "core/frame/channels.h"
 #include "core/frame/header_camera.h"
 #include "core/frame/raw_plane.h"

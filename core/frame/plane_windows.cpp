@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "core/base/error.h"
+#include "core/base/image.h"
 #include "core/base/text.h"
-#include "core/base/windows.h"
 
 namespace alcove {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/image.h"
 #include "core/base/option_words.h"
-#include "core/base/windows.h"
-#include "kernels/geometry.h"
+#include "kernels/geometry/geometry.h"
 
 namespace alcove {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/formats/exr_copy.h"
+#include "core/formats/exr.h"
 #include "core/frame/behind.h"
 #include "core/frame/flatness.h"
 #include "core/frame/radius.h"

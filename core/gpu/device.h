@@ -1,24 +1,67 @@
-// A Vulkan device in use: its one compute queue, its memory, its kernels.
+// Vulkan devices: which there are, the choice of one, and that one in use with its queue, its memory and its kernels.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <vulkan/vulkan.h>
+#include <vulkan/vulkan_core.h>
 
 #include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/gpu/check.h"
+#include "core/base/error.h"
 #include "core/gpu/device_info.h"
 #include "core/gpu/pipeline_cache.h"
 
 namespace alcove::gpu {
+
+/// The device is gone, and all that was on it; another may be made in its place.
+class DeviceLost : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Too little memory is left, of the device or of the host, or the driver allows no further allocation. Fewer frames at
+/// a time, or smaller tiles, may find room.
+class OutOfMemory : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Fails with ErrorKind::device, as DeviceLost or OutOfMemory where it is one of them, and with the name of the call,
+/// unless `result` is VK_SUCCESS.
+void check(VkResult result, const char* call);
+
+struct PhysicalDevice {
+  VkPhysicalDevice handle;
+  DeviceInfo info;
+};
+
+/// A Vulkan instance, with the validation layer where it is asked for; null when the loader finds no driver at all.
+VkInstance make_instance(bool validate);
+
+/// All devices, the useless ones too.
+std::vector<PhysicalDevice> physical_devices(VkInstance instance);
+
+/// The device that the options ask for; `auto` prefers discrete GPUs, and takes a CPU last. Fails with
+/// ErrorKind::device when none fits, naming those that there are.
+PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const DeviceOptions& options);
+
+struct QueueFamily {
+  std::uint32_t index;
+  std::uint32_t timestamp_bits;  // 0: it has no timestamps
+};
+/// The first queue family that computes; nullopt when none does.
+std::optional<QueueFamily> compute_family(VkPhysicalDevice device);
+
+bool has_extension(VkPhysicalDevice device, const char* name);
 
 class Device;
 class Kernel;

@@ -48,4 +48,11 @@ struct DeviceOptions {
   double submission_ms = kSubmissionMs;  // see there; a CPU device has no limit unless this is changed
 };
 
+/// What one pass took on the device, and the least it must move: each bound buffer once.
+struct PassTime {
+  std::string name;
+  double ms = 0;
+  std::uint64_t bytes_read = 0, bytes_written = 0;
+};
+
 }  // namespace alcove::gpu

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/gpu/buffer.h"
+#include "core/gpu/device_info.h"
 #include "core/gpu/kernel.h"
-#include "core/gpu/pass_time.h"
 
 namespace alcove::gpu {
 

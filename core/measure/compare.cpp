@@ -8,12 +8,12 @@
 #include <functional>
 #include <utility>
 
+#include "core/base/image.h"
 #include "core/base/text.h"
-#include "core/base/windows.h"
 #include "core/formats/picture.h"
 #include "core/formats/sequence.h"
 #include "core/frame/gbuffer.h"
-#include "core/measure/flip.h"
+#include "core/measure/metrics.h"
 #include "core/measure/report.h"
 
 namespace alcove {

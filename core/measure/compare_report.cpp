@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/base/json_text.h"
+#include "core/base/text.h"
 #include "core/measure/compare.h"
 #include "core/measure/report.h"
 

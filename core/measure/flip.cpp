@@ -1,13 +1,11 @@
 // FLIP, term by term: contrast sensitivity, colour distance, edges and points, and the exposures of the HDR variant.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/measure/flip.h"
+#include "core/measure/metrics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
-
-#include "core/measure/metrics.h"
 
 namespace alcove {
 namespace {

@@ -9,8 +9,8 @@
 #include "core/base/estimator_facts.h"
 #include "core/base/flat_toml.h"
 #include "core/base/text.h"
-#include "core/chain/aov.h"
-#include "core/chain/debug_view.h"
+#include "core/chain/results/aov.h"
+#include "core/chain/results/debug_view.h"
 #include "core/frame/raw_plane.h"
 #include "core/options/options.h"
 

@@ -11,7 +11,6 @@
 #include <numbers>
 #include <thread>
 
-#include "core/reference/reference_completion.h"
 #include "core/reference/reference_scene.h"
 #include "core/reference/reference_slice.h"
 

@@ -3,7 +3,7 @@
 //
 // "Nearness" is 1 / z, and with an orthographic camera -z: a plane's is linear on the image, and what is nearer to the
 // eye has the larger one.
-#include "core/reference/reference_completion.h"
+#include "core/reference/reference_slice.h"
 
 #include <algorithm>
 #include <cmath>

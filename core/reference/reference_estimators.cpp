@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Written for reading, not for speed, and apart from the kernels: nothing but the formulas is shared.
-#include "core/reference/reference_estimators.h"
+#include "core/reference/reference.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include <numeric>
 
 #include "core/base/error.h"
-#include "core/reference/reference.h"
 #include "core/reference/reference_scene.h"
 
 namespace alcove {

@@ -1,4 +1,4 @@
-// A frame in view space, in double: what the CPU references see.
+// A frame in view space, in double: what the CPU references see. Surfaces behind the first: docs/hidden.md.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -30,7 +30,7 @@ Vector normalized(Vector a);
 /// behind the first one of a pixel.
 class ReferenceScene {
  public:
-  /// Keeps so many surfaces behind the first; for the separation see reference_layers.h. Fails with ErrorKind::input
+  /// Keeps so many surfaces behind the first; for the separation see reference_layers(). Fails with ErrorKind::input
   /// on another frame.
   explicit ReferenceScene(const HostFrame& frame, int hidden = 0, double separation = -1);
 
@@ -77,5 +77,16 @@ class ReferenceScene {
   bool lists_all_ = false;
   std::vector<float> hidden_;  // see ReferenceLayers
 };
+
+struct ReferenceLayers {
+  // Planar depth, a plane for each surface that is kept, nearer first; 0: there is none; below 0, of the same size: it
+  // closes the solid of the surface before it.
+  std::vector<float> planes;
+  bool lists_all = false;  // a pixel that lists fewer surfaces has no more of them
+};
+
+/// Keeps so many surfaces behind the first ones of `scene`, which knows no others yet, and pairs them. Surfaces are one
+/// that are closer than the separation, scene units; below 0: than layers.comp says.
+ReferenceLayers reference_layers(const ReferenceScene& scene, const HostFrame& frame, int hidden, double separation);
 
 }  // namespace alcove

@@ -67,4 +67,14 @@ ReferenceLine line_of(const ReferenceScene& scene, const ReferenceReceiver& rece
 /// The angle of an offset from the view ray, in the slice; negative on the other side.
 double angle_of(const ReferenceSide& side, Vector offset);
 
+/// The part of a completed surface that lies in the sphere of the radius.
+struct CompletedSegment {
+  Vector nearer, farther;  // its ends, offsets from the receiver; the nearer one is fewer steps away on the image
+  double thickness = 0;    // of the run that it goes on from
+};
+
+std::vector<CompletedSegment> completed_segments(const ReferenceScene& scene, const ReferenceReceiver& receiver,
+                                                 const ReferenceSide& side, const ReferenceLine& line,
+                                                 const ReferenceSettings& settings);
+
 }  // namespace alcove

@@ -14,7 +14,7 @@
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
-#include "core/chain/aov.h"
+#include "core/chain/results/aov.h"
 #include "core/chain/warm_up.h"
 #include "core/formats/color.h"
 #include "core/options/options.h"

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "core/base/estimator_facts.h"
+#include "core/base/image.h"
 #include "core/base/text.h"
-#include "core/base/windows.h"
 #include "core/chain/chain.h"
-#include "core/chain/estimate.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/frame/settle.h"
 #include "core/run/frame_run.h"
 #include "core/run/memory.h"

@@ -13,7 +13,6 @@
 #include "core/chain/chain.h"
 #include "core/formats/color.h"
 #include "core/formats/exr.h"
-#include "core/formats/exr_copy.h"
 #include "core/frame/gbuffer.h"
 
 namespace alcove {

@@ -11,13 +11,13 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
-#include "core/base/windows.h"
-#include "core/chain/aov.h"
-#include "core/chain/debug_view.h"
+#include "core/base/image.h"
+#include "core/chain/results/aov.h"
+#include "core/chain/results/debug_view.h"
 #include "core/frame/settle.h"
 #include "core/run/memory.h"
-#include "kernels/hidden.h"
-#include "kernels/warp.h"
+#include "kernels/hidden/hidden.h"
+#include "kernels/hidden/warp.h"
 
 namespace alcove {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "core/base/stopwatch.h"
+#include "core/base/system.h"
 #include "core/chain/chain.h"
 #include "core/formats/color.h"
 #include "core/frame/behind.h"

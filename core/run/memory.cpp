@@ -9,14 +9,14 @@
 #include "core/base/estimator_facts.h"
 #include "core/base/system.h"
 #include "core/chain/chain.h"
-#include "core/chain/margin.h"
-#include "core/formats/exr_copy.h"
+#include "core/chain/geometry/margin.h"
+#include "core/formats/exr.h"
 #include "core/frame/channels.h"
 #include "core/run/frame_files.h"
 #include "core/run/shot.h"
-#include "kernels/accumulate.h"
-#include "kernels/estimate.h"
-#include "kernels/exact_search.h"
+#include "kernels/estimate/estimate.h"
+#include "kernels/estimate/exact_search.h"
+#include "kernels/time/accumulate.h"
 
 namespace alcove {
 namespace {

@@ -10,12 +10,12 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/chain/geometry.h"
-#include "core/chain/warp.h"
+#include "core/chain/geometry/geometry.h"
+#include "core/chain/hidden/warp.h"
 #include "core/frame/channels.h"
 #include "core/frame/motion.h"
 #include "core/frame/settle.h"
-#include "kernels/reprojection.h"
+#include "kernels/base/reprojection.h"
 
 namespace alcove {
 namespace {

@@ -9,16 +9,16 @@
 
 #include "core/base/error.h"
 #include "core/base/estimator_facts.h"
+#include "core/base/image.h"
 #include "core/base/system.h"
-#include "core/base/windows.h"
-#include "core/chain/aov.h"
-#include "core/chain/estimate.h"
-#include "core/chain/reduce.h"
+#include "core/chain/estimate/estimate.h"
+#include "core/chain/results/aov.h"
+#include "core/chain/results/reduce.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
-#include "kernels/exact_search.h"
-#include "kernels/hidden.h"
-#include "kernels/occluders.h"
+#include "kernels/estimate/exact_search.h"
+#include "kernels/geometry/occluders.h"
+#include "kernels/hidden/hidden.h"
 
 namespace alcove {
 namespace {

@@ -13,8 +13,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/base/json_text.h"
-
 namespace alcove {
 namespace {
 

@@ -17,7 +17,7 @@
 #include "core/formats/exr.h"
 #include "core/frame/gbuffer.h"
 #include "core/measure/metrics.h"
-#include "core/reference/reference_estimators.h"
+#include "core/reference/reference.h"
 #include "tests/support/device.h"
 #include "tests/support/program.h"
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/estimator_facts.h"
-#include "core/chain/completion.h"
-#include "core/chain/debug.h"
+#include "core/chain/estimate/completion.h"
+#include "core/chain/results/debug.h"
 #include "core/chain/reuse.h"
 #include "core/run/frame_run.h"
 #include "tests/support/chain.h"
@@ -59,7 +59,7 @@ class CompletedPlanes : public testing::Test {
   int width() const { return frame.data.width; }
   int height() const { return frame.data.height; }
 
-  /// Whether a pixel is on the lattice of that spacing: see kernels/lattice.glsl.
+  /// Whether a pixel is on the lattice of that spacing: see kernels/base/lattice.glsl.
   static bool is_receiver(int x, int y, int spacing) { return is_on_lattice(x + 3, y + 5, spacing); }
 
   Sites sites_of(int spacing) const { return sites(recorder(), gbuffer, {spacing, false}); }

@@ -3,8 +3,8 @@
 #include <random>
 
 #include "core/base/estimator_facts.h"
-#include "core/chain/filters.h"
-#include "core/chain/sites.h"
+#include "core/chain/estimate/sites.h"
+#include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 
 namespace alcove {

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "core/base/estimator_facts.h"
-#include "core/chain/filters.h"
+#include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"
 #include "tests/support/site_frames.h"

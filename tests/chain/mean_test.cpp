@@ -7,7 +7,7 @@
 #include <bit>
 #include <set>
 
-#include "core/chain/accumulate.h"
+#include "core/chain/time/accumulate.h"
 #include "tests/support/device.h"
 
 namespace alcove {

@@ -25,7 +25,7 @@ struct Lattice {
 
 /// A lattice as noise.glsl has it.
 Lattice lattice_of(const std::string& name) {
-  const std::string text = read_bytes(ALCOVE_SOURCE_DIR "/kernels/noise.glsl");
+  const std::string text = read_bytes(ALCOVE_SOURCE_DIR "/kernels/base/noise.glsl");
   const auto number = [&](const std::string& constant) {
     std::smatch match;
     EXPECT_TRUE(std::regex_search(text, match, std::regex(constant + " = (\\d+)u"))) << constant;

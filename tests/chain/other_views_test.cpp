@@ -5,8 +5,8 @@
 #include <array>
 #include <random>
 
-#include "core/chain/margin.h"
-#include "kernels/reprojection.h"
+#include "core/chain/geometry/margin.h"
+#include "kernels/base/reprojection.h"
 #include "tests/support/chain.h"
 #include "tests/support/seen_views.h"
 

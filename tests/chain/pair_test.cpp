@@ -1,4 +1,4 @@
-// Which hidden surfaces are taken to close a solid, where nobody says it: kernels/ends.comp and kernels/pair.comp.
+// Which hidden surfaces are taken to close a solid, where nobody says it: ends.comp and pair.comp of kernels/hidden.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/chain/compute.h"
-#include "core/chain/hidden.h"
-#include "core/reference/reference_layers.h"
-#include "kernels/hidden.h"
+#include "core/chain/hidden/hidden.h"
+#include "core/reference/reference_scene.h"
+#include "kernels/hidden/hidden.h"
 #include "tests/support/device.h"
 #include "tests/support/peels.h"
 #include "tests/support/scenes.h"

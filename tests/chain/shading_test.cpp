@@ -3,8 +3,8 @@
 #include <bit>
 #include <random>
 
-#include "core/chain/shading.h"
-#include "kernels/geometry.h"
+#include "core/chain/results/shading.h"
+#include "kernels/geometry/geometry.h"
 #include "tests/support/chain.h"
 
 namespace alcove {
@@ -173,7 +173,7 @@ TEST(MultiBounce, every_colour_takes_its_own_albedo_and_broken_ones_return_nothi
 
 // Specular occlusion.
 
-/// As kernels/normal.glsl packs: the octahedral map in 16 bits per coordinate.
+/// As kernels/base/normal.glsl packs: the octahedral map in 16 bits per coordinate.
 float packed_as_float(Vec3 n) {
   const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   double x = n.x / sum, y = n.y / sum;

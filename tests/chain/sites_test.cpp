@@ -6,8 +6,8 @@
 #include <set>
 
 #include "core/base/estimator_facts.h"
-#include "core/chain/estimate.h"
-#include "core/chain/filters.h"
+#include "core/chain/estimate/estimate.h"
+#include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"
 #include "tests/support/site_frames.h"

@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "core/chain/estimate.h"
-#include "kernels/estimate.h"
-#include "kernels/exact_search.h"
+#include "core/chain/estimate/estimate.h"
+#include "kernels/estimate/estimate.h"
+#include "kernels/estimate/exact_search.h"
 #include "tests/support/chain.h"
 
 namespace alcove {

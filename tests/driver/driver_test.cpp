@@ -226,7 +226,7 @@ TEST_F(Driver, gets_a_long_recording_in_parts_that_give_the_same_bits) {
 
 TEST(Kernels, do_not_count_the_workgroups_of_a_dispatch_which_may_be_a_slice) {
   int kernels = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(ALCOVE_SOURCE_DIR "/kernels")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(ALCOVE_SOURCE_DIR "/kernels")) {
     if (entry.path().extension() != ".comp") continue;
     kernels++;
     const auto code = gpu::kernel_code(entry.path().stem().string());

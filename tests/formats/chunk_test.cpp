@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "core/formats/deep_chunk.h"
 #include "core/formats/exr.h"
-#include "core/formats/zip_chunk.h"
+#include "core/formats/exr_deep.h"
+#include "core/formats/exr_zip.h"
 #include "tests/support/guarded_bytes.h"
 
 namespace alcove {

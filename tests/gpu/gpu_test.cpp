@@ -10,9 +10,9 @@
 
 #include "core/base/error.h"
 #include "core/chain/compute.h"
-#include "kernels/estimate.h"
-#include "kernels/geometry.h"
-#include "kernels/shading.h"
+#include "kernels/estimate/estimate.h"
+#include "kernels/geometry/geometry.h"
+#include "kernels/results/shading.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
-#include "core/chain/warp.h"
+#include "core/chain/hidden/warp.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 

@@ -1,6 +1,6 @@
 // FLIP against its formulas worked out for plain colours, and against a second implementation.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/measure/flip.h"
+#include "core/measure/metrics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/base/windows.h"
+#include "core/base/image.h"
 #include "tests/support/command_line.h"
 
 namespace alcove {

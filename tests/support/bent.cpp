@@ -4,7 +4,7 @@
 
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
-#include "core/chain/estimate.h"
+#include "core/chain/estimate/estimate.h"
 #include "tests/support/device.h"
 
 namespace alcove::test {

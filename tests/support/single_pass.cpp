@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/chain/compute.h"
-#include "core/chain/filters.h"
+#include "core/chain/filters/filters.h"
 #include "tests/support/device.h"
 
 namespace alcove::test {

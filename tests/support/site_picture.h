@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/chain/compute.h"
-#include "core/chain/sites.h"
+#include "core/chain/estimate/sites.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
 #include "tests/support/sites_of.h"

@@ -22,7 +22,6 @@
 #include "core/base/estimator_facts.h"
 #include "core/chain/compute.h"
 #include "core/reference/reference.h"
-#include "core/reference/reference_estimators.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"

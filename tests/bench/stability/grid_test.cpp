@@ -13,10 +13,10 @@
 #include <random>
 
 #include "core/base/estimator_facts.h"
+#include "core/chain/base/pass_common.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
-#include "core/chain/estimate.h"
-#include "core/chain/pass_common.h"
+#include "core/chain/estimate/estimate.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
