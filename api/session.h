@@ -77,7 +77,7 @@ class Session {
   void compute(const Settings& settings, Reading reading, int frame);
   void note_results(const FrameOutputs& outputs, const Settings& settings, int width, int height);
 
-  std::vector<Said> said_;                                    // of the command line's kind, each option once
+  std::vector<OptionValue> values_;                           // typed ones, each option once
   std::vector<std::pair<std::string, std::string>> presets_;  // names and texts
   std::optional<std::string> camera_json_;
   // fx, fy, cx, cy, and behind them world_to_camera where it was given; none where there is no camera of numbers

@@ -228,12 +228,19 @@ struct DeviceSettings {
   std::uint64_t least_memory = 0;
 };
 
+/// How a run reports its progress.
+struct ProgressSettings {
+  std::string kind = "auto";  // auto, bar, plain, percent, openjd or none; auto: a bar on a terminal, else plain
+  bool verbose = false, quiet = false;
+};
+
 struct Settings {
   FrameSettings frames;
   InputSettings input;
   EstimatorSettings estimator;
   OutputSettings output;
   DeviceSettings device;
+  ProgressSettings progress;
 };
 
 }  // namespace alcove

@@ -255,7 +255,7 @@ class FrameRun {
   /// Reads the headers.
   FrameSource open() {
     const Stopwatch reading;
-    FrameSource source = open_frame(settings_, frame_);
+    FrameSource source = run_.look.open(settings_, frame_);
     if (run_.settled && settle_like(source, *run_.settled)) take_over_notes(source, *run_.settled);
     report_.read_ms += reading.ms();
     refuse_by_notes(source);
@@ -490,11 +490,13 @@ FrameReport report_of(const FramePlan& plan, int frame) {
   return report;
 }
 
-FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& watch) {
+FrameReport run_frame(Lanes& lanes, const RunContext& run, const Room& room, int frame, const PartWatch& watch) {
   FrameReport report;
-  lane.gpu.abandon();  // what a frame that failed has left
+  std::optional<Lanes::Lease> lease;
   try {
     report = report_of(run.plan, frame);
+    Lane& lane = lease.emplace(lanes).lane();
+    lane.gpu.abandon();  // commands that a frame that failed has left
     FrameRun(lane, run, room, frame, watch, report).run();
     report.state = FrameState::done;
   } catch (const Dropped&) {
@@ -519,6 +521,7 @@ FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int f
     report.state = FrameState::failed;
     report.error = Error(ErrorKind::some_frames_failed, fmt::format("{}: {}", report.input, error.what()));
   }
+  if (lease && !report.out_of_memory) lease->keep_buffers();
   return report;
 }
 

@@ -11,7 +11,7 @@
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/gpu/pipeline_cache.h"
-#include "core/run/pipeline.h"
+#include "core/run/lanes.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/fake_driver.h"
@@ -423,9 +423,12 @@ TEST_F(Driver, is_not_asked_for_another_device_when_what_runs_on_a_lane_fails) {
   const gpu::DeviceOptions of_lanes = options();
   const int before = fake.live_instances;
   Lanes lanes(of_lanes, 1);
-  const auto fails = [&] { lanes.with([](Lane&) -> bool { throw Error(ErrorKind::device, "no memory"); }); };
+  const auto fails = [&] {
+    const Lanes::Lease lease(lanes);
+    throw Error(ErrorKind::device, "no memory");
+  };
   EXPECT_THROW(fails(), Error);
-  lanes.with([](Lane&) { return true; });
+  const Lanes::Lease lease(lanes);
   EXPECT_EQ(fake.live_instances, before + 1);
 }
 

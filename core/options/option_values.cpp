@@ -1,5 +1,5 @@
-// Values are read into settings of their own first, by which the table tells what has no effect; then settings that
-// contradict each other are found, and the option that mends each is named.
+// Values are tried together, by which the table tells what has no effect; then settings that contradict each other are
+// found, and the option that mends each is named.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <algorithm>
@@ -30,8 +30,8 @@ std::vector<FlatEntry> settings_in(const std::string& text) {
 }
 
 /// The row that an entry is for.
-const OptionRow& row_of(const FlatEntry& entry, const std::vector<OptionRow>& table) {
-  const OptionRow& row = row_of_key(table, entry.key);
+const SettingRow& row_of(const FlatEntry& entry) {
+  const SettingRow& row = row_of_key(entry.key);
   if (entry.values.empty()) fail(ErrorKind::usage, "{}: the list is empty", entry.key);
   if (entry.values.size() > 1 && !row.repeats)
     fail(ErrorKind::usage, "{} takes one value, and the list has {}", entry.key, entry.values.size());
@@ -40,119 +40,102 @@ const OptionRow& row_of(const FlatEntry& entry, const std::vector<OptionRow>& ta
 
 }  // namespace
 
-std::vector<Said> said_by_text(const std::string& preset, const std::string& text,
-                               const std::vector<OptionRow>& table) {
-  std::vector<Said> said;
+std::vector<OptionValue> preset_values(const std::string& preset, const std::string& text) {
+  std::vector<OptionValue> values;
   try {
-    for (const auto& entry : settings_in(text))
-      said.push_back({row_of(entry, table).long_name(), entry.values, preset});
+    for (const auto& entry : settings_in(text)) values.push_back({&row_of(entry), entry.values, preset});
   } catch (const Error& error) {
     fail(error.kind(), "{} (--preset): {}", preset, error.what());
   }
-  return said;
+  return values;
 }
 
-// What was said.
+// Values from several places.
 
 namespace {
 
-const OptionRow& row_of(const std::vector<OptionRow>& table, const std::string& option) {
-  const auto row = std::ranges::find(table, option, &OptionRow::long_name);
-  if (row == table.end()) fail(ErrorKind::usage, "there is no option {}", option);
-  return *row;
-}
+using Values = std::vector<OptionValue>;
 
-/// Reads a value, and names its preset in what is wrong with it.
-void read_one(const std::vector<OptionRow>& table, const Said& one) {
+/// Reads a value, and names its preset in the sentence on a text that is none.
+void read_value(Settings& settings, const OptionValue& value) {
   try {
-    row_of(table, one.option).read(one.words);
+    value.row->read(settings, value.words);
   } catch (const Error& error) {
-    if (one.is_typed()) throw;
-    fail(error.kind(), "{} (--preset): {}", one.preset, error.what());
+    if (value.is_typed()) throw;
+    fail(error.kind(), "{} (--preset): {}", value.preset, error.what());
   }
 }
 
-RunOptions options_of(const RunOptions& initial, const std::vector<Said>& said) {
-  RunOptions options = initial;
-  const auto table = option_table(options);
-  for (const auto& one : said) read_one(table, one);
-  return options;
+/// The settings with the values that count.
+Settings with_some(Settings settings, const Values& values, const std::vector<bool>& counts) {
+  for (std::size_t i = 0; i < values.size(); i++)
+    if (counts[i]) read_value(settings, values[i]);
+  return settings;
 }
 
-/// The options that only presets say.
-Words only_in_presets(const std::vector<Said>& said) {
-  Words options;
-  for (const auto& one : said) {
-    const bool is_typed =
-        std::ranges::any_of(said, [&](const Said& other) { return other.is_typed() && other.option == one.option; });
-    if (!is_typed) options.push_back(one.option);
-  }
-  return options;
-}
-
-/// The settings of a run that writes all that there is.
+/// The settings of a run that writes all outputs.
 Settings with_all_outputs(Settings settings) {
   settings.output.composite = settings.output.preview = "all";
   settings.output.multi_bounce = true;
-  // But for confidence, which would give what no estimate of the AO takes an effect.
+  // But for confidence, which would give an effect to what no estimate of the AO takes.
   for (const auto& name : aov_names())
     if (name != "confidence") settings.output.aovs += "," + std::string(name);
   return settings;
 }
 
-/// Why each has no effect in the settings that those make of which `counts` says so; "" where it has one, or does not
-/// count.
-std::vector<std::string> objections_to(const RunOptions& initial, const std::vector<Said>& said,
-                                       const std::vector<bool>& counts, Reader reader) {
-  std::vector<Said> counted;
-  for (std::size_t i = 0; i < said.size(); i++)
-    if (counts[i]) counted.push_back(said[i]);
-  RunOptions options = options_of(initial, counted);
-  const auto table = option_table(options);
-  const Settings judged = reader == Reader::run ? options.settings : with_all_outputs(options.settings);
-  std::vector<std::string> objections(said.size());
-  for (std::size_t i = 0; i < said.size(); i++)
-    if (counts[i]) objections[i] = row_of(table, said[i].option).objection(judged);
-  return objections;
-}
+/// Tells which values have no effect beside others.
+struct Trial {
+  const Settings& initial;
+  const Values& values;
+  Reader reader;
 
-/// Fails where two settings of a preset have an effect each, but none beside the other.
-void refuse_contradictions(const RunOptions& initial, const std::vector<Said>& said, const std::string& preset,
-                           Reader reader) {
-  std::vector<bool> own;
-  for (const auto& one : said) own.push_back(one.preset == preset);
-  const auto objections = objections_to(initial, said, own, reader);
-  const auto with_only = [&](std::size_t i, std::size_t j) {
-    std::vector<bool> counts(said.size());
+  /// The objection to each value that counts, "" where there is none, beside the others that count.
+  Words objections(const std::vector<bool>& counts) const {
+    Settings settings = with_some(initial, values, counts);
+    if (reader == Reader::inspect) settings = with_all_outputs(settings);
+    Words objections(values.size());
+    for (std::size_t i = 0; i < values.size(); i++)
+      if (counts[i]) objections[i] = objection(*values[i].row, settings);
+    return objections;
+  }
+
+  /// The same beside no other value than these two.
+  Words objections(std::size_t i, std::size_t j) const {
+    std::vector<bool> counts(values.size());
     counts[i] = counts[j] = true;
-    return objections_to(initial, said, counts, reader);
-  };
-  for (std::size_t j = 0; j < said.size(); j++)
+    return objections(counts);
+  }
+};
+
+/// Fails where two values of a preset have an effect each, but none beside the other.
+void refuse_contradictions(const Trial& trial, const std::string& preset) {
+  std::vector<bool> counts;
+  for (const auto& value : trial.values) counts.push_back(value.preset == preset);
+  const Words objections = trial.objections(counts);
+  for (std::size_t j = 0; j < objections.size(); j++)
     for (std::size_t i = 0; i < j; i++) {
       if (objections[i].empty() || objections[j].empty()) continue;
-      const auto beside = with_only(i, j);
-      const bool have_none = !beside[i].empty() && !beside[j].empty();
-      if (have_none && with_only(i, i)[i].empty() && with_only(j, j)[j].empty())
-        fail(ErrorKind::usage, "{} (--preset): {}", preset, beside[i]);
+      const Words of_both = trial.objections(i, j);
+      const bool have_none = !of_both[i].empty() && !of_both[j].empty();
+      if (have_none && trial.objections(i, i)[i].empty() && trial.objections(j, j)[j].empty())
+        fail(ErrorKind::usage, "{} (--preset): {}", preset, of_both[i]);
     }
 }
 
-/// Leaves out of presets what has no effect, one after the other: what is left out may be what another one had no
-/// effect beside, so that those get a second chance.
-std::vector<bool> with_effects(const RunOptions& initial, const std::vector<Said>& said, Reader reader) {
-  std::vector<bool> counts(said.size(), true);
+/// Leaves out values of presets without effect, one after the other. A value that is left out may be the one beside
+/// which another had no effect, so that those get a second chance. Gives which values count.
+std::vector<bool> with_effects(const Trial& trial) {
+  const std::size_t size = trial.values.size();
+  std::vector<bool> counts(size, true);
   while (true) {
-    const auto objections = objections_to(initial, said, counts, reader);
+    const Words objections = trial.objections(counts);
     std::size_t idle = 0;
-    while (idle < said.size() && (said[idle].is_typed() || objections[idle].empty())) idle++;
-    if (idle == said.size()) break;
+    while (idle < size && (trial.values[idle].is_typed() || objections[idle].empty())) idle++;
+    if (idle == size) break;
     counts[idle] = false;
   }
-  const auto objection_count = [&] {
-    const auto objections = objections_to(initial, said, counts, reader);
-    return said.size() - std::size_t(std::ranges::count(objections, ""));
-  };
-  for (std::size_t i = 0; i < said.size(); i++) {
+  const auto objection_count = [&] { return size - std::size_t(std::ranges::count(trial.objections(counts), "")); };
+  for (std::size_t i = 0; i < size; i++) {
     if (counts[i]) continue;
     const std::size_t before = objection_count();
     counts[i] = true;
@@ -160,21 +143,28 @@ std::vector<bool> with_effects(const RunOptions& initial, const std::vector<Said
   }
   return counts;
 }
+
 }  // namespace
 
-void read_said(RunOptions& options, std::vector<Said> said, Reader reader) {
+Settings with_values(const Settings& initial, std::vector<OptionValue> values, Reader reader) {
+  const Trial trial{initial, values, reader};
   std::set<std::string> presets;
-  for (const auto& one : said)
-    if (!one.is_typed()) presets.insert(one.preset);
-  for (const auto& preset : presets) refuse_contradictions(options, said, preset, reader);
-  const std::vector<bool> counts = with_effects(options, said, reader);
-  const auto objections = objections_to(options, said, counts, reader);
-  for (std::size_t i = 0; i < said.size(); i++)
-    if (said[i].is_typed() && !objections[i].empty()) fail(ErrorKind::usage, "{}", objections[i]);
-  std::size_t place = 0;
-  std::erase_if(said, [&](const Said&) { return !counts[place++]; });
-  options = options_of(options, said);
-  options.settings.input.from_presets = only_in_presets(said);
+  for (const auto& value : values)
+    if (!value.is_typed()) presets.insert(value.preset);
+  for (const auto& preset : presets) refuse_contradictions(trial, preset);
+  const std::vector<bool> counts = with_effects(trial);
+  const Words objections = trial.objections(counts);
+  std::set<const SettingRow*> typed;
+  for (std::size_t i = 0; i < values.size(); i++) {
+    if (!values[i].is_typed()) continue;
+    if (!objections[i].empty()) fail(ErrorKind::usage, "{}", objections[i]);
+    typed.insert(values[i].row);
+  }
+  Settings settings = with_some(initial, values, counts);
+  settings.input.from_presets.clear();
+  for (std::size_t i = 0; i < values.size(); i++)
+    if (counts[i] && !typed.contains(values[i].row)) settings.input.from_presets.push_back(values[i].row->long_name());
+  return settings;
 }
 
 // Contradictions.
@@ -183,15 +173,9 @@ namespace {
 
 /// Fails with ErrorKind::usage where a setting that is not the usual one has no effect.
 void require_effects(const Settings& settings) {
-  RunOptions defaults;
-  RunOptions options;
-  options.settings = settings;
-  const auto table = option_table(options);
-  const auto usual = option_table(defaults);
-  for (std::size_t i = 0; i < table.size(); i++)
-    if (table[i].words() != usual[i].words())
-      if (const std::string objection = table[i].objection(settings); !objection.empty())
-        fail(ErrorKind::usage, "{}", objection);
+  for (const auto& row : option_table())
+    if (row.is_key() && row.is_given(settings))
+      if (const std::string why = objection(row, settings); !why.empty()) fail(ErrorKind::usage, "{}", why);
 }
 
 // Each scale costs a search and a plane of its own.
