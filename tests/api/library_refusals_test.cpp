@@ -6,7 +6,7 @@
 #include "core/options/options.h"
 #include "tests/support/library.h"
 
-namespace alcove {
+namespace alcove::library_refusals_test {
 namespace {
 
 using namespace test;
@@ -194,4 +194,4 @@ TEST_F(Library, takes_or_refuses_every_option_of_the_table) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::library_refusals_test

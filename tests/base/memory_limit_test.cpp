@@ -8,7 +8,7 @@
 
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::memory_limit_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -168,4 +168,4 @@ TEST(Slurm, says_by_its_variables_what_a_job_asked_for) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::memory_limit_test

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <cstdlib>
 
-namespace alcove {
+namespace alcove::system_test {
 namespace {
 
 using testing::ExitedWithCode;
@@ -33,4 +33,4 @@ TEST(Signals, end_the_process_the_second_time) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::system_test

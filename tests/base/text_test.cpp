@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-namespace alcove {
+namespace alcove::text_test {
 namespace {
 
 using testing::ElementsAre;
@@ -172,4 +172,4 @@ TEST(Toml, has_no_quotes_within_words) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::text_test

@@ -21,7 +21,7 @@
 #include "tests/support/device.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::source_presets_test {
 namespace {
 
 const char* const kGoldens = ALCOVE_SOURCE_DIR "/tests/bench/source_presets.exr";
@@ -110,4 +110,4 @@ TEST(SourcePresets, DISABLED_writes_the_goldens) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::source_presets_test

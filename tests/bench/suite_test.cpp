@@ -11,7 +11,7 @@
 
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::suite_test {
 namespace {
 
 using namespace test;
@@ -171,4 +171,4 @@ TEST_F(SuiteGrain, has_a_limit_that_holds_breaks_or_cannot_be_checked) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::suite_test

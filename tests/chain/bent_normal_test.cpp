@@ -5,7 +5,7 @@
 #include "tests/support/bent.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::bent_normal_test {
 namespace {
 
 using namespace test;
@@ -401,4 +401,4 @@ TEST(SpecularOcclusion, follows_the_bent_normal) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::bent_normal_test

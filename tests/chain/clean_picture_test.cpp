@@ -6,7 +6,7 @@
 #include "tests/support/chain.h"
 #include "tests/support/preset.h"
 
-namespace alcove {
+namespace alcove::clean_picture_test {
 namespace {
 
 using namespace test;
@@ -189,4 +189,4 @@ TEST(Joints, stay_lines) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::clean_picture_test

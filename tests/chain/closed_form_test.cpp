@@ -10,7 +10,7 @@
 #include "core/reference/reference.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::closed_form_test {
 namespace {
 
 using namespace test;
@@ -485,4 +485,4 @@ TEST(Thickness, thin_blades_block_as_thin_ones) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::closed_form_test

@@ -13,7 +13,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/sites_of.h"
 
-namespace alcove {
+namespace alcove::completion_test {
 namespace {
 
 using namespace test;
@@ -380,4 +380,4 @@ TEST_F(CompletionStats, of_a_view_without_any_are_refused) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::completion_test

@@ -10,7 +10,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/whole_picture.h"
 
-namespace alcove {
+namespace alcove::debug_view_test {
 namespace {
 
 using namespace test;
@@ -171,4 +171,4 @@ TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::debug_view_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::denoise_test {
 namespace {
 
 using namespace test;
@@ -157,4 +157,4 @@ TEST(Denoise, of_the_mirrored_frame_is_the_mirrored_result) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::denoise_test

@@ -7,7 +7,7 @@
 #include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::dilate_test {
 namespace {
 
 using namespace test;
@@ -125,4 +125,4 @@ TEST(Dilate, nothing_is_filtered_where_nothing_can_change) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::dilate_test

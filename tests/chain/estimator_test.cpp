@@ -6,7 +6,7 @@
 #include "tests/support/block_scene.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::estimator_test {
 namespace {
 
 using namespace test;
@@ -413,4 +413,4 @@ TEST(EveryVariant, agrees_with_its_slow_version) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::estimator_test

@@ -9,7 +9,7 @@
 #include "tests/support/site_frames.h"
 #include "tests/support/site_picture.h"
 
-namespace alcove {
+namespace alcove::interpolate_test {
 namespace {
 
 using namespace test;
@@ -342,4 +342,4 @@ TEST(Sparse, is_as_near_to_the_dense_estimate_as_noise_allows) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::interpolate_test

@@ -10,7 +10,7 @@
 #include "core/chain/time/accumulate.h"
 #include "tests/support/device.h"
 
-namespace alcove {
+namespace alcove::mean_test {
 namespace {
 
 using namespace test;
@@ -177,4 +177,4 @@ TEST(Mean, of_fewer_frames_than_are_listed_runs_the_same_kernels) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::mean_test

@@ -8,7 +8,7 @@
 #include "tests/support/site_frames.h"
 #include "tests/support/sites_of.h"
 
-namespace alcove {
+namespace alcove::noise_test {
 namespace {
 
 using namespace test;
@@ -103,4 +103,4 @@ TEST(Noise, of_a_crop_far_away_is_that_of_the_whole) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::noise_test

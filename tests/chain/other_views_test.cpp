@@ -10,7 +10,7 @@
 #include "tests/support/chain.h"
 #include "tests/support/seen_views.h"
 
-namespace alcove {
+namespace alcove::other_views_test {
 namespace {
 
 using namespace test;
@@ -324,4 +324,4 @@ TEST(OtherViews, a_part_has_a_margin_where_it_ends_with_the_frame) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::other_views_test

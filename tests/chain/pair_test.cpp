@@ -16,7 +16,7 @@
 #include "tests/support/peels.h"
 #include "tests/support/scenes.h"
 
-namespace alcove {
+namespace alcove::pair_test {
 namespace {
 
 using namespace test;
@@ -199,4 +199,4 @@ TEST(Pair, a_crop_with_its_margin_is_as_the_whole) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::pair_test

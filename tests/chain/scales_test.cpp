@@ -9,7 +9,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
-namespace alcove {
+namespace alcove::scales_test {
 namespace {
 
 using namespace test;
@@ -193,4 +193,4 @@ TEST_F(ScaleFiles, count_in_digest_and_statistics) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::scales_test

@@ -7,7 +7,7 @@
 #include "kernels/geometry/geometry.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::shading_test {
 namespace {
 
 using namespace test;
@@ -279,4 +279,4 @@ TEST(SpecularOcclusion, of_a_mirror_is_all_or_nothing) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::shading_test

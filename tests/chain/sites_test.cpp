@@ -13,7 +13,7 @@
 #include "tests/support/site_frames.h"
 #include "tests/support/site_picture.h"
 
-namespace alcove {
+namespace alcove::sites_test {
 namespace {
 
 using namespace test;
@@ -282,4 +282,4 @@ TEST(DenoiseRadius, left_open_is_wide_where_pixels_share_estimates) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::sites_test

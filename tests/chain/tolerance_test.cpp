@@ -10,7 +10,7 @@
 #include "kernels/estimate/exact_search.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::tolerance_test {
 namespace {
 
 using namespace test;
@@ -278,4 +278,4 @@ TEST(Tolerance, radii_are_each_estimated_by_their_error) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::tolerance_test

@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::command_line_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -265,13 +265,13 @@ TEST_F(CommandLine, a_file_in_the_working_directory_is_not_taken_for_a_preset_of
 
 TEST_F(CommandLine, a_switch_that_a_preset_turns_off_is_off) {
   write_bytes(folder / "on.toml", "no-pipeline-cache = false\nrequire-gpu = false\nvalidate = false\nquiet = false\n");
-  const Surroundings surroundings{.environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
-  const Finished finished = run({"--preset", folder / "on.toml"}, surroundings);
+  const Launch launch{.environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
+  const Finished finished = run({"--preset", folder / "on.toml"}, launch);
   EXPECT_EQ(finished.code, 0) << finished;
   EXPECT_THAT(names_in(folder / "cache"), Contains(StartsWith("alcove/pipelines-")))
       << "no-pipeline-cache = false keeps the cache";
   fs::remove_all(folder / "cache");
-  EXPECT_EQ(run({"--set", "no-pipeline-cache=true"}, surroundings).code, 0);
+  EXPECT_EQ(run({"--set", "no-pipeline-cache=true"}, launch).code, 0);
   EXPECT_FALSE(fs::exists(folder / "cache/alcove"));
 }
 
@@ -280,14 +280,14 @@ TEST_F(CommandLine, presets_of_another_folder_have_their_path_as_name) {
   write_bytes(folder / "presets/show/day.toml", "slices = 11\n");
   write_bytes(folder / "elsewhere.toml", "slices = 13\n");
   fs::create_symlink(folder / "elsewhere.toml", folder / "presets/linked.toml");
-  const Surroundings surroundings{.environment = {{"ALCOVE_PRESETS", folder / "presets"}}};
-  const json listed = json::parse(run_program({"presets", "--json"}, surroundings).out);
+  const Launch launch{.environment = {{"ALCOVE_PRESETS", folder / "presets"}}};
+  const json listed = json::parse(run_program({"presets", "--json"}, launch).out);
   ASSERT_EQ(listed.size(), 2);
   EXPECT_EQ(listed[0]["name"], "linked");
   EXPECT_EQ(listed[1]["name"], "show/day");
-  EXPECT_THAT(lines_of(run_program({"run", "--preset", "linked", "--print-config"}, surroundings).out),
+  EXPECT_THAT(lines_of(run_program({"run", "--preset", "linked", "--print-config"}, launch).out),
               Contains("slices=13"));
-  EXPECT_THAT(lines_of(run_program({"run", "--preset", "show/day", "--print-config"}, surroundings).out),
+  EXPECT_THAT(lines_of(run_program({"run", "--preset", "show/day", "--print-config"}, launch).out),
               Contains("slices=11"));
 }
 
@@ -340,4 +340,4 @@ TEST_F(CommandLine, doctor_tells_what_is_amiss) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::command_line_test

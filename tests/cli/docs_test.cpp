@@ -10,7 +10,7 @@
 #include "tests/support/deep_file.h"
 #include "tests/support/source_frame.h"
 
-namespace alcove {
+namespace alcove::docs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,4 +170,4 @@ TEST(Pages, the_first_one_is_short_and_leads_to_all_others) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::docs_test

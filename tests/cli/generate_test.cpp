@@ -10,7 +10,7 @@
 #include "core/base/system.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::generate_test {
 namespace {
 
 using namespace test;
@@ -206,4 +206,4 @@ TEST_F(Generated, other_words_are_refused) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::generate_test

@@ -18,7 +18,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
-namespace alcove {
+namespace alcove::options_test {
 namespace {
 
 using namespace test;
@@ -341,4 +341,4 @@ TEST_F(Previews, are_made_again_for_another_configuration_of_the_display) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::options_test

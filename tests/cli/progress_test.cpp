@@ -7,7 +7,7 @@
 
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::progress_test {
 namespace {
 
 using namespace test;
@@ -95,4 +95,4 @@ TEST(Progress, is_silent_where_nobody_wants_it) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::progress_test

@@ -17,7 +17,7 @@
 #include "tests/support/fake_driver.h"
 #include "tests/support/single_pass.h"
 
-namespace alcove {
+namespace alcove::driver_test {
 namespace {
 
 using namespace test;
@@ -396,13 +396,13 @@ TEST_F(Runs, in_memory_of_the_devices_own_give_the_bits_of_shared_memory_in_tile
   add_beauty(large);
   large.write(frame);
   write_bytes(camera, wall_camera(display).dump());
-  const test::Surroundings own_memory{.environment = {{"ALCOVE_FAKE_MEMORY", "1"}}, .preload = ALCOVE_FAKE_DRIVER};
-  const auto outputs = [&](std::vector<std::string> more, const test::Surroundings& surroundings) {
+  const test::Launch own_memory{.environment = {{"ALCOVE_FAKE_MEMORY", "1"}}, .preload = ALCOVE_FAKE_DRIVER};
+  const auto outputs = [&](std::vector<std::string> more, const test::Launch& launch) {
     more.insert(more.end(), {"--radius", "0.1", "--type", "float", "--composite", folder / "c.exr", "--aov",
                              "ao,normal,depth,confidence"});
     std::vector<std::string> arguments{"run", frame, "-o", ao, "--camera", camera, "--device", "cpu"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const Finished finished = run_program(arguments, surroundings);
+    const Finished finished = run_program(arguments, launch);
     EXPECT_EQ(finished.code, 0) << finished;
     return read_bytes(ao) + read_bytes(folder / "c.exr");
   };
@@ -433,4 +433,4 @@ TEST_F(Driver, is_not_asked_for_another_device_when_what_runs_on_a_lane_fails) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::driver_test

@@ -10,7 +10,7 @@
 #include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,10 +30,10 @@ class BadInput : public CommandLine {
   /// A run with these arguments must end with this code and one line on stderr, or a list of what is missing. It must
   /// hold the words and name an option, and must leave the output folder as it was.
   void expect_refused(int code, const std::vector<std::string>& words, std::vector<std::string> arguments,
-                      const Surroundings& surroundings = {}) const {
+                      const Launch& launch = {}) const {
     arguments.insert(arguments.begin(), "run");
     const auto before = names_in(out);
-    const Finished finished = run_program(arguments, surroundings);
+    const Finished finished = run_program(arguments, launch);
     EXPECT_EQ(finished.code, code) << testing::PrintToString(arguments) << finished;
     const bool is_list = finished.err.starts_with("alcove: error: missing:");
     EXPECT_TRUE(is_list || lines_of(finished.err).size() == 1) << finished;
@@ -247,7 +247,7 @@ TEST_F(BadInput, a_full_disk) {
 // Devices.
 
 TEST_F(BadInput, no_vulkan_driver) {
-  const Surroundings none{.environment = {{"VK_ICD_FILENAMES", "/nonexistent"}, {"VK_DRIVER_FILES", "/nonexistent"}}};
+  const Launch none{.environment = {{"VK_ICD_FILENAMES", "/nonexistent"}, {"VK_DRIVER_FILES", "/nonexistent"}}};
   std::vector<std::string> arguments = good(frame);
   arguments.insert(arguments.begin(), "run");
   const auto before = names_in(out);
@@ -270,4 +270,4 @@ TEST_F(BadInput, a_device_that_is_not_there) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::bad_input_test

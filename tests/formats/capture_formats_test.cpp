@@ -16,7 +16,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/picture_file.h"
 
-namespace alcove {
+namespace alcove::capture_formats_test {
 namespace {
 
 using namespace test;
@@ -306,4 +306,4 @@ TEST(Findings, blended_edges_tell_averaged_depth_from_point_samples) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::capture_formats_test

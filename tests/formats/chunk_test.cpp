@@ -9,7 +9,7 @@
 #include "core/formats/exr_zip.h"
 #include "tests/support/guarded_bytes.h"
 
-namespace alcove {
+namespace alcove::chunk_test {
 namespace {
 
 using namespace test;
@@ -123,4 +123,4 @@ TEST(ZipChunk, no_length_of_a_chunk_makes_a_reader_leave_its_bytes) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::chunk_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::color_test {
 namespace {
 
 using namespace test;
@@ -57,4 +57,4 @@ colorspaces:
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::color_test

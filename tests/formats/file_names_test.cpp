@@ -7,7 +7,7 @@
 
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::file_names_test {
 namespace {
 
 using namespace test;
@@ -91,4 +91,4 @@ TEST_F(FileNames, in_what_compare_says) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::file_names_test

@@ -33,7 +33,7 @@
 #include "tests/support/exr_header.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -426,4 +426,4 @@ TEST_F(Files, a_png_that_cannot_be_written_is_an_output_error) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::file_test

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace alcove {
+namespace alcove::frame_number_test {
 namespace {
 
 using testing::HasSubstr;
@@ -45,4 +45,4 @@ TEST(FrameNumber, that_is_in_doubt_says_why) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::frame_number_test

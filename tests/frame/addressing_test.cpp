@@ -9,7 +9,7 @@
 #include "core/inspect/inspect.h"
 #include "tests/support/part_files.h"
 
-namespace alcove {
+namespace alcove::addressing_test {
 namespace {
 
 using namespace test;
@@ -173,4 +173,4 @@ TEST_F(ThreeChannels, that_are_a_vector_are_told) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::addressing_test

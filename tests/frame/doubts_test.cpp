@@ -5,7 +5,7 @@
 #include "core/frame/settle.h"
 #include "tests/support/source_frame.h"
 
-namespace alcove {
+namespace alcove::doubts_test {
 namespace {
 
 using namespace test;
@@ -404,4 +404,4 @@ TEST_F(Doubts, shortened_normals_are_warned_of_but_not_where_the_program_always_
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::doubts_test

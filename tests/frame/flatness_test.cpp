@@ -9,7 +9,7 @@
 #include <functional>
 #include <random>
 
-namespace alcove {
+namespace alcove::flatness_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -158,4 +158,4 @@ TEST(Jitter, is_that_of_random_places_within_pixels) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::flatness_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/part_files.h"
 
-namespace alcove {
+namespace alcove::gbuffer_test {
 namespace {
 
 using namespace test;
@@ -371,4 +371,4 @@ TEST_F(GBuffer, options_win_over_the_camera_file_and_that_over_the_defaults) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::gbuffer_test

@@ -3,7 +3,7 @@
 #include "core/frame/header_camera.h"
 #include "tests/support/source_frame.h"
 
-namespace alcove {
+namespace alcove::header_camera_test {
 namespace {
 
 using namespace test;
@@ -266,4 +266,4 @@ TEST_F(HeaderCameras, a_matrix_that_is_no_rotation_places_nothing) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::header_camera_test

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace alcove {
+namespace alcove::motion_test {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 32;
@@ -114,4 +114,4 @@ TEST_F(Motion, that_nothing_shares_with_the_cameras_has_no_reading) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::motion_test

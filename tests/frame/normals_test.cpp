@@ -8,7 +8,7 @@
 #include "tests/support/furnished.h"
 #include "tests/support/settled_file.h"
 
-namespace alcove {
+namespace alcove::normals_test {
 namespace {
 
 using namespace test;
@@ -254,4 +254,4 @@ TEST_F(NormalFiles, are_named_where_they_are_files_of_their_own) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::normals_test

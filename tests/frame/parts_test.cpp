@@ -5,7 +5,7 @@
 #include "tests/support/deep_file.h"
 #include "tests/support/part_files.h"
 
-namespace alcove {
+namespace alcove::parts_test {
 namespace {
 
 using namespace test;
@@ -95,4 +95,4 @@ TEST_F(GBuffer, deep_data_gives_its_first_surface) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::parts_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/settled_file.h"
 
-namespace alcove {
+namespace alcove::radius_test {
 namespace {
 
 using namespace test;
@@ -61,4 +61,4 @@ TEST(Radius, of_a_settled_frame_follows_its_surfaces_alone) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::radius_test

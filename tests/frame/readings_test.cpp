@@ -8,7 +8,7 @@
 #include "core/frame/evidence.h"
 #include "tests/support/source_frame.h"
 
-namespace alcove {
+namespace alcove::readings_test {
 namespace {
 
 using namespace test;
@@ -320,4 +320,4 @@ TEST_F(Readings, of_what_is_beyond_half_floats_are_sky) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::readings_test

@@ -4,7 +4,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/source_frame.h"
 
-namespace alcove {
+namespace alcove::sources_test {
 namespace {
 
 using namespace test;
@@ -305,4 +305,4 @@ TEST(InputRules, all_names_are_there_and_unknown_ones_name_the_nearest) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::sources_test

@@ -20,7 +20,7 @@
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
 
-namespace alcove {
+namespace alcove::strangers_test {
 namespace {
 
 using namespace test;
@@ -220,4 +220,4 @@ INSTANTIATE_TEST_SUITE_P(Pack, Strangers, testing::Range(std::size_t(0), all_cas
 });
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::strangers_test

@@ -16,7 +16,7 @@
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 
-namespace alcove {
+namespace alcove::gpu_test {
 namespace {
 
 using testing::Contains;
@@ -372,4 +372,4 @@ TEST(Device, names_what_there_is_when_the_choice_fits_none) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::gpu_test

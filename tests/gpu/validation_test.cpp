@@ -14,7 +14,7 @@
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 
-namespace alcove {
+namespace alcove::validation_test {
 namespace {
 
 using namespace test;
@@ -180,4 +180,4 @@ TEST(Validation, is_silent_about_copies) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::validation_test

@@ -10,7 +10,7 @@
 
 #include "tests/support/formula_images.h"
 
-namespace alcove {
+namespace alcove::flip_test {
 namespace {
 
 using namespace test;
@@ -152,4 +152,4 @@ TEST(HdrFlip, of_equal_pictures_is_0_and_is_the_same_for_twice_the_light) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::flip_test

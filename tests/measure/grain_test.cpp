@@ -14,7 +14,7 @@
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
 
-namespace alcove {
+namespace alcove::grain_test {
 namespace {
 
 using namespace test;
@@ -308,4 +308,4 @@ TEST_F(GrainCommand, of_a_sequence_is_that_of_its_worst_frame) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::grain_test

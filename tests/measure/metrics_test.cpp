@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "tests/support/formula_images.h"
 
-namespace alcove {
+namespace alcove::metrics_test {
 namespace {
 
 using namespace test;
@@ -257,4 +257,4 @@ TEST(Flicker, noise_of_two_references_cancels) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::metrics_test

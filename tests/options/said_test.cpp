@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::said_test {
 namespace {
 
 using test::joined;
@@ -412,4 +412,4 @@ TEST_F(Said, lists_with_commas_are_what_repeated_options_are) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::said_test

@@ -13,7 +13,7 @@
 #include "cli/options.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::layers_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -428,4 +428,4 @@ TEST(Pages, every_option_of_help_is_in_the_table) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::layers_test

@@ -17,7 +17,7 @@
 #include "tests/support/random_scenes.h"
 #include "tests/support/scenes.h"
 
-namespace alcove {
+namespace alcove::reference_completion_test {
 namespace {
 
 using namespace test;
@@ -237,4 +237,4 @@ TEST(Completion, never_opens_what_was_blocked) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::reference_completion_test

@@ -13,7 +13,7 @@
 #include "tests/support/random_scenes.h"
 #include "tests/support/scenes.h"
 
-namespace alcove {
+namespace alcove::reference_layers_test {
 namespace {
 
 using namespace test;
@@ -120,4 +120,4 @@ TEST(Hidden, a_copy_of_the_first_depth_and_what_lies_beyond_the_sphere_change_no
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::reference_layers_test

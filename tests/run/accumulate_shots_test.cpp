@@ -10,7 +10,7 @@
 #include "tests/support/device.h"
 #include "tests/support/walked_shot.h"
 
-namespace alcove {
+namespace alcove::accumulate_shots_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -243,4 +243,4 @@ TEST_F(AccumulatedShots, a_folder_of_stats_that_another_run_has_taken_away_is_ma
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::accumulate_shots_test

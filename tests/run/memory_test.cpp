@@ -9,7 +9,7 @@
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
 
-namespace alcove {
+namespace alcove::memory_test {
 namespace {
 
 using namespace test;
@@ -193,4 +193,4 @@ TEST_F(Memory, is_expected_of_what_completed_surfaces_take) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::memory_test

@@ -9,7 +9,7 @@
 #include "tests/support/exr_header.h"
 #include "tests/support/sequence_folder.h"
 
-namespace alcove {
+namespace alcove::notes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -203,4 +203,4 @@ TEST(NoteTable, is_that_of_the_page) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::notes_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/sequence_folder.h"
 
-namespace alcove {
+namespace alcove::output_names_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ TEST_F(InputNames, that_are_globs_are_answered_with_the_pattern) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::output_names_test

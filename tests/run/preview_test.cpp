@@ -6,7 +6,7 @@
 #include "core/formats/exr.h"
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::preview_test {
 namespace {
 
 using namespace test;
@@ -117,4 +117,4 @@ TEST_F(Preview, of_another_look_is_made_again_by_resume) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::preview_test

@@ -10,7 +10,7 @@
 #include "tests/support/device.h"
 #include "tests/support/walked_shot.h"
 
-namespace alcove {
+namespace alcove::shot_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -384,4 +384,4 @@ TEST_F(Shots, files_that_know_what_is_hidden_leave_others_nothing_to_add) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::shot_test

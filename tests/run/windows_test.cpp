@@ -8,7 +8,7 @@
 #include "core/base/image.h"
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::windows_test {
 namespace {
 
 using namespace test;
@@ -137,4 +137,4 @@ TEST_F(Windows, materials_without_pixels_are_open_and_mattes_without_pixels_take
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::windows_test

@@ -26,7 +26,7 @@
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 
-namespace alcove {
+namespace alcove::accuracy_test {
 namespace {
 
 using namespace test;
@@ -227,4 +227,4 @@ TEST(Accuracy, of_positions_too_far_off_to_tell_any_height_feigns_nothing) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::accuracy_test

@@ -7,7 +7,7 @@
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 
-namespace alcove {
+namespace alcove::devices_test {
 namespace {
 
 using namespace test;
@@ -35,4 +35,4 @@ TEST(Devices, agree) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::devices_test

@@ -22,7 +22,7 @@
 #include "tests/support/difference.h"
 #include "tests/support/long_tests.h"
 
-namespace alcove {
+namespace alcove::grid_test {
 namespace {
 
 using namespace test;
@@ -191,4 +191,4 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::grid_test

@@ -15,7 +15,7 @@
 #include "tests/support/difference.h"
 #include "tests/support/single_pass.h"
 
-namespace alcove {
+namespace alcove::metamorphic_test {
 namespace {
 
 using namespace test;
@@ -309,4 +309,4 @@ TEST(Metamorphic, a_plane_at_a_grazing_angle_is_open) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::metamorphic_test

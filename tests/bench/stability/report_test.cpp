@@ -11,7 +11,7 @@
 #include "tests/support/device.h"
 #include "tests/support/long_tests.h"
 
-namespace alcove {
+namespace alcove::stability_report_test {
 namespace {
 
 using nlohmann::json;
@@ -69,4 +69,4 @@ TEST(StabilityReport, says_where_each_estimator_breaks_down_and_that_a_run_notes
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::stability_report_test
