@@ -42,18 +42,18 @@ namespace {
 
 int divided_down(std::int64_t number, int by) { return int(number >= 0 ? number / by : -((by - 1 - number) / by)); }
 
-/// The first block whose pixel at `place` within it is at x or to the right of it.
+/// The first block whose pixel at `place` within it lies at x or farther right.
 int first_block(std::int64_t x, int origin, int place, int factor) {
   return divided_down(x - origin - place + factor - 1, factor);
 }
 
-// Headers may put windows anywhere.
+// Headers may put windows anywhere, so sums need 64 bits.
 std::int64_t right_of(const Window& window) { return std::int64_t(window.x) + window.width; }
 std::int64_t below(const Window& window) { return std::int64_t(window.y) + window.height; }
 
 int middle_of(int factor) { return factor / 2; }
 
-/// From the first to the one before the last.
+/// The window of blocks from `left`, `top` to before `right`, `bottom`.
 Window of_blocks(int left, int top, int right, int bottom, const Window& display, int factor) {
   return {divided_down(display.x, factor) + left, divided_down(display.y, factor) + top, right - left, bottom - top};
 }
@@ -121,8 +121,8 @@ void copy_enlarged(const float* from, const Window& small, float* to, const Wind
   const Window part = common_part(blocks, to_window);
   for (int y = part.y; y < part.y + part.height; y++) {
     const float* row = from + std::size_t((y - blocks.y) / factor) * std::size_t(small.width);
-    float* const there = to + std::size_t(y - to_window.y) * std::size_t(to_window.width);
-    for (int x = part.x; x < part.x + part.width; x++) there[x - to_window.x] = row[(x - blocks.x) / factor];
+    float* const to_row = to + std::size_t(y - to_window.y) * std::size_t(to_window.width);
+    for (int x = part.x; x < part.x + part.width; x++) to_row[x - to_window.x] = row[(x - blocks.x) / factor];
   }
 }
 

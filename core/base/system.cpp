@@ -57,8 +57,8 @@ void remember_signal(int number) {
   signal_number.compare_exchange_strong(none, number);
 }
 
-/// Takes the lock that says "somebody is writing this". On file systems without locks nothing is locked: then only
-/// who waits for the lock goes on without it.
+/// Takes the lock that marks a file as being written. File systems without locks lock nothing; there, only a caller
+/// that waits goes on without a lock.
 bool lock(int descriptor, bool waits) {
   while (::flock(descriptor, LOCK_EX | (waits ? 0 : LOCK_NB)) != 0)
     if (errno != EINTR) return waits && errno != EWOULDBLOCK;
@@ -77,7 +77,7 @@ std::error_code write_bytes_at(int descriptor, std::uint64_t offset, std::span<c
   return {};
 }
 
-/// Whether a file system merely does not know the call.
+/// Whether the error only means that the file system lacks the call.
 bool is_unsupported(int error) { return error == EINVAL || error == ENOSYS || error == ENOTSUP || error == EROFS; }
 
 }  // namespace
@@ -210,16 +210,16 @@ std::error_code LockedFile::write_at(std::uint64_t offset, std::span<const char>
 void LockedFile::take_after(const std::string& path) {
   struct stat before {};
   if (::lstat(path.c_str(), &before) != 0 || !S_ISREG(before.st_mode)) return;
-  // Only root gives files away; whoever is a member of the group may hand over to it.
+  // Only root may give files away; members of a group may hand files over to it.
   const bool has_owner = ::fchown(descriptor_, before.st_uid, before.st_gid) == 0;
   const bool has_group = has_owner || ::fchown(descriptor_, uid_t(-1), before.st_gid) == 0;
-  // Without the group that they were meant for, the group's permissions would let others in.
+  // Without its group, the permissions for the group would let others in.
   const mode_t kept = has_owner ? 07777 : has_group ? 0777 : 0707;
   ::fchmod(descriptor_, before.st_mode & kept);
 }
 
 std::error_code LockedFile::sync() {
-  // File systems of networks let a signal interrupt these calls.
+  // On network file systems, signals can interrupt these calls.
   int failed = 0;
   do {
     failed = ::fsync(descriptor_);
@@ -239,15 +239,15 @@ void LockedFile::close() {
 
 namespace {
 
-/// What the files of one version of control groups are called.
+/// The names of the files of one version of control groups.
 struct GroupFiles {
   std::vector<const char*> limits;  // each a number of bytes, or "max"
   const char* usage;
-  std::vector<std::string> caches;  // of memory.stat: what is kept of files, which goes where memory is short
+  std::vector<std::string> caches;  // words of memory.stat: cached files, which are dropped if memory is short
 };
 const GroupFiles kVersion1{
     {"memory.limit_in_bytes"}, "memory.usage_in_bytes", {"total_inactive_file", "total_active_file"}};
-// Above memory.high processes are slowed down until they stand still.
+// Above memory.high, processes are slowed down to a standstill.
 const GroupFiles kVersion2{{"memory.max", "memory.high"}, "memory.current", {"inactive_file", "active_file"}};
 
 std::optional<std::uint64_t> number_in(std::string_view text) {
@@ -257,14 +257,14 @@ std::optional<std::uint64_t> number_in(std::string_view text) {
   return number;
 }
 
-/// The only number in a file; nothing where there is none, as in "max".
+/// The only number in a file; nothing if there is none, as in "max".
 std::optional<std::uint64_t> number_of_file(const std::string& path) {
   std::ifstream file(path);
   std::string word;
   return file >> word ? number_in(word) : std::nullopt;
 }
 
-/// The sum of the numbers behind some words at the beginnings of a file's lines; nothing where there is none of them.
+/// The sum of the numbers behind the given words at the beginnings of a file's lines; nothing if no line has any.
 std::optional<std::uint64_t> sum_of_lines(const std::string& path, const std::vector<std::string>& words) {
   std::ifstream file(path);
   std::optional<std::uint64_t> sum;
@@ -277,7 +277,7 @@ std::optional<std::uint64_t> sum_of_lines(const std::string& path, const std::ve
   return sum;
 }
 
-/// What is left in one group, whatever holds above it.
+/// The bytes left in one group, without regard to the groups above it.
 std::uint64_t left_in_group(const std::string& folder, const GroupFiles& files) {
   std::uint64_t limit = kNoMemoryLimit;
   for (const char* name : files.limits)
@@ -289,7 +289,7 @@ std::uint64_t left_in_group(const std::string& folder, const GroupFiles& files) 
   return limit - std::min(limit, taken);
 }
 
-/// A hierarchy of control groups that is mounted: which of its groups is seen at which folder.
+/// A mounted hierarchy of control groups: the group that its folder shows.
 struct GroupMount {
   std::string group, folder;
   bool is_version_2 = false;
@@ -335,9 +335,9 @@ std::vector<GroupMount> group_mounts(const std::string& root) {
   return mounts;
 }
 
-/// The least that is left in a group and in all that are above it and can be seen.
+/// The least bytes left in a group and in all visible groups above it.
 std::uint64_t left_upwards(const std::string& root, const GroupMount& mount, const std::string& group) {
-  // A container may see its own group as the top of the hierarchy, or a path that leads out of what it sees.
+  // A container may see its own group as the top of the hierarchy, or by a path that leads outside of its view.
   std::string below = group;
   const std::string top = mount.group == "/" ? "" : mount.group;
   if (below == top || below.starts_with(top + "/"))
@@ -348,15 +348,15 @@ std::uint64_t left_upwards(const std::string& root, const GroupMount& mount, con
   while (below.ends_with('/')) below.pop_back();
 
   const GroupFiles& files = mount.is_version_2 ? kVersion2 : kVersion1;
-  std::uint64_t left = kNoMemoryLimit;
+  std::uint64_t least = kNoMemoryLimit;
   while (true) {
-    left = std::min(left, left_in_group(root + mount.folder + below, files));
-    if (below.empty()) return left;
+    least = std::min(least, left_in_group(root + mount.folder + below, files));
+    if (below.empty()) return least;
     below.resize(below.rfind('/') == below.npos ? 0 : below.rfind('/'));
   }
 }
 
-/// A number that a variable of the environment holds; nothing where it holds none, or one beyond all machines.
+/// The number in an environment variable; nothing if it holds none, or one too large for any machine.
 std::optional<std::uint64_t> number_of_variable(const char* name) {
   constexpr std::uint64_t kMost = 1ull << 28;  // MiB: 256 TiB
   const char* text = std::getenv(name);
@@ -369,7 +369,7 @@ std::optional<std::uint64_t> number_of_variable(const char* name) {
 std::uint64_t memory_left_in_groups(const std::string& root) {
   const std::vector<GroupMount> mounts = group_mounts(root);
   std::ifstream file(root + "/proc/self/cgroup");
-  std::uint64_t left = kNoMemoryLimit;
+  std::uint64_t least = kNoMemoryLimit;
   // A line is "ID:CONTROLLERS:GROUP"; version 2 names no controllers.
   for (std::string line; std::getline(file, line);) {
     const std::size_t first = line.find(':'), second = first == line.npos ? first : line.find(':', first + 1);
@@ -377,9 +377,9 @@ std::uint64_t memory_left_in_groups(const std::string& root) {
     const std::string controllers = line.substr(first + 1, second - first - 1), group = line.substr(second + 1);
     if (!controllers.empty() && !is_in_list("memory", controllers)) continue;
     for (const auto& mount : mounts)
-      if (mount.is_version_2 == controllers.empty()) left = std::min(left, left_upwards(root, mount, group));
+      if (mount.is_version_2 == controllers.empty()) least = std::min(least, left_upwards(root, mount, group));
   }
-  return left;
+  return least;
 }
 
 std::uint64_t memory_left_on_machine(const std::string& root) {

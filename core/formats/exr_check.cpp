@@ -23,19 +23,20 @@ namespace {
 
 constexpr std::size_t kLongestName = 255;
 constexpr std::uint32_t kMultiPart = 0x1000;             // of the version's flags
-constexpr std::uint64_t kLinesPerChunk = 256;            // at most, of any compression
+constexpr std::uint64_t kLinesPerChunk = 256;            // the most of any compression
 constexpr std::string_view kDeepLines = "deepscanline";  // a type of parts, which compresses each line by itself
 constexpr std::uint64_t kOffset = 8;                     // bytes of a chunk's place in the file
-// At most: DWA keeps 2 bytes of a constant block of 64 pixels, and deflate packs these 1032:1.
+// The most pixels per byte: DWA keeps 2 bytes of a constant block of 64 pixels, and deflate packs these 1032:1.
 constexpr std::uint64_t kPixelsPerByte = 65536;
-// The longest header: ten times what programs write, and small beside a frame. Several copies of it are held.
+// The longest header: ten times the longest that programs write, and small beside a frame. Several copies of it are
+// held.
 constexpr std::uint64_t kMostBytes = 32 << 20;
 
 struct Reader {
   std::istream& file;
   std::uint64_t size = 0;
 
-  std::uint64_t left() { return size - std::uint64_t(file.tellg()); }
+  std::uint64_t bytes_left() { return size - std::uint64_t(file.tellg()); }
   std::optional<std::uint32_t> word() {
     std::array<unsigned char, 4> b{};
     if (!file.read(reinterpret_cast<char*>(b.data()), 4)) return std::nullopt;
@@ -98,7 +99,7 @@ class Walk {
 
   void check_part(const Claim& claim) {
     const bool is_dense = claim.height > 0 && claim.width > kPixelsPerByte * reader_.size / claim.height;
-    if (is_dense || claim.chunks() > reader_.left() / kOffset)
+    if (is_dense || claim.chunks() > reader_.bytes_left() / kOffset)
       refuse(fmt::format("{} x {} pixels in a file of {} bytes", claim.width, claim.height, reader_.size));
   }
 
@@ -106,7 +107,8 @@ class Walk {
     claim.has_attributes = true;
     const auto type = reader_.name();
     const auto size = reader_.word();
-    if (!type || !size || *size > reader_.left()) refuse(fmt::format("attribute {} is larger than the file", name));
+    if (!type || !size || *size > reader_.bytes_left())
+      refuse(fmt::format("attribute {} is larger than the file", name));
     const auto next = reader_.file.tellg() + std::streamoff(*size);
     if (std::uint64_t(next) > kMostBytes) refuse(fmt::format("it is longer than {} MiB", kMostBytes >> 20));
     if (name == "dataWindow" && *size == 16) read_window(claim);
@@ -131,7 +133,7 @@ class Walk {
   }
 
   void read_chunk_count() {
-    if (const std::uint32_t count = *reader_.word(); count > reader_.left() / kOffset)
+    if (const std::uint32_t count = *reader_.word(); count > reader_.bytes_left() / kOffset)
       refuse(fmt::format("{} chunks in a file of {} bytes", count, reader_.size));
   }
 
@@ -155,7 +157,7 @@ std::uint64_t require_sane_header(std::istream& file, const std::string& path, c
 
 namespace {
 
-/// Whether all chunks of a part lie within so many bytes.
+/// Checks whether all chunks of a part lie within the file's bytes.
 class PartOfFile {
  public:
   PartOfFile(exr_const_context_t file, int part, std::uint64_t size) : file_(file), part_(part), size_(size) {}

@@ -42,10 +42,10 @@ namespace alcove {
 
 namespace {
 
-constexpr std::size_t kLongestText = std::size_t(1) << 16;  // of an attribute that is looked at
+constexpr std::size_t kLongestText = std::size_t(1) << 16;  // bytes given of a text attribute
 constexpr std::size_t kMostPixels = std::size_t(1) << 28;   // in host memory: one gigabyte per channel
 
-/// How many rows are compressed together, as the specification of OpenEXR's file layout has it.
+/// The rows that are compressed together, by the specification of OpenEXR's file layout.
 int rows_together(const Imf::Header& header) {
   if (header.hasTileDescription()) return int(header.tileDescription().ySize);
   switch (header.compression()) {
@@ -60,7 +60,7 @@ int rows_together(const Imf::Header& header) {
   }
 }
 
-/// For each thread OpenEXR keeps two groups of rows: as they are stored, as they are, and once more in between.
+/// For each thread OpenEXR keeps two groups of rows, each in three copies: packed, in between, and unpacked.
 constexpr std::uint64_t kGroups = 2, kCopies = 3;
 
 std::atomic<std::uint64_t> codec_bytes = std::numeric_limits<std::uint64_t>::max();
@@ -70,7 +70,7 @@ std::uint64_t bytes_of_codec(std::uint64_t group_bytes, int threads) {
   return kCopies * group_bytes * std::max<std::uint64_t>(1, kGroups * std::uint64_t(threads));
 }
 
-/// As many threads as may work on groups of rows of this size within so many bytes.
+/// The number of threads that may work on groups of rows of this size within so many bytes.
 int threads_for(std::uint64_t group_bytes, std::uint64_t most_bytes) {
   const std::uint64_t of_thread = std::max<std::uint64_t>(1, kCopies * kGroups * group_bytes);
   return int(std::min(most_bytes / of_thread, std::uint64_t(Imf::globalThreadCount())));
@@ -140,7 +140,7 @@ std::string text_of(const Imf::Attribute& attribute) {
   return std::string("(") + attribute.typeName() + ")";
 }
 
-/// The surface of a channel that samples make, and whether it is its end.
+/// The surface of a deep channel, and whether the channel is its back.
 std::optional<std::pair<std::size_t, bool>> place_of_deep(const std::string& channel) {
   for (std::size_t surface = 0; surface < kMostDeepSurfaces; surface++)
     for (const bool back : {false, true})
@@ -152,20 +152,20 @@ std::optional<std::pair<std::size_t, bool>> place_of_deep(const std::string& cha
 
 struct ExrFile::Impl {
   std::string path, option;
-  std::ifstream bytes;  // it is opened once
+  std::ifstream bytes;  // opened once
   std::unique_ptr<Imf::StdIFStream> stream;
   std::unique_ptr<Imf::MultiPartInputFile> file;
   std::vector<ExrPart> parts;
   Window display;
   double pixel_aspect = 1;
-  std::uint64_t group = 0;                 // bytes of the rows that are decoded together; 0 where there is no file
-  std::uint64_t codec_bytes = 0;           // that reading takes
-  int threads = 0;                         // that may read it
-  std::unique_ptr<PictureReader> picture;  // where there is no file
-  std::unique_ptr<DeepReader> deep;        // where deep parts are taken
-  int deep_part = -1;                      // the first of them
-  std::uint64_t deep_bytes = 0;            // that reading them takes
-  std::uint64_t header_bytes = 0;          // of the file
+  std::uint64_t group = 0;                 // bytes of the rows that are decoded together; 0 for other formats
+  std::uint64_t codec_bytes = 0;           // memory of reading
+  int threads = 0;                         // that may decode
+  std::unique_ptr<PictureReader> picture;  // instead of `file`, for other formats
+  std::unique_ptr<DeepReader> deep;        // after take_deep()
+  int deep_part = -1;                      // its first part
+  std::uint64_t deep_bytes = 0;            // its memory
+  std::uint64_t header_bytes = 0;          // length of the file's header
 
   void open(int threads_of_codec) {
     stream->clear();
@@ -173,7 +173,7 @@ struct ExrFile::Impl {
     file = std::make_unique<Imf::MultiPartInputFile>(*stream, threads_of_codec);
   }
 
-  /// Reads the header again where all threads would work on more bytes than they may.
+  /// Opens the file again with fewer threads if all threads would work on more bytes than they may.
   void limit_codec() {
     for (const auto& part : parts)
       if (!part.deep) group = std::max(group, group_bytes(part));
@@ -203,7 +203,7 @@ struct ExrFile::Impl {
     input.readPixels(band.y, band.y + band.height - 1);
   }
 
-  /// Adds the deep parts with their places.
+  /// Adds the wanted deep parts with the places of their tables of chunks.
   void add_stored_deep(const std::vector<int>& wanted, std::vector<DeepStored>& stored) const {
     std::uint64_t offsets = header_bytes;
     for (int part = 0; part < file->parts(); part++) {
@@ -214,7 +214,7 @@ struct ExrFile::Impl {
     }
   }
 
-  /// Reads those of the channels that samples make.
+  /// Reads the channels that are made of deep samples.
   void read_deep(std::span<const ExrRead> reads, int first, int rows) const {
     std::vector<DeepRead> planes;
     for (const auto& read : reads) {
@@ -228,7 +228,7 @@ struct ExrFile::Impl {
     if (!planes.empty()) deep->read(planes, first, rows);
   }
 
-  /// One part with these channels.
+  /// Describes a picture of one part with these channels.
   Impl(const std::string& path_, const char* option_, const Window& data, const Window& display_,
        const std::vector<std::string>& names)
       : path(path_), option(option_), parts{{"", "", {}, data, {}}}, display(display_) {
@@ -272,8 +272,7 @@ ExrFile::ExrFile(const std::string& path, const char* option, std::unique_ptr<Pi
 
 void require_host_room(const std::string& path, const Window& data) {
   if (data.pixels() > kMostPixels)
-    fail(ErrorKind::input, "{}: {} are more pixels than are read as a whole; use a smaller frame", path,
-         to_string(data));
+    fail(ErrorKind::input, "{}: {} are too many pixels to read at once; use a smaller frame", path, to_string(data));
 }
 
 ExrFile::~ExrFile() = default;
@@ -349,7 +348,7 @@ void ExrFile::close() {
 }
 
 void ExrFile::read(std::span<const ExrRead> reads) {
-  // All parts that are read together cover the same pixels.
+  // Parts that are read together cover the same pixels.
   if (!reads.empty()) read(reads, 0, impl_->parts[std::size_t(reads[0].part)].data.height);
 }
 
@@ -363,15 +362,15 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
   }
   impl_->read_deep(reads, first, rows);
   std::map<int, std::vector<ExrRead>> parts;
-  std::vector<std::pair<ExrRead, const float*>> again;  // of channels that are wanted more than once
+  std::vector<std::pair<ExrRead, const float*>> repeats;  // further reads of a channel, with the first one's plane
   for (const auto& read : reads) {
     if (impl_->parts[std::size_t(read.part)].deep) continue;
     auto& of_part = parts[read.part];
-    const auto known = std::ranges::find(of_part, read.channel, &ExrRead::channel);
-    if (known == of_part.end())
+    const auto earlier = std::ranges::find(of_part, read.channel, &ExrRead::channel);
+    if (earlier == of_part.end())
       of_part.push_back(read);
     else
-      again.emplace_back(read, known->to);
+      repeats.emplace_back(read, earlier->to);
   }
   for (const auto& [part, of_part] : parts) {
     try {
@@ -381,7 +380,7 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
            impl_->path, part, impl_->option, one_line(error));
     }
   }
-  for (const auto& [read, from] : again)
+  for (const auto& [read, from] : repeats)
     std::copy_n(from, std::size_t(rows) * std::size_t(impl_->parts[std::size_t(read.part)].data.width), read.to);
 }
 

@@ -15,8 +15,8 @@ namespace alcove {
 
 namespace {
 
-/// Pieces that several threads share. All hand over under a mutex of ours, since the thread sanitizer does not see that
-/// of the pool.
+/// Pieces of work that several threads share. They hand over under a mutex of this class, since the thread sanitizer
+/// does not see that of the pool.
 class Shared {
  public:
   Shared(std::size_t pieces, const std::function<void(std::size_t, std::size_t)>& work) : pieces_(pieces), work_(work) {
@@ -42,7 +42,7 @@ class Shared {
     }
   }
 
-  /// Call it once all have helped.
+  /// Throws the failure, if any. Call it after all threads have helped.
   void end() {
     const std::lock_guard lock(mutex_);
     if (failure_) std::rethrow_exception(failure_);
@@ -84,14 +84,12 @@ void on_exr_threads(std::size_t pieces, std::size_t workers,
   shared.end();
 }
 
-/// Gives OpenEXR's description of an error on one line.
 std::string one_line(const std::exception& error) {
   std::string text = error.what();
   std::ranges::replace(text, '\n', ' ');
   return text;
 }
 
-/// Whether an attribute says how the input is stored or what its channels are, which does not hold for another file.
 bool describes_storage(const std::string& name) {
   static const std::set<std::string> kNames = {"channels",
                                                "compression",

@@ -1,4 +1,4 @@
-// Writes EXR files, and copies in which some channels are others. Both go into a stream that keeps what fails.
+// Writes EXR files, and copies with some channels replaced. Both go into a stream that keeps its failures.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/exr.h"
 
@@ -58,8 +58,8 @@ struct ExrWriter::Impl {
   ExrOutput output;  // without pixels
   FileStream stream;
   std::unique_ptr<ZipWriter> zip;
-  std::unique_ptr<Imf::OutputFile> file;  // where it is not ZIP
-  int rows = 0;                           // that are written
+  std::unique_ptr<Imf::OutputFile> file;  // for other compressions than ZIP
+  int rows = 0;                           // written so far
 
   Impl(const std::string& path_, const ExrOutput& output_) : path(path_), output(output_), stream(path_) {}
 
@@ -137,7 +137,7 @@ void write_exr(const std::string& path, const ExrOutput& output) {
 
 namespace {
 
-/// Whether decoding and encoding again changes numbers that were encoded once.
+/// Whether encoding again changes numbers that were encoded once.
 bool loses(Imf::Compression compression) {
   return compression == Imf::B44_COMPRESSION || compression == Imf::B44A_COMPRESSION ||
          compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
@@ -148,7 +148,7 @@ std::string type_of(const Imf::Header& header) {
   return header.hasTileDescription() ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE;
 }
 
-/// Copies a part as it is compressed.
+/// Copies the compressed chunks of a part.
 void copy_chunks(Imf::MultiPartInputFile& from, Imf::MultiPartOutputFile& to, int part) {
   const std::string type = type_of(from.header(part));
   const auto copy = [&](auto input, auto output) { output.copyPixels(input); };
@@ -175,11 +175,11 @@ struct ExrCopy::Impl {
   ExrCopySettings settings;
   FileStream stream;
   std::unique_ptr<Imf::MultiPartInputFile> original;
-  std::unique_ptr<ZipWriter> zip;                                   // where the only part is such lines
-  std::unique_ptr<Imf::MultiPartOutputFile> file;                   // where it is not
-  std::vector<bool> by_rows;                                        // of each part; else by chunks
-  std::map<std::pair<int, std::string>, std::vector<char>> passed;  // rows of channels that pass through
-  int rows = 0;                                                     // that are written
+  std::unique_ptr<ZipWriter> zip;                                   // if the only part is ZIP lines
+  std::unique_ptr<Imf::MultiPartOutputFile> file;                   // otherwise
+  std::vector<bool> by_rows;                                        // one per part; false: by chunks
+  std::map<std::pair<int, std::string>, std::vector<char>> passed;  // rows of unchanged channels
+  int rows = 0;                                                     // written so far
 
   Impl(const std::string& path_, const ExrCopySettings& settings_) : path(path_), settings(settings_), stream(path_) {}
 
@@ -236,7 +236,7 @@ struct ExrCopy::Impl {
     return header;
   }
 
-  /// Whether ZipWriter writes the only part. OpenEXR refuses what would become integers.
+  /// Whether ZipWriter writes the only part. It does not write integer channels, which OpenEXR refuses.
   bool is_for_zip(const Imf::Header& header) const {
     const auto is_integer = [&](const CopiedPlane& plane) {
       return header.channels()[plane.channel.c_str()].type == Imf::UINT;
@@ -245,7 +245,7 @@ struct ExrCopy::Impl {
            std::ranges::none_of(settings.planes, is_integer);
   }
 
-  /// `copies_chunks`: they come from a file that is whole already.
+  /// `copies_chunks`: the chunks come from a file that is whole already.
   void begin(bool copies_chunks = false) {
     std::vector<Imf::Header> headers;
     for (int part = 0; part < original->parts(); part++) headers.push_back(header_of(part));
@@ -255,7 +255,7 @@ struct ExrCopy::Impl {
       file = std::make_unique<Imf::MultiPartOutputFile>(stream, headers.data(), int(headers.size()));
   }
 
-  /// Reads rows of all channels of a part that pass through, and adds them to what is written of it.
+  /// Reads rows of all unchanged channels of a part, and adds them to the buffer to write.
   void read_rows(int part, const Window& band, Imf::FrameBuffer& to) {
     std::set<std::string> replaced;
     for (const auto& plane : settings.planes)
@@ -271,7 +271,7 @@ struct ExrCopy::Impl {
       const std::size_t bytes = bytes_of(channel.type);
       std::vector<char>& samples = passed[{part, at.name()}];
       samples.resize(bytes * rows_of_original.pixels());
-      // Whether rows are read or written, the slice begins at the same sample.
+      // For reading and for writing, the slice begins at the same sample.
       const auto slice = Imf::Slice::Make(channel.type, samples.data(), box_of(rows_of_original), bytes, 0,
                                           channel.xSampling, channel.ySampling);
       from.insert(at.name(), slice);
@@ -288,7 +288,7 @@ struct ExrCopy::Impl {
     });
   }
 
-  /// Writes rows, of which the planes begin with the first.
+  /// Writes the rows of `band`; the planes begin with its first row.
   void write_zip(const Window& band, std::span<const std::span<const float>> planes) {
     Imf::FrameBuffer ignored;
     read_rows(0, band, ignored);
@@ -304,7 +304,7 @@ struct ExrCopy::Impl {
     zip->write(sources, std::size_t(band.height));
   }
 
-  /// Writes rows of every part that is copied by rows; `planes` has a slice for each plane.
+  /// Writes the rows of `band` of every part that is copied by rows; `planes` has a slice for each plane.
   void write_rows(const Window& band, const std::vector<Imf::Slice>& planes) {
     for (int part = 0; part < original->parts(); part++) {
       if (!by_rows[std::size_t(part)]) continue;

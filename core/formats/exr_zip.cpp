@@ -1,4 +1,4 @@
-// ZIP lines: chunks are inflated and deflated with libdeflate, on as many threads as are free, in the order of the file.
+// ZIP lines: chunks are packed and unpacked with libdeflate, on as many threads as are free, in the order of the file.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/exr_zip.h"
 
@@ -37,7 +37,7 @@ std::size_t bytes_in_memory(const ZipChannel& channel) {
   return channel.as_floats ? sizeof(float) : bytes_of(channel.type);
 }
 
-/// `from`: samples as the file has them.
+/// Converts a row. `from` holds samples as the file has them.
 void write_row(const ZipChannel& channel, const std::uint8_t* from, std::size_t width, std::byte* to) {
   if (channel.as_floats && channel.type == SampleType::half_float)
     widen(from, width, reinterpret_cast<float*>(to));
@@ -60,7 +60,7 @@ ZipUnpacker::~ZipUnpacker() = default;
 bool ZipUnpacker::unpack(std::span<const std::uint8_t> packed, const ZipRows& rows,
                          std::span<const ZipChannel> channels) {
   const std::size_t bytes = rows.row_bytes * rows.rows;
-  // What packing would make no shorter is stored as it is.
+  // Bytes that packing would not shorten are stored as they are.
   if (packed.size() >= bytes) {
     read_stored(packed, rows, channels);
     return true;
@@ -71,7 +71,7 @@ bool ZipUnpacker::unpack(std::span<const std::uint8_t> packed, const ZipRows& ro
   return true;
 }
 
-/// It succeeds where there are exactly as many bytes, and their checksum is right.
+/// Inflates into split_. Succeeds if there are exactly `bytes` bytes and their checksum is right.
 bool ZipUnpacker::inflate(std::span<const std::uint8_t> packed, std::size_t bytes) {
   if (room_ < bytes) {
     split_ = std::make_unique_for_overwrite<std::uint8_t[]>(bytes);
@@ -81,7 +81,7 @@ bool ZipUnpacker::inflate(std::span<const std::uint8_t> packed, std::size_t byte
          LIBDEFLATE_SUCCESS;
 }
 
-/// Of what lies between the wanted bytes nothing but the sum is needed.
+/// Sums up the wanted bytes. Of the bytes between them only the sum is needed.
 void ZipUnpacker::sum_up(const ZipRows& rows, std::span<const ZipChannel> channels) {
   constexpr std::uint8_t kBeforeFirst = 128;  // so that the first byte is itself
   const std::size_t half = rows.row_bytes * rows.rows / 2;
@@ -128,7 +128,7 @@ std::span<const std::uint8_t> ZipPacker::pack(std::span<const std::uint8_t> rows
   split_.resize(rows.size());
   packed_.resize(rows.size());
   split_to_differences(rows.data(), rows.size() / 2, split_.data());
-  // It gives 0 where there is not that much room.
+  // libdeflate gives 0 if the room is too small.
   const std::size_t bytes =
       libdeflate_zlib_compress(deflater_.get(), split_.data(), split_.size(), packed_.data(), rows.size() - 1);
   return bytes > 0 ? std::span<const std::uint8_t>(packed_).first(bytes) : rows;
@@ -172,7 +172,7 @@ class ZipReading {
     std::unique_ptr<std::uint8_t[]> packed;
   };
 
-  /// `top`: of its rows, counted from the data window's first.
+  /// Reads the chunk whose first row is `top`, counted from the data window's first.
   void read_chunk(int top, Worker& worker) {
     const std::size_t chunk_bytes = row_bytes_ * std::size_t(chunk_rows_);
     if (!worker.packed) worker.packed = std::make_unique_for_overwrite<std::uint8_t[]>(chunk_bytes);
@@ -228,12 +228,12 @@ void read_zip_rows(const Imf::InputPart& part, std::span<const ZipRead> reads, i
 
 namespace {
 
-/// As OpenEXR has it for its own, so that no thread waits for the slowest.
+/// Chunks per thread, as in OpenEXR's own code, so that no thread waits for the slowest.
 constexpr std::size_t kChunksOfThread = 2;
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
-/// A type that the input's header brought along is that of another file.
+/// Makes the header one of scan lines: the type in an input's header is that of another file.
 Imf::Header of_lines(Imf::Header header) {
   if (header.hasType()) header.setType(Imf::SCANLINEIMAGE);
   return header;
@@ -273,21 +273,21 @@ void ZipWriter::write(std::span<const Source> sources, std::size_t rows) {
   if (rows > height_ - std::min(height_, offsets_.size() * chunk_rows_) - chunks_[0].rows)
     throw std::logic_error("there are more rows than pixels");
   for (std::size_t row = 0; row < rows;) {
-    std::size_t count = 0;  // chunks that are full
+    std::size_t count = 0;  // full chunks
     std::vector<std::size_t> firsts, taken;
     for (; count < chunks_.size() && row < rows; count++) {
-      const std::size_t has = chunks_[count].rows, wants = rows_of(offsets_.size() + count) - has;
+      const std::size_t filled = chunks_[count].rows, missing = rows_of(offsets_.size() + count) - filled;
       firsts.push_back(row);
-      taken.push_back(std::min(wants, rows - row));
+      taken.push_back(std::min(missing, rows - row));
       row += taken.back();
-      if (taken.back() < wants) break;
+      if (taken.back() < missing) break;
     }
     on_exr_threads(taken.size(), exr_workers(taken.size(), kAll), [&](std::size_t i, std::size_t) {
       add_rows(chunks_[i], sources, firsts[i], taken[i]);
       if (i < count) chunks_[i].stored = chunks_[i].packer.pack(chunks_[i].bytes);
     });
     write_chunks(std::span(chunks_).first(count));
-    // What is not full yet is the first of the next.
+    // A chunk that is not full yet becomes the first of the next round.
     if (count > 0 && count < chunks_.size()) std::swap(chunks_[0], chunks_[count]);
   }
 }

@@ -20,7 +20,7 @@ namespace alcove {
 namespace {
 
 constexpr long kMostFrames = 1'000'000;
-constexpr long kFrameLimit = 1'000'000'000;  // all frame numbers are nearer to 0
+constexpr long kFrameLimit = 1'000'000'000;  // frame numbers lie nearer to 0
 constexpr int kMostPadding = 16;
 
 /// A place for the frame number in a path.
@@ -70,7 +70,7 @@ std::optional<Token> find_token(const std::string& path, std::size_t from) {
   return std::nullopt;
 }
 
-/// A range as it is written: a, a-b, a-bxS or a-b:S.
+/// A range of a list: a, a-b, a-bxS or a-b:S.
 struct Range {
   long first = 0, last = 0, step = 1;
 };
@@ -92,9 +92,9 @@ std::optional<Range> range_of(const std::string& text) {
   return range;
 }
 
-/// Adds one part of a list, which is for messages. `listed` counts frames as often as they are there.
+/// Adds one part of a list. `list` is for messages. `listed` counts frames, repeated ones too.
 void add_part(const std::string& text, const std::string& list, std::vector<int>& frames,
-              std::unordered_set<int>& known, long& listed) {
+              std::unordered_set<int>& distinct, long& listed) {
   const auto range = range_of(text);
   if (!range)
     fail(ErrorKind::usage,
@@ -109,10 +109,10 @@ void add_part(const std::string& text, const std::string& list, std::vector<int>
   if (listed > kMostFrames)
     fail(ErrorKind::usage, "--frames {}: with {} there are more than {} frames", list, text, kMostFrames);
   for (long frame = first; stride > 0 ? frame <= last : frame >= last; frame += stride)
-    if (known.insert(int(frame)).second) frames.push_back(int(frame));
+    if (distinct.insert(int(frame)).second) frames.push_back(int(frame));
 }
 
-/// Gives the frame whose path this is.
+/// Gives the frame with this path.
 std::optional<int> frame_of(const FramePattern& name, const std::string& text) {
   if (text.size() <= name.before.size() + name.after.size() || !text.starts_with(name.before) ||
       !text.ends_with(name.after))
@@ -133,7 +133,7 @@ bool is_passed_over(const std::string& ending) {
          std::ranges::find(kOfUnfinished, ending) != kOfUnfinished.end();
 }
 
-/// The ending of the name with its dot, in small letters, behind which others may be passed over; "" where there is
+/// The ending of a name, with its dot and in small letters; passed-over endings behind it do not count. "" if there is
 /// none.
 std::string ending_of(const std::string& path) {
   std::filesystem::path name = std::filesystem::path(path).filename();
@@ -157,7 +157,7 @@ std::optional<FramePattern> frame_pattern(const std::string& path) {
 
 std::vector<int> parse_frames(const std::string& list) {
   std::vector<int> frames;
-  std::unordered_set<int> known;
+  std::unordered_set<int> distinct;
   long listed = 0;
   std::istringstream parts(list + ",");
   for (std::string part; std::getline(parts, part, ',');) {
@@ -165,7 +165,7 @@ std::vector<int> parse_frames(const std::string& list) {
     std::string word;
     if (!(words >> word))
       fail(ErrorKind::usage, "--frames {}: the list is empty, or has nothing between two commas", list);
-    do add_part(word, list, frames, known, listed);
+    do add_part(word, list, frames, distinct, listed);
     while (words >> word);
   }
   return frames;
@@ -205,15 +205,15 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
 void require_ending(const std::string& path, const char* option, const char* ending, const char* format) {
   const std::string found = ending_of(path);
   if (found.empty() || found == ending) return;
-  fail(ErrorKind::usage, "{}: {} writes {} and nothing else: let its name end in {}", path, option, format, ending);
+  fail(ErrorKind::usage, "{}: {} writes only {}: let its name end in {}", path, option, format, ending);
 }
 
 namespace {
 
 constexpr const char* kDigits = "0123456789";
 constexpr const char* kSeparators = "._- ";
-constexpr std::size_t kUsualDigits = 4;  // so many has a frame's number where nothing else tells
-constexpr std::size_t kMostDigits = 9;   // more are a date, a time or a hash
+constexpr std::size_t kUsualDigits = 4;  // of a frame's number, if nothing else tells
+constexpr std::size_t kMostDigits = 9;   // longer numbers are dates, times or hashes
 
 /// A word between separators.
 struct Part {
@@ -224,7 +224,7 @@ struct Part {
 
 bool is_digits(const std::string& text) { return !text.empty() && text.find_first_not_of(kDigits) == text.npos; }
 
-/// "0005" of "shot0005"; "" of a word that ends otherwise.
+/// The digits at the end of a word: "0005" of "shot0005"; "" if there are none.
 std::string digits_at_end(const std::string& text) {
   const std::size_t last = text.find_last_not_of(kDigits);
   return last == text.npos ? text : text.substr(last + 1);
@@ -235,7 +235,7 @@ bool is_version(const std::string& text) {
   return text.size() > word.size() && (word.ends_with("v") || word == "ver" || word == "version");
 }
 
-/// "1920x1080"
+/// Whether a word is a size, such as "1920x1080".
 bool is_size(const std::string& text) {
   const std::size_t by = text.find_last_not_of(kDigits);
   return by != text.npos && by > 0 && lower_case(text.substr(by, 1)) == "x" && is_digits(text.substr(0, by));
@@ -256,7 +256,7 @@ std::vector<Part> parts_of(const std::string& name) {
   return parts;
 }
 
-/// Whether a number by itself is surely that of a frame. `before` are the parts before it.
+/// Whether a number by itself is surely that of a frame. `before` holds the parts before it.
 bool is_clear(const Part& part, std::span<const Part> before) {
   const bool is_long = part.text.size() >= kUsualDigits;
   const bool is_subversion = !before.empty() && is_version(before.back().text) && part.text.size() < 3;
@@ -270,7 +270,7 @@ FrameNumber number_of(const Part& part) {
   return {part.is_negative ? -number : number, part.text, ""};
 }
 
-/// Looks at a name in which no number stands by itself.
+/// Looks at the last word of a name in which no number stands by itself.
 FrameNumber at_end_of_word(const Part& part) {
   const std::string digits = digits_at_end(part.text);
   if (digits.empty() || is_size(part.text) || digits.size() > kMostDigits) return {};

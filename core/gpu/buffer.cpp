@@ -13,10 +13,10 @@ namespace {
 
 constexpr VkMemoryPropertyFlags kDeviceLocal = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
 constexpr VkMemoryPropertyFlags kHostVisible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
-/// Coherent: nothing has to be flushed or invalidated.
+/// Coherent memory needs no flush and no invalidation.
 constexpr VkMemoryPropertyFlags kHostWritten = kHostVisible | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 constexpr VkMemoryPropertyFlags kHostRead = kHostWritten | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
-/// All properties that need no feature of the device.
+/// The properties that need no feature of the device.
 constexpr VkMemoryPropertyFlags kPlain = kDeviceLocal | kHostRead;
 
 /// Properties that a type must have, and must not have.
@@ -25,7 +25,7 @@ struct Wish {
   VkMemoryPropertyFlags unwanted = 0;
 };
 
-// The wishes for each use, from the best on. Device memory that the host sees but does not cache can be a small window,
+// The wishes for each use, the best first. Device memory that the host sees but does not cache can be a small window,
 // so plain device memory goes before it.
 constexpr Wish kForKernels[] = {{kDeviceLocal | kHostRead}, {kDeviceLocal, kHostVisible}, {kDeviceLocal}};
 constexpr Wish kForHost[] = {{kHostRead, kDeviceLocal}, {kHostRead}, {kHostWritten, kDeviceLocal}, {kHostWritten}};
@@ -58,10 +58,10 @@ namespace {
 
 constexpr std::byte kUnwritten{0xff};  // four of them are a NaN
 
-/// A buffer of less than this is kept for any smaller size: it costs less than another allocation.
+/// Buffers smaller than this are kept for any smaller size: that costs less than another allocation.
 constexpr std::size_t kSmallBytes = 1 << 20;
 
-/// The host writes a few numbers into buffers while a frame is recorded, and pixels only before.
+/// While a frame is recorded, the host writes only a few numbers into buffers; it writes pixels before.
 constexpr std::size_t kRehearsedBytes = 1 << 16;
 
 double mebibytes(std::size_t bytes) { return double(bytes) / (1 << 20); }
@@ -88,10 +88,9 @@ Buffer::Buffer(std::size_t bytes, Use use)
 
 void Buffer::place(Device& device) {
   if (!allocate(device, MemoryUse::kernels, device_side_))
-    throw OutOfMemory(
-        ErrorKind::device,
-        fmt::format("{} has no room for a buffer of {:.1f} MiB: end what else uses its memory, or use another --device",
-                    device.info().name, mebibytes(bytes_)));
+    throw OutOfMemory(ErrorKind::device, fmt::format("{} has no room for a buffer of {:.1f} MiB: end other programs "
+                                                     "that use its memory, or use another --device",
+                                                     device.info().name, mebibytes(bytes_)));
   if (device_side_.is_cached && device.options().map_memory) host_ = map(device, device_side_);
   if (use_ == Use::upload) make_staging(device);
 }

@@ -46,7 +46,8 @@ bool is_among(const std::vector<VkExtensionProperties>& extensions, const char* 
   return std::ranges::any_of(extensions, [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
-/// Loaders hide devices that have only a portable part of Vulkan, such as MoltenVK's, unless a program asks for them.
+/// Whether the loader hides devices with only a portable part of Vulkan, such as MoltenVK's, unless a program asks for
+/// them.
 bool loader_hides_devices() {
   std::uint32_t count = 0;
   if (vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr) != VK_SUCCESS) return false;
@@ -55,7 +56,7 @@ bool loader_hides_devices() {
   return is_among(extensions, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
 }
 
-/// The first thing that the kernels need and a device lacks; empty when it lacks nothing.
+/// The first thing that the kernels need and a device lacks; empty if it lacks nothing.
 std::string missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan 1.2";
   if (!compute_family(device)) return "a compute queue";
@@ -69,7 +70,7 @@ std::string missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties
   return features12.scalarBlockLayout ? "" : "scalar block layout";
 }
 
-/// What is free of the largest device-local heap; all of it where the driver does not tell.
+/// The free bytes of the largest device-local heap; all its bytes if the driver does not tell.
 std::uint64_t free_bytes_of(VkPhysicalDevice device) {
   VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{};
   budget.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT;
@@ -120,7 +121,7 @@ PhysicalDevice describe(VkPhysicalDevice device, std::uint32_t index) {
   return {device, info};
 }
 
-/// The order in which `auto` prefers devices.
+/// The rank of a type of device for `auto`, the best first.
 int rank_of(DeviceType type) {
   switch (type) {
     case DeviceType::discrete_gpu: return 0;
@@ -136,7 +137,7 @@ bool is_number(const std::string& text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Whether a device is one that `choice` names.
+/// Whether `choice` names a device.
 bool is_named(const DeviceInfo& device, const std::string& choice) {
   if (choice.empty()) return false;
   if (lower_case(choice) == "auto") return true;
@@ -145,7 +146,7 @@ bool is_named(const DeviceInfo& device, const std::string& choice) {
   return device.uuid == lower_case(choice) || lower_case(device.name).find(lower_case(choice)) != std::string::npos;
 }
 
-/// All devices in one clause each: name, index, type, and what makes it useless.
+/// The devices as text, one clause each: name, index, type, and the reason why one is useless.
 std::string list_of(const std::vector<PhysicalDevice>& devices) {
   std::string list;
   for (const auto& [handle, info] : devices) {
@@ -217,7 +218,7 @@ std::vector<DeviceInfo> list_devices() {
 }
 
 std::string loader_version() {
-  std::uint32_t version = VK_API_VERSION_1_0;  // the only one without the call
+  std::uint32_t version = VK_API_VERSION_1_0;  // the only version without the call
   check(vkEnumerateInstanceVersion(&version), "vkEnumerateInstanceVersion");
   return version_text(version);
 }
@@ -239,7 +240,7 @@ PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const D
     fail(ErrorKind::device, "no usable Vulkan device matches --device \"{}\"; this machine has {}", options.choice,
          list_of(devices));
   if (options.require_gpu && best->info.type == DeviceType::cpu)
-    fail(ErrorKind::device, "a GPU is required, and there is none for --device {}; this machine has {}", options.choice,
+    fail(ErrorKind::device, "a GPU is required, and --device {} finds none; this machine has {}", options.choice,
          list_of(devices));
   return *best;
 }
@@ -264,8 +265,8 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
 
 namespace {
 
-/// The extension of devices that have only a part of Vulkan. Whoever uses such a device must enable it. No stable
-/// header has a macro for its name.
+/// The extension of devices with only a part of Vulkan, which users of such a device must enable. No stable header has
+/// a macro for its name.
 constexpr const char* kPortabilitySubset = "VK_KHR_portability_subset";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -349,8 +350,8 @@ void Device::read_properties() {
   properties2.pNext = &properties12;
   vkGetPhysicalDeviceProperties2(physical_, &properties2);
   const VkPhysicalDeviceProperties& properties = properties2.properties;
-  // lavapipe keeps NaN and infinity in any case, as the tests of damaged frames show. Told to, it leaves out other
-  // optimizations too, and its results differ in their last bits from those without.
+  // lavapipe keeps NaN and infinity in any case, as the tests of damaged frames show. In that mode it also drops other
+  // optimizations, and its results differ in their last bits.
   const bool is_lavapipe = properties12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
   preserves_nan_ = properties12.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE && !is_lavapipe;
   nanoseconds_per_tick_ = properties.limits.timestampPeriod;
@@ -411,7 +412,7 @@ void Device::save_pipeline_cache() noexcept {
     if (vkGetPipelineCacheData(device_, pipeline_cache_, &bytes, data.data()) != VK_SUCCESS) return;
     write_cache(path, std::span(data).first(bytes));
   } catch (const std::exception&) {
-    // This runs in a destructor, perhaps because memory ran out. Without the cache the next start takes longer.
+    // This runs in a destructor, perhaps because memory ran out. Without the cache, only the next start takes longer.
   }
 }
 
@@ -430,8 +431,8 @@ const Kernel& Device::kernel(const std::string& stem, const std::vector<std::uin
 }
 
 Memory Device::allocate(VkDeviceSize bytes, std::uint32_t type) {
-  // Small buffers do not share allocations: a frame has some 40, and drivers allow 4096 at least, so only some hundred
-  // frames at a time get here.
+  // Small buffers do not share allocations: a frame has some 40, and drivers allow at least 4096, so only some hundred
+  // frames at a time reach that limit.
   if (++allocations_ > most_allocations_) {
     allocations_--;
     throw OutOfMemory(ErrorKind::device,
@@ -464,7 +465,7 @@ void Device::submit(std::span<const VkCommandBuffer> submissions, std::span<cons
     info.pCommandBuffers = &submissions[i];
     const std::lock_guard lock(mutex_);
     const VkResult result = vkQueueSubmit(queue_, 1, &info, fences[i]);
-    // Whoever recorded them is about to reuse or free what the earlier ones still work on.
+    // The caller is about to reuse or free the buffers that earlier submissions still work on.
     if (result != VK_SUCCESS && i > 0) vkQueueWaitIdle(queue_);
     check(result, "vkQueueSubmit");
   }

@@ -14,7 +14,7 @@ namespace alcove::gpu {
 
 namespace {
 
-/// Where the instructions of a module begin.
+/// The index of a module's first instruction.
 std::size_t first_instruction(std::span<const std::uint32_t> code) {
   constexpr std::size_t kHeaderWords = 5;
   if (code.size() < kHeaderWords || code[0] != spv::MagicNumber)
@@ -22,7 +22,7 @@ std::size_t first_instruction(std::span<const std::uint32_t> code) {
   return kHeaderWords;
 }
 
-/// The length of an instruction.
+/// The length of an instruction in words.
 std::size_t words_at(std::span<const std::uint32_t> code, std::size_t at) {
   const std::size_t count = code[at] >> spv::WordCountShift;
   if (count == 0 || at + count > code.size()) fail(ErrorKind::device, "a kernel's SPIR-V is cut short");
@@ -40,7 +40,7 @@ struct Module {
   std::set<std::uint32_t> not_writable, not_readable;         // struct types with such a member, and variables
   std::uint32_t push_constant_type = 0;
 
-  /// Bytes of a type in scalar layout.
+  /// The bytes of a type in scalar layout.
   std::uint32_t size_of(std::uint32_t type) const {
     const auto& words = types.at(type);
     switch (words[0]) {

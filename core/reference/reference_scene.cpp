@@ -22,7 +22,7 @@ ReferenceScene::ReferenceScene(const HostFrame& frame, int hidden, double separa
     fail(ErrorKind::input, "the reference takes planar depth and normals for every pixel of {}", to_string(frame.data));
   center_x_ = camera_.cx + frame.display.x - frame.data.x;
   center_y_ = camera_.cy + frame.display.y - frame.data.y;
-  // A pixel cannot hide more than was found of it.
+  // A pixel cannot hide more surfaces than there are planes.
   hidden = std::min(hidden, int(frame.behind.size()));
   if (hidden == 0) return;
   ReferenceLayers layers = reference_layers(*this, frame, hidden, separation);
@@ -71,18 +71,19 @@ double ReferenceScene::affine_depth(int x, int y) const {
 }
 
 Vector ReferenceScene::tangent_along(int x, int y, int dx, int dy) const {
-  // As reconstruct.comp has it, with its constants.
+  // The rules and constants of reconstruct.comp.
   constexpr double kNearness = 0.1, kSameSurface = 4, kRounding = 1e-6, kOneSurface = 0.01, kNone = 1e30;
-  const double here = affine_depth(x, y);
+  const double center = affine_depth(x, y);
   const Vector at = position(x, y, depth(x, y));
   Vector tangent, other;
   double least = kNone, step = 0, other_step = kNone;
   for (const int side : {-1, 1}) {
     const int i = x + side * dx, j = y + side * dy;
-    const double one = affine_depth(i, j), two = affine_depth(i + side * dx, j + side * dy);
-    if (one <= 0) continue;
-    const double change = side * (one - here);
-    const double error = (two > 0 ? std::abs(2 * one - two - here) : std::abs(change)) + kNearness * std::abs(change);
+    const double next = affine_depth(i, j), second = affine_depth(i + side * dx, j + side * dy);
+    if (next <= 0) continue;
+    const double change = side * (next - center);
+    const double error =
+        (second > 0 ? std::abs(2 * next - second - center) : std::abs(change)) + kNearness * std::abs(change);
     const Vector along = side * (position(i, j, depth(i, j)) - at);
     if (error < least) {
       other = tangent;
@@ -95,8 +96,8 @@ Vector ReferenceScene::tangent_along(int x, int y, int dx, int dy) const {
       other_step = change;
     }
   }
-  const bool is_same = std::abs(step - other_step) <= kSameSurface * least + kRounding * here &&
-                       std::max(std::abs(step), std::abs(other_step)) < kOneSurface * here;
+  const bool is_same = std::abs(step - other_step) <= kSameSurface * least + kRounding * center &&
+                       std::max(std::abs(step), std::abs(other_step)) < kOneSurface * center;
   return is_same ? tangent + other : tangent;
 }
 
@@ -118,7 +119,7 @@ Vector ReferenceScene::normal(int x, int y, Vector eye) const {
          m[2][0] * n.x + m[2][1] * n.y + m[2][2] * n.z};
   }
   n = length(n) > 0 ? normalized(n) : eye;
-  // As reconstruct.comp does, with the thresholds of normal.glsl.
+  // The rules of reconstruct.comp, with the thresholds of normal.glsl.
   constexpr double kOpposite = -0.5, kLeastFacing = 1e-3;
   if (dot(n, eye) < -kLeastFacing && dot(n, eye) + dot(n, normal_from_depth(x, y, eye)) < kOpposite) n = -1 * n;
   return dot(n, eye) < kLeastFacing ? normalized(n + (kLeastFacing - dot(n, eye)) * eye) : n;
@@ -126,11 +127,11 @@ Vector ReferenceScene::normal(int x, int y, Vector eye) const {
 
 namespace {
 
-/// Surfaces are one if they are no farther apart than so many times what a depth may be off, and a pixel.
+/// Surfaces are one if their distance is at most so many times the error of a depth, and a pixel.
 constexpr double kPrecisions = 4;
-/// The ends of a surface count that are no more pixels away.
+/// The farthest end of a surface that counts, in pixels.
 constexpr int kReach = 64;
-/// A solid is at most so many times as thick as its front is wide.
+/// The largest thickness of a solid, as a multiple of its front's width.
 constexpr double kMostThickness = 2;
 
 class Layers {
@@ -172,12 +173,12 @@ class Layers {
   void pair() {
     std::vector<bool> closes(planes_.size());
     for_pixels([&](int x, int y) {
-      bool opens = true;  // the surface before is none that closes one itself
+      bool opens = true;  // the surface before closes none itself
       for (int k = 1; k <= hidden_ && depth(x, y, k) > 0; k++) {
         const std::size_t at = index(x, y, k);
-        const bool known = planes_[at] < 0;
+        const bool closes_already = planes_[at] < 0;
         closes[at] = open_[at] && opens && ends_with(x, y, k - 1);
-        opens = !known && !closes[at];
+        opens = !closes_already && !closes[at];
       }
     });
     for (std::size_t i = 0; i < planes_.size(); i++)
@@ -189,8 +190,8 @@ class Layers {
  private:
   enum class Kind { closes, front, unknown };
   struct End {
-    int vote = 0;   // 1: with the surface behind it; -1: without it; 0: not known
-    int steps = 0;  // as far as that, or as was looked
+    int vote = 0;   // 1: with the surface behind it; -1: without it; 0: unknown
+    int steps = 0;  // its distance in pixels, or the search's
   };
 
   void for_pixels(const std::function<void(int, int)>& take) const {
@@ -206,7 +207,7 @@ class Layers {
     return surface == 0 ? scene_.depth(x, y) : std::abs(planes_[index(x, y, surface)]);
   }
 
-  /// All that the planes hold, nearer first; of those that are equally near, the better known one.
+  /// The surfaces that the planes hold at a pixel, nearer first; of equally near ones, the better known first.
   std::vector<std::pair<double, Kind>> found(int x, int y, const std::vector<DepthMap>& maps) const {
     const double ray_length = scene_.orthographic() ? 1 : length(scene_.position(x, y, 1));
     std::vector<std::pair<double, Kind>> found;
@@ -228,7 +229,7 @@ class Layers {
     return a > 0 && b > 0 && std::abs(a - b) < kRunSlope * pixel_size(std::min(a, b));
   }
 
-  /// The surface of the neighbour that goes on from this one: each is the other's nearest; -1: none.
+  /// The index of the neighbour's surface that goes on from this one, if each is the other's nearest; -1: none.
   int link(int x, int y, int surface, int next_x, int next_y) const {
     const double z = depth(x, y, surface);
     int best = -1;
@@ -244,7 +245,7 @@ class Layers {
     return best;
   }
 
-  /// Follows a surface until it ends, and looks whether the one behind it ends there too.
+  /// Follows a surface to its end, and checks whether the surface behind it ends there too.
   End end_of(int x, int y, int surface, int step_x, int step_y) const {
     for (int step = 1; step <= kReach; step++) {
       const int next_x = x + step_x;
@@ -259,7 +260,7 @@ class Layers {
     return {0, kReach};
   }
 
-  /// At the last pixel of a surface, of the one behind it.
+  /// The vote of the surface behind, at the last pixel of a surface.
   int vote(int x, int y, int surface, int step_x, int step_y) const {
     const int behind = surface + 1;
     if (behind > hidden_ || depth(x, y, behind) == 0) return 0;
@@ -267,16 +268,16 @@ class Layers {
     const int next_y = y + step_y;
     const int next = link(x, y, behind, next_x, next_y);
     const double last = depth(next_x, next_y, hidden_);
-    // Behind a full list it may go on unseen.
+    // Behind a full list, the surface may go on unseen.
     if (next < 0) return last > 0 && last < depth(x, y, behind) ? 0 : 1;
-    // Its outline may lie a pixel farther out.
+    // The outline of the surface behind may lie a pixel farther out.
     const int after_x = next_x + step_x;
     const int after_y = next_y + step_y;
     return scene_.inside(after_x, after_y) && link(next_x, next_y, next, after_x, after_y) < 0 ? 1 : -1;
   }
 
-  /// Whether a surface ends with the one behind it, at most of its ends along row and column, and stands no farther
-  /// before it than a solid is thick.
+  /// Whether a surface ends together with the one behind it at most of its ends along row and column, and the gap
+  /// between them is no larger than a solid's.
   bool ends_with(int x, int y, int surface) const {
     int votes = 0;
     std::array<int, 2> width{-1, -1};
@@ -296,7 +297,7 @@ class Layers {
   int hidden_;
   std::size_t pixels_;
   std::vector<float> planes_;
-  std::vector<bool> open_;  // whether it may close a solid, for each of `planes_`
+  std::vector<bool> open_;  // one per value of `planes_`: it may close a solid
 };
 
 }  // namespace
