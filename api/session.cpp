@@ -15,13 +15,13 @@ namespace alcove {
 namespace {
 
 /// The row of a setting that the library takes, with or without two dashes.
-const OptionRow& row_of(const std::vector<OptionRow>& table, const std::string& option) {
+const SettingRow& row_of(const std::string& option) {
   const std::string key = option.starts_with("--") ? option.substr(2) : option;
   std::vector<std::string> keys;
-  for (const auto& row : table)
+  for (const auto& row : option_table())
     if (row.in_library) keys.push_back(row.key());
-  const auto row = std::ranges::find(table, key, &OptionRow::key);
-  if (row == table.end()) fail(ErrorKind::usage, "there is no option {}{}", key, suggestion(key, keys));
+  const auto row = std::ranges::find(option_table(), key, &SettingRow::key);
+  if (row == option_table().end()) fail(ErrorKind::usage, "there is no option {}{}", key, suggestion(key, keys));
   if (key == "preset") fail(ErrorKind::usage, "preset is no option here: alcove_preset() takes presets");
   if (!row->in_library)
     fail(ErrorKind::usage, "{} is of files: the library takes planes, and alcove run takes files", key);
@@ -69,15 +69,14 @@ const PlaneFacts& facts_of_plane(const std::string& name) {
 }  // namespace
 
 void Session::set(const std::string& option, const char* value) {
-  RunOptions trial;
-  const auto table = option_table(trial);
-  const OptionRow& row = row_of(table, option);
-  const std::string name = row.long_name();
-  if (value) row.read({value});
-  if (value && row.key() == "albedo" && !trial.settings.input.albedo_value)
-    fail(ErrorKind::usage, "{}: {} is no number from 0 to 1; colours are the plane albedo", name, said(value));
-  std::erase_if(said_, [&](const Said& one) { return one.option == name; });
-  if (value) said_.push_back({name, {value}});
+  const SettingRow& row = row_of(option);
+  Settings read;
+  if (value) row.read(read, {value});
+  if (value && row.key() == "albedo" && !read.input.albedo_value)
+    fail(ErrorKind::usage, "{}: {} is no number from 0 to 1; colours are the plane albedo", row.long_name(),
+         visible(value));
+  std::erase_if(values_, [&](const OptionValue& other) { return other.row == &row; });
+  if (value) values_.push_back({&row, {value}});
 }
 
 void Session::preset(const char* name) {
@@ -138,19 +137,18 @@ const Session::Given& Session::depth() const {
 /// Planes stand where the program has files, so that the table's conditions hold for them.
 Settings Session::settings() const {
   depth();
-  RunOptions options;
-  InputSettings& input = options.settings.input;
-  options.settings.output.output = "memory";
+  Settings settings;
+  InputSettings& input = settings.input;
+  settings.output.output = "memory";
   for (const auto& facts : kPlanes)
     if (facts.file && !given(facts.name).empty()) input.*facts.file = "plane";
   for (std::size_t i = 0; i < given("behind").size(); i++) input.behind[i] = "plane";
-  const auto table = option_table(options);
-  std::vector<Said> all;
-  for (const auto& [name, text] : presets_) std::ranges::copy(said_by_text(name, text, table), std::back_inserter(all));
-  std::ranges::copy(said_, std::back_inserter(all));
-  read_said(options, all);
-  check_settings(options.settings);
-  return options.settings;
+  std::vector<OptionValue> all;
+  for (const auto& [name, text] : presets_) std::ranges::copy(preset_values(name, text), std::back_inserter(all));
+  std::ranges::copy(values_, std::back_inserter(all));
+  settings = with_values(settings, all);
+  check_settings(settings);
+  return settings;
 }
 
 Camera Session::camera_by(const Settings& settings, const Window& window, int frame) const {

@@ -1,4 +1,4 @@
-// A frame in work behind the C interface: what was said of it, its planes, and what became of them.
+// A frame behind the C interface: its options, its planes, and its results.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,9 +13,9 @@
 #include "api/alcove/alcove.h"
 #include "core/base/note.h"
 #include "core/base/settings.h"
-#include "core/chain/aov.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
+#include "core/chain/results/aov.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"
@@ -23,25 +23,25 @@
 
 namespace alcove {
 
-// Planes of the caller's, however they lie, and ours, one component behind the other.
+// Conversion between the caller's planes, of any layout, and ours, one component behind the other.
 
-/// Fails with ErrorKind::usage, calling the plane by its name, on a layout that is none: no pixels or too many, no
-/// components, an unknown type, or strides by which values share bytes.
+/// Checks a layout. Fails with ErrorKind::usage, naming the plane, on no pixels or too many, no components, an unknown
+/// type, or strides by which values share bytes.
 void check_layout(const std::string& name, const alcove_layout& layout);
 
-/// Copies the caller's values. The layout was checked.
+/// Copies the caller's values. The layout must have been checked.
 std::vector<float> planes_from(const void* data, const alcove_layout& layout);
 
 /// Copies as many planes as the layout has components into the caller's memory; half floats are rounded to the nearest,
 /// to even.
 void planes_to(std::span<const float> planes, void* data, const alcove_layout& layout);
 
-/// Looks at a part of the pixels. Fails with ErrorKind::input where every depth is negative, where positions do not lie
-/// on the rays of their pixels, and where the normals, as they are read, are not those of the depth; gives sentences
-/// where they may not be, and where the radii do not suit the frame. Some pixels decide nothing.
+/// Checks a part of the pixels. Fails with ErrorKind::input if every depth is negative, if positions do not lie on the
+/// rays of their pixels, and if the normals, by their reading, are not those of the depth. Gives sentences about
+/// doubts: normals that may not be those of the depth, and radii that do not suit the frame.
 Notes check_planes(const Reading& reading, const HostPlanes& planes, const EstimatorSettings& settings);
 
-/// Everything as api/alcove/alcove.h says; what is wrong is an Error.
+/// A session behind the C functions, which api/alcove/alcove.h describes. Failures are an Error.
 class Session {
  public:
   void set(const std::string& option, const char* value);
@@ -63,7 +63,7 @@ class Session {
     bool is_half;
     std::vector<float> values;
   };
-  using Planes = std::vector<Given>;  // none, or one; of behind up to eight
+  using Planes = std::vector<Given>;  // at most one, and up to eight of `behind`
   const Planes& given(const std::string& name) const;
   const Given& depth() const;
   bool has_position() const { return !given("position").empty(); }
@@ -77,14 +77,14 @@ class Session {
   void compute(const Settings& settings, Reading reading, int frame);
   void note_results(const FrameOutputs& outputs, const Settings& settings, int width, int height);
 
-  std::vector<Said> said_;                                    // of the command line's kind, each option once
+  std::vector<OptionValue> values_;                           // typed ones, each option once
   std::vector<std::pair<std::string, std::string>> presets_;  // names and texts
   std::optional<std::string> camera_json_;
-  // fx, fy, cx, cy, and behind them world_to_camera where it was given; none where there is no camera of numbers
+  // fx, fy, cx, cy, and behind them world_to_camera if it was given; empty without a camera of numbers
   std::vector<double> pinhole_;
   std::map<std::string, Planes> planes_;  // by the caller's name
 
-  std::string device_choice_;  // by what the device was opened
+  std::string device_choice_;  // the options that opened the device
   std::unique_ptr<gpu::Device> device_;
   std::unique_ptr<gpu::Recorder> gpu_;
   std::string device_name_;
@@ -99,7 +99,7 @@ class Session {
   int width_ = 0, height_ = 0;  // px
   FrameCounts counts_{};
   double compute_ms_ = 0;
-  std::string notes_;  // sentences, one a line
+  std::string notes_;  // sentences, one per line
   std::optional<double> radius_;
 };
 

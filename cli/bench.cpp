@@ -23,39 +23,43 @@ struct BenchArguments {
   bool quiet = false, stability = false;
 };
 
-std::vector<OptionRow> rows_of(BenchArguments& a) {
-  std::vector<OptionRow> rows;
-  OptionGroup(rows, "", Effect::none).text("SUITE", a.suite, "", "a suite file (TOML); all but --stability needs one");
+std::vector<RowOf<BenchArguments>> bench_rows() {
+  using S = BenchArguments;
+  std::vector<RowOf<BenchArguments>> rows;
+  OptionGroup(rows, "", Effect::none)
+      .text("SUITE", &S::suite, "", "a suite file (TOML); all but --stability needs one");
   OptionGroup options(rows, "Options", Effect::none);
   // A count of 0 stands for "not given", and no default is shown for it.
-  const auto count = [&](const char* name, int& value, const char* what, const Range& range, const char* sentence) {
-    OptionRow& row = options.number(name, value, "", range, sentence);
-    row.value = what;
-    row.default_text.clear();
+  const auto count = [&](const char* name, int BenchArguments::*value, const Range& range, const char* sentence) {
+    options.number(name, value, "", range, sentence).default_text.clear();
   };
-  options.text("--data", a.data, "FOLDER", "the folder of the suite's frames; else the suite's own");
-  options.flag("--stability", a.stability,
+  options.text("--data", &S::data, "FOLDER", "the folder of the suite's frames; else the suite's own");
+  options.flag("--stability", &S::stability,
                "instead: measure where each estimator's numbers fail, along depth, radius, field of view, tilt, bits "
                "and world offset; no suite");
-  count("--repeats", a.repeats, "NUMBER", between(1, 1000), "timed runs, instead of the suite's");
-  count("--reference-slices", a.reference_slices, "NUMBER", between(0, 1024),
+  count("--repeats", &S::repeats, between(1, 1000), "timed runs, instead of the suite's");
+  count("--reference-slices", &S::reference_slices, between(0, 1024),
         "of the CPU reference, instead of the suite's; 0: none");
-  options.text("--json", a.json, "FILE.json", "write all numbers");
-  options.text("--csv", a.csv, "FILE.csv", "write a line for every candidate and frame");
-  options.text("--report", a.report, "FILE.html", "write a self-contained page with chart, table and pictures");
-  options.text("--limits", a.limits, "FILE.toml",
+  options.text("--json", &S::json, "FILE.json", "write all numbers");
+  options.text("--csv", &S::csv, "FILE.csv", "write a line for every candidate and frame");
+  options.text("--report", &S::report, "FILE.html", "write a self-contained page with chart, table and pictures");
+  options.text("--limits", &S::limits, "FILE.toml",
                "a TOML file of largest errors; one that is exceeded ends with exit code 6");
-  options.text("--yardstick", a.yardstick, "PROGRAM",
+  options.text("--yardstick", &S::yardstick, "PROGRAM",
                "a program that times a unit of work, run between the candidates as PROGRAM FRAME CAMERA RADIUS RUNS; "
                "it prints \"median X ms\"");
-  options.text("--device", a.device.choice, "auto|cpu|INDEX|NAME|UUID", "as for alcove run");
-  options.flag("--require-gpu", a.device.require_gpu, "measuring on the CPU is an error");
-  options.flag("-q,--quiet", a.quiet, "no progress and no table");
+  options.text("--device", within(&S::device, &gpu::DeviceOptions::choice), "auto|cpu|INDEX|NAME|UUID",
+               "as for alcove run");
+  options.flag("--require-gpu", within(&S::device, &gpu::DeviceOptions::require_gpu),
+               "measuring on the CPU is an error");
+  options.flag("-q,--quiet", &S::quiet, "no progress and no table");
   return rows;
 }
 
-/// Refuses what --stability, which measures something else, would leave undone.
+/// Fails without a suite, and on options that --stability, which measures something else, would ignore.
 void check_purpose(const BenchArguments& a) {
+  if (a.suite.empty() && !a.stability)
+    fail(ErrorKind::usage, "alcove bench: SUITE is required; try alcove bench --help");
   if (!a.stability) return;
   const std::initializer_list<std::pair<const char*, bool>> others{{"SUITE", !a.suite.empty()},
                                                                    {"--data", !a.data.empty()},
@@ -68,20 +72,11 @@ void check_purpose(const BenchArguments& a) {
     if (is_given) fail(ErrorKind::usage, "{} does not apply with --stability; give only one of them", option);
 }
 
-Command bench_for(BenchArguments& a) {
+CommandOf<BenchArguments> bench_syntax() {
   return {"alcove bench",
           "Measures device time against error for the candidates of a suite.\n\n"
           "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n",
-          rows_of(a)};
-}
-
-/// Returns false where help was asked for.
-bool parse(const std::vector<std::string>& arguments, BenchArguments& a) {
-  if (!parse_arguments(bench_for(a), arguments)) return false;
-  if (a.suite.empty() && !a.stability)
-    fail(ErrorKind::usage, "alcove bench: SUITE is required; try alcove bench --help");
-  check_purpose(a);
-  return true;
+          bench_rows()};
 }
 
 /// Whether the candidate names a radius of its own, as "--radius=0.5".
@@ -156,11 +151,13 @@ int report_stability(const BenchArguments& a) {
 
 }  // namespace
 
-Command describe_bench() { return shown(bench_for); }
+Command describe_bench() { return bench_syntax().shown(); }
 
 int bench_command(const std::vector<std::string>& arguments) {
-  BenchArguments a;
-  if (!parse(arguments, a)) return 0;
+  const auto parsed = bench_syntax().parse(arguments);
+  if (!parsed) return 0;
+  const BenchArguments& a = *parsed;
+  check_purpose(a);
   if (a.stability) return report_stability(a);
   Suite suite = read_suite(a.suite, a.data);
   if (a.repeats) suite.repeats = a.repeats;

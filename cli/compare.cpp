@@ -25,44 +25,51 @@ struct CompareArguments {
   bool json = false, quiet = false;
 };
 
-std::vector<OptionRow> rows_of(CompareArguments& a) {
-  std::vector<OptionRow> rows;
-  CompareSettings& s = a.settings;
-  OptionGroup pictures(rows, "", Effect::none);
-  pictures.text("RESULT", s.result, "", "an EXR or any other picture; a pattern such as ao.%04d.exr for a sequence")
+std::vector<RowOf<CompareArguments>> compare_rows() {
+  using S = CompareSettings;
+  std::vector<RowOf<CompareArguments>> rows;
+  OptionGroup pictures(rows, "", Effect::none, &CompareArguments::settings);
+  pictures.text("RESULT", &S::result, "", "an EXR or any other picture; a pattern such as ao.%04d.exr for a sequence")
       .is_required = true;
-  pictures.text("REFERENCE", s.reference, "", "what it should be; a pattern too, or one picture for all frames")
+  pictures.text("REFERENCE", &S::reference, "", "what it should be; a pattern too, or one picture for all frames")
       .is_required = true;
-  OptionGroup options(rows, "Options", Effect::none);
-  options.text("--reference-b", s.reference_b, "FILE",
+  OptionGroup options(rows, "Options", Effect::none, &CompareArguments::settings);
+  OptionGroup reports(rows, "Options", Effect::none);
+  options.text("--reference-b", &S::reference_b, "FILE",
                "a second render of the reference with independent noise: rmse is then free of the noise of both");
-  OptionRow& channels =
-      options.text("--channel", s.channels, "NAMES",
-                   "names with commas, or RESULT=REFERENCE pairs; may be given more than once; else the only channel "
-                   "of each, else those of the same name");
-  channels.repeats = true;
-  channels.read = [&s](const Words& words) { s.channels = fmt::format("{}", fmt::join(words, ",")); };
-  options.text("--mask", s.mask, "FILE", "compare only where it is above 0");
-  options.text("--mask-channel", s.mask_channel, "NAME", "the mask's channel; else its only one, or its alpha");
-  options.text("--depth", s.depth, "FILE.exr", "leave out the sky, and measure depth edges and grain too");
-  options.text("--depth-channel", s.depth_channel, "NAME", "the depth channel; else found by its usual names");
-  options.number("--sky", s.sky, "", above(0), "depth at or beyond it is sky, as are 0, infinity and NaN");
-  options.text("--frames", s.frames, "LIST", "frames such as 1001-1100x2,1200; else those of RESULT on the disk");
-  options.text("--motion", s.motion, "FILE",
+  options
+      .add(
+          {"--channel", "NAMES", "", "",
+           "names with commas, or RESULT=REFERENCE pairs; may be given more than once; else the only channel of each, "
+           "else those of the same name"},
+          [](const S&) { return Words(); },
+          [](S& s, const Words& words) { s.channels = fmt::format("{}", fmt::join(words, ",")); })
+      .repeats = true;
+  options.text("--mask", &S::mask, "FILE", "compare only where it is above 0");
+  options.text("--mask-channel", &S::mask_channel, "NAME", "the mask's channel; else its only one, or its alpha");
+  options.text("--depth", &S::depth, "FILE.exr", "leave out the sky, and measure depth edges and grain too");
+  options.text("--depth-channel", &S::depth_channel, "NAME", "the depth channel; else found by its usual names");
+  options.number("--sky", &S::sky, "", above(0), "depth at or beyond it is sky, as are 0, infinity and NaN");
+  options.text("--frames", &S::frames, "LIST", "frames such as 1001-1100x2,1200; else those of RESULT on the disk");
+  options.text("--motion", &S::motion, "FILE",
                "motion for the flicker of a sequence: place in the previous frame minus place here, in pixels, y up");
-  options.text("--motion-channels", s.motion_channels, "X,Y", "the motion's channels; else Vector.X,Vector.Y");
-  options.number("--peak", s.peak, "", above(0), "the largest value, for PSNR and SSIM");
-  options.flag("--hdr", s.hdr, "the values are scene-linear light: HDR-FLIP instead of FLIP of display values");
-  options.flag("--json", a.json, "print JSON");
-  options.text("--report", a.report, "FILE.html", "write a self-contained page with table and pictures");
-  options.flag("-q,--quiet", a.quiet, "print no table and no warnings: the exit code says whether limits hold");
-  OptionGroup limits(rows, "Limits, for every frame; one that is broken ends with exit code 6", Effect::none);
-  limits.number("--max-rmse", a.limits.max_rmse, "", at_least(0), "the largest rmse");
-  limits.number("--max-p99", a.limits.max_p99, "", at_least(0), "the largest 99th percentile of the error's size");
-  limits.number("--min-ssim", a.limits.min_ssim, "", between(-1, 1), "the least structural similarity");
-  limits.number("--max-flip", a.limits.max_flip, "", between(0, 1), "the largest mean FLIP");
-  limits.number("--max-bias", a.limits.max_bias, "", at_least(0), "the largest size of the mean error");
-  limits.number("--max-grain", a.limits.max_grain, "", at_least(0),
+  options.text("--motion-channels", &S::motion_channels, "X,Y", "the motion's channels; else Vector.X,Vector.Y");
+  options.number("--peak", &S::peak, "", above(0), "the largest value, for PSNR and SSIM");
+  options.flag("--hdr", &S::hdr, "the values are scene-linear light: HDR-FLIP instead of FLIP of display values");
+  reports.flag("--json", &CompareArguments::json, "print JSON");
+  reports.text("--report", &CompareArguments::report, "FILE.html",
+               "write a self-contained page with table and pictures");
+  reports.flag("-q,--quiet", &CompareArguments::quiet,
+               "print no table and no warnings: the exit code says whether limits hold");
+  OptionGroup limits(rows, "Limits, for every frame; one that is broken ends with exit code 6", Effect::none,
+                     &CompareArguments::limits);
+  limits.number("--max-rmse", &CompareLimits::max_rmse, "", at_least(0), "the largest rmse");
+  limits.number("--max-p99", &CompareLimits::max_p99, "", at_least(0),
+                "the largest 99th percentile of the error's size");
+  limits.number("--min-ssim", &CompareLimits::min_ssim, "", between(-1, 1), "the least structural similarity");
+  limits.number("--max-flip", &CompareLimits::max_flip, "", between(0, 1), "the largest mean FLIP");
+  limits.number("--max-bias", &CompareLimits::max_bias, "", at_least(0), "the largest size of the mean error");
+  limits.number("--max-grain", &CompareLimits::max_grain, "", at_least(0),
                 "the largest grain, which needs --depth; a frame without plain surfaces ends with exit code 3");
   return rows;
 }
@@ -79,13 +86,13 @@ void check_files(const CompareSettings& s) {
   require(!s.motion_channels.empty(), "--motion-channels", s.motion, "--motion");
 }
 
-Command compare_for(CompareArguments& a) {
+CommandOf<CompareArguments> compare_syntax() {
   return {"alcove compare",
           "Measures how far a picture or a sequence is from a reference.\n\n"
           "Examples:\n"
           "  alcove compare ao.exr truth.exr --depth frame.exr --max-rmse 0.1\n"
           "  alcove compare ao.%04d.exr truth.%04d.exr --depth frame.%04d.exr --motion frame.%04d.exr --json\n",
-          rows_of(a)};
+          compare_rows()};
 }
 
 std::string optional_number(std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; }
@@ -136,11 +143,12 @@ void print_sequence(const CompareReport& report) {
 
 }  // namespace
 
-Command describe_compare() { return shown(compare_for); }
+Command describe_compare() { return compare_syntax().shown(); }
 
 int compare_command(const std::vector<std::string>& arguments) {
-  CompareArguments a;
-  if (!parse_arguments(compare_for(a), arguments)) return 0;
+  auto parsed = compare_syntax().parse(arguments);
+  if (!parsed) return 0;
+  CompareArguments& a = *parsed;
   check_files(a.settings);
   if (!a.report.empty()) {
     const CompareSettings& s = a.settings;

@@ -7,7 +7,6 @@
 #include "cli/commands.h"
 #include "cli/parsing.h"
 #include "core/base/error.h"
-#include "core/base/json_text.h"
 #include "core/base/text.h"
 #include "core/gpu/device_info.h"
 
@@ -19,10 +18,10 @@ struct DevicesArguments {
   bool json = false;
 };
 
-Command devices_for(DevicesArguments& a) {
-  Command command{
-      "alcove devices", "Lists the Vulkan devices; --device of alcove run takes an index, a name or a UUID.\n", {}};
-  OptionGroup(command.rows, "Options", Effect::none).flag("--json", a.json, "print JSON");
+CommandOf<DevicesArguments> devices_syntax() {
+  CommandOf<DevicesArguments> command{
+      "alcove devices", "Lists the Vulkan devices; --device of alcove run takes an index, a name or a UUID.\n"};
+  OptionGroup(command.rows, "Options", Effect::none).flag("--json", &DevicesArguments::json, "print JSON");
   return command;
 }
 
@@ -47,15 +46,15 @@ std::string text_of(const gpu::DeviceInfo& d) {
                      d.unusable.empty() ? "" : "  not usable: " + printable(d.unusable));
 }
 
-Command describe_devices() { return shown(devices_for); }
+Command describe_devices() { return devices_syntax().shown(); }
 
 int devices_command(const std::vector<std::string>& arguments) {
-  DevicesArguments a;
-  if (!parse_arguments(devices_for(a), arguments)) return 0;
+  const auto parsed = devices_syntax().parse(arguments);
+  if (!parsed) return 0;
   const auto devices = gpu::list_devices();
   auto list = nlohmann::ordered_json::array();
   for (const auto& d : devices) list.push_back(json_of(d));
-  if (a.json)
+  if (parsed->json)
     fmt::print("{}\n", json_text(list, 1));
   else
     for (const auto& d : devices) fmt::print("{}\n", text_of(d));

@@ -11,7 +11,6 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "core/base/error.h"
-#include "core/base/json_text.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
@@ -131,12 +130,12 @@ struct DoctorArguments {
   bool json = false;
 };
 
-Command doctor_for(DoctorArguments& a) {
-  Command command{"alcove doctor",
-                  "Says what a report of a bug needs: version, libraries, devices and drivers, memory and its limits, "
-                  "folders; and what is amiss, where nothing can be computed. Nothing is sent anywhere.\n",
-                  {}};
-  OptionGroup(command.rows, "Options", Effect::none).flag("--json", a.json, "print JSON");
+CommandOf<DoctorArguments> doctor_syntax() {
+  CommandOf<DoctorArguments> command{
+      "alcove doctor",
+      "Says what a report of a bug needs: version, libraries, devices and drivers, memory and its limits, "
+      "folders; and what is amiss, where nothing can be computed. Nothing is sent anywhere.\n"};
+  OptionGroup(command.rows, "Options", Effect::none).flag("--json", &DoctorArguments::json, "print JSON");
   return command;
 }
 
@@ -144,13 +143,13 @@ Command doctor_for(DoctorArguments& a) {
 
 std::string version_text() { return fmt::format("alcove {}\n{}\n{}\n", kVersion, kBuild, kLibraries); }
 
-Command describe_doctor() { return shown(doctor_for); }
+Command describe_doctor() { return doctor_syntax().shown(); }
 
 int doctor_command(const std::vector<std::string>& arguments) {
-  DoctorArguments a;
-  if (!parse_arguments(doctor_for(a), arguments)) return 0;
+  const auto parsed = doctor_syntax().parse(arguments);
+  if (!parsed) return 0;
   const Facts facts = gather();
-  a.json ? print_json(facts) : print_text(facts);
+  parsed->json ? print_json(facts) : print_text(facts);
   return facts.problems.empty() ? 0 : int(ErrorKind::device);
 }
 

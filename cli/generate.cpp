@@ -48,13 +48,12 @@ int generate(const std::vector<std::string>& arguments) {
 }
 
 std::vector<OptionRow> rows_with_help(const Command& command) {
-  static bool unused = false;
   std::vector<OptionRow> rows;
   const auto is_place = [](const OptionRow& row) { return !row.name.starts_with('-'); };
   std::ranges::copy_if(command.rows, std::back_inserter(rows), is_place);
-  OptionGroup help(rows, "Help", Effect::none);
-  help.flag("-h,--help", unused, "print the help and stop");
-  if (has_common_rows(command)) help.flag("--help-all", unused, "print all options and stop");
+  rows.push_back({.group = "Help", .name = "-h,--help", .sentence = "print the help and stop"});
+  if (has_common_rows(command))
+    rows.push_back({.group = "Help", .name = "--help-all", .sentence = "print all options and stop"});
   std::ranges::copy_if(command.rows, std::back_inserter(rows), std::not_fn(is_place));
   return rows;
 }

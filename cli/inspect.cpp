@@ -28,23 +28,27 @@ FramePlan plan_of(const Settings& settings) {
 }
 
 /// Fails with ErrorKind::usage where nothing tells which camera of a list the frame has.
-Inspection inspect_one(const FramePlan& plan, const Settings& settings, int frame) {
+Inspection inspect_one(const FramePlan& plan, int frame) {
   Notes notes;
   try {
-    notes = notes_on_number(plan, settings);
+    notes = notes_on_number(plan);
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::usage) throw;
     // What is wrong with the camera file is a part of what is found.
   }
-  Inspection found = inspect_frame(settings.input, frame);
+  Inspection found = inspect_frame(plan.settings().input, frame);
   add_new(notes, found.notes);
   found.notes = std::move(notes);
   return found;
 }
 
-SequenceNames names_of(const FramePlan& plan, const Settings& settings) {
-  return {settings.input,  plan.frames(),          plan.missing(),
-          plan.evidence(), settings.frames.frames, [&plan](int frame) { return plan.at(frame).input; }};
+SequenceNames names_of(const FramePlan& plan) {
+  return {plan.settings().input,
+          plan.frames(),
+          plan.missing(),
+          plan.evidence(),
+          plan.settings().frames.frames,
+          [&plan](int frame) { return plan.at(frame).input; }};
 }
 
 /// The camera of what was inspected, or of each frame that is there, as a file.
@@ -52,10 +56,11 @@ void write_cameras(const std::string& path, const FramePlan& plan, const InputSe
                    const Inspection& inspected) {
   if (!plan.is_sequence()) {
     const auto& known = inspected.camera;
-    return write_whole(path, camera_file(known ? known->camera : find_frame(input, false, frame).camera));
+    return write_whole(path, camera_file(known ? known->camera : find_frame(input, false, frame).reading.camera));
   }
   std::map<int, Camera> cameras;
-  for (const int number : plan.frames()) cameras[number] = find_frame(plan.at(number).input, false, number).camera;
+  for (const int number : plan.frames())
+    cameras[number] = find_frame(plan.at(number).input, false, number).reading.camera;
   write_whole(path, camera_file(cameras));
 }
 
@@ -70,9 +75,9 @@ int inspect_command(const std::vector<std::string>& arguments) {
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   const FramePlan plan = plan_of(options.settings);
   const int frame = frame_number_of(path);
-  const Inspection inspection = plan.is_sequence() ? inspect_sequence(names_of(plan, options.settings))
-                                                   : inspect_one(plan, options.settings, frame);
-  fmt::print("{}", asked.json ? inspection_json(inspection) : inspection_text(inspection, options.progress.verbose));
+  const Inspection inspection = plan.is_sequence() ? inspect_sequence(names_of(plan)) : inspect_one(plan, frame);
+  fmt::print("{}",
+             asked.json ? inspection_json(inspection) : inspection_text(inspection, options.settings.progress.verbose));
   if (inspection.unreadable) throw *inspection.unreadable;
   if (!asked.write_camera.empty()) write_cameras(asked.write_camera, plan, input, frame, inspection);
   if (options.settings.output.preview.empty()) return 0;

@@ -15,51 +15,58 @@
 namespace alcove {
 namespace {
 
-/// What --set says, setting by setting; of one that repeats each is one more.
-std::vector<Said> said_by_sets(const Words& sets, const std::vector<OptionRow>& table) {
-  std::vector<Said> said;
+using TypedOptions = std::vector<TypedOption>;
+
+/// The words that were typed for an option; none where it was not typed.
+Words words_for(const TypedOptions& typed, const std::string& name) {
+  const auto found = std::ranges::find(typed, name, &TypedOption::name);
+  return found == typed.end() ? Words{} : found->words;
+}
+
+/// Whether a flag was typed, and not as --flag=false.
+bool is_on(const TypedOptions& typed, const char* option) {
+  const Words words = words_for(typed, option);
+  bool is_on = false;
+  if (!words.empty()) read_named(option, [&] { is_on = read_switch(words.front()); });
+  return is_on;
+}
+
+/// The values of --set, setting by setting; of one that repeats each is one more.
+std::vector<OptionValue> values_of_sets(const Words& sets) {
+  std::vector<OptionValue> values;
   for (const auto& set : sets) {
     const std::size_t equals = std::min(set.find('='), set.size());
-    if (equals == 0) fail(ErrorKind::usage, "--set: {} is not KEY=VALUE, such as denoise=none", alcove::said(set));
-    const OptionRow& row = row_of_key(table, lower_case(set.substr(0, equals)));
+    if (equals == 0) fail(ErrorKind::usage, "--set: {} is not KEY=VALUE, such as denoise=none", visible(set));
+    const SettingRow& row = row_of_key(lower_case(set.substr(0, equals)));
     if (equals == set.size() && !row.is_flag())
       fail(ErrorKind::usage, "--set: {} is not KEY=VALUE: {} takes {}", set, row.key(), row.value);
     const std::string value = equals == set.size() ? "true" : set.substr(equals + 1);
-    const auto earlier = std::ranges::find(said, row.long_name(), &Said::option);
-    if (earlier == said.end())
-      said.push_back({row.long_name(), {value}});
+    const auto earlier = std::ranges::find(values, &row, &OptionValue::row);
+    if (earlier == values.end())
+      values.push_back({&row, {value}});
     else if (row.repeats)
       earlier->words.push_back(value);
     else
       fail(ErrorKind::usage, "{} is given more than once", row.long_name());
   }
-  return said;
+  return values;
 }
 
-/// The words that were typed for an option; none: it was not.
-Words words_for(const std::vector<Typed>& typed, const char* option) {
-  const auto found = std::ranges::find_if(typed, [&](const Typed& one) { return one.row->name == option; });
-  return found == typed.end() ? Words{} : found->words;
-}
-
-/// What presets and then the command line say; what is in no table (INPUT, and --json of inspect) is read at once.
-std::vector<Said> all_said(const std::vector<Typed>& typed, const std::vector<OptionRow>& table) {
-  std::vector<Said> said;
+/// The values of presets and then of the command line.
+std::vector<OptionValue> all_values(const TypedOptions& typed) {
+  std::vector<OptionValue> values;
   for (const auto& preset : presets_of(words_for(typed, "--preset")))
-    std::ranges::copy(said_by_preset(preset, table), std::back_inserter(said));
-  for (auto& set : said_by_sets(words_for(typed, "--set"), table)) {
-    const bool is_typed =
-        std::ranges::any_of(typed, [&](const Typed& one) { return one.row->long_name() == set.option; });
-    if (is_typed) fail(ErrorKind::usage, "{} is given more than once", set.option);
-    said.push_back(std::move(set));
+    std::ranges::copy(values_of_preset(preset), std::back_inserter(values));
+  for (auto& value : values_of_sets(words_for(typed, "--set"))) {
+    if (!words_for(typed, value.row->name).empty())
+      fail(ErrorKind::usage, "{} is given more than once", value.row->long_name());
+    values.push_back(std::move(value));
   }
-  for (const auto& [row, words] : typed) {
-    if (std::ranges::find(table, row->name, &OptionRow::name) != table.end())
-      said.push_back({row->long_name(), words});
-    else
-      row->read(words);
+  for (const auto& [name, words] : typed) {
+    const auto row = std::ranges::find(option_table(), name, &SettingRow::name);
+    if (row != option_table().end() && row->is_key()) values.push_back({&*row, words});
   }
-  return said;
+  return values;
 }
 
 constexpr const char* kRun =
@@ -82,13 +89,11 @@ constexpr const char* kInspect =
     "  alcove inspect frame.%04d.exr --json\n";
 
 /// INPUT first, and then the table.
-Command run_with(RunOptions& options, const std::vector<OptionRow>& table) {
+Command run_syntax() {
   Command command{"alcove run", kRun, {}};
-  OptionGroup(command.rows, "", Effect::input)
-      .text("INPUT", options.settings.input.input, "",
-            "an EXR file with depth and normals, or a pattern such as frame.%04d.exr")
-      .is_key = false;
-  std::ranges::copy_if(table, std::back_inserter(command.rows), std::not_fn(&OptionRow::is_only_key));
+  command.rows.push_back(
+      {.name = "INPUT", .sentence = "an EXR file with depth and normals, or a pattern such as frame.%04d.exr"});
+  std::ranges::copy_if(option_table(), std::back_inserter(command.rows), std::not_fn(&OptionRow::is_only_key));
   return command;
 }
 
@@ -99,8 +104,9 @@ bool is_inspected(const OptionRow& row) {
          std::ranges::find(kOthers, row.name) != kOthers.end();
 }
 
-Command inspect_with(InspectOptions& options, const std::vector<OptionRow>& table) {
-  Command command = run_with(options.run, table);
+/// All options of run, of which those are common that inspect looks at, and its own.
+Command inspect_syntax() {
+  Command command = run_syntax();
   command.name = "alcove inspect";
   command.description = kInspect;
   for (auto& row : command.rows) {
@@ -109,24 +115,24 @@ Command inspect_with(InspectOptions& options, const std::vector<OptionRow>& tabl
     row.is_common = true;
     row.sentence = "also print attributes, statistics and the score of each reading";
   }
-  OptionGroup reports(command.rows, "Reports", Effect::none);
-  reports.flag("--json", options.json, "print JSON").is_common = true;
-  reports
-      .text("--write-camera", options.write_camera, "FILE.json",
-            "the camera that is found, for --camera; of a sequence with that of each frame")
-      .is_common = true;
+  command.rows.push_back({.group = "Reports", .name = "--json", .sentence = "print JSON", .is_common = true});
+  command.rows.push_back({.group = "Reports",
+                          .name = "--write-camera",
+                          .value = "FILE.json",
+                          .sentence = "the camera that is found, for --camera; of a sequence with that of each frame",
+                          .is_common = true});
   return command;
 }
 
 /// Refuses a key that is typed as an option, and says what to type.
-void refuse_keys(const std::vector<std::string>& arguments, const std::vector<OptionRow>& table) {
+void refuse_keys(const std::vector<std::string>& arguments) {
   for (std::size_t i = 0; i < arguments.size(); i++) {
     const std::string& argument = arguments[i];
     const std::size_t equals = std::min(argument.find('='), argument.size());
-    const auto row = std::ranges::find_if(table, [&](const OptionRow& one) {
+    const auto row = std::ranges::find_if(option_table(), [&](const OptionRow& one) {
       return one.is_only_key() && argument.substr(0, equals) == "--" + one.name;
     });
-    if (row == table.end()) continue;
+    if (row == option_table().end()) continue;
     const bool has_next = i + 1 < arguments.size() && !arguments[i + 1].starts_with("--");
     const std::string value = equals < argument.size() ? argument.substr(equals + 1)
                               : row->is_flag()         ? "true"
@@ -136,48 +142,51 @@ void refuse_keys(const std::vector<std::string>& arguments, const std::vector<Op
   }
 }
 
-/// Reads what the command line says; false where it asks for what is only printed.
-bool read_arguments(const Command& command, const std::vector<std::string>& arguments,
-                    const std::vector<OptionRow>& table, RunOptions& options, Reader reader) {
-  refuse_keys(arguments, table);
-  const auto typed = find_typed(command, arguments);
-  if (!typed) return false;
-  try {
-    read_said(options, all_said(*typed, table), reader);
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::usage) throw;
-    fail(ErrorKind::usage, "{}{}", error.what(), see_help(command.name));
-  }
-  if (options.print_config) fmt::print("{}", preset_text(table, options.settings));
-  return !options.print_config;
-}
-
-Command run_for(RunOptions& options) { return run_with(options, option_table(options)); }
-
-/// Only what inspect looks at.
-Command inspect_for(InspectOptions& options) {
-  Command command = inspect_with(options, option_table(options.run));
-  std::erase_if(command.rows, [](const OptionRow& row) { return row.name.starts_with('-') && !row.is_common; });
-  return command;
+/// Reads the command line; nothing where it asks for what is only printed.
+std::optional<TypedOptions> read_arguments(const Command& command, const std::vector<std::string>& arguments,
+                                           RunOptions& options, Reader reader) {
+  refuse_keys(arguments);
+  auto typed = typed_options(command, arguments);
+  if (!typed) return std::nullopt;
+  if (const Words input = words_for(*typed, "INPUT"); !input.empty()) options.settings.input.input = input.front();
+  bool prints_config = false;
+  with_help(command, [&] {
+    options.settings = with_values(options.settings, all_values(*typed), reader);
+    options.dry_run = is_on(*typed, "--dry-run");
+    prints_config = is_on(*typed, "--print-config");
+  });
+  if (!prints_config) return typed;
+  fmt::print("{}", preset_text(options.settings));
+  return std::nullopt;
 }
 
 }  // namespace
 
-Command describe_run() { return shown(run_for); }
-Command describe_inspect() { return shown(inspect_for); }
+Command describe_run() { return run_syntax(); }
+
+/// Only what inspect looks at.
+Command describe_inspect() {
+  Command command = inspect_syntax();
+  std::erase_if(command.rows, [](const OptionRow& row) { return row.name.starts_with('-') && !row.is_common; });
+  return command;
+}
 
 bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options) {
   if (arguments == std::vector<std::string>{"--help-markdown"}) {
     fmt::print("{}", option_table_markdown());
     return false;
   }
-  const auto table = option_table(options);
-  return read_arguments(run_with(options, table), arguments, table, options, Reader::run);
+  return read_arguments(run_syntax(), arguments, options, Reader::run).has_value();
 }
 
 bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOptions& options) {
-  const auto table = option_table(options.run);
-  return read_arguments(inspect_with(options, table), arguments, table, options.run, Reader::inspect);
+  const Command command = inspect_syntax();
+  const auto typed = read_arguments(command, arguments, options.run, Reader::inspect);
+  if (!typed) return false;
+  with_help(command, [&] { options.json = is_on(*typed, "--json"); });
+  const Words path = words_for(*typed, "--write-camera");
+  if (!path.empty()) options.write_camera = path.front();
+  return true;
 }
 
 }  // namespace alcove

@@ -9,11 +9,18 @@
 
 namespace alcove {
 
+/// What the command line of `alcove run` says.
+struct RunOptions {
+  Settings settings;
+  bool dry_run = false;
+};
+
 /// Fills `options` from presets and arguments (argv without program and subcommand; later wins over earlier, arguments
 /// over presets). Returns false where --help, --help-markdown or --print-config was asked for and printed. Fails with
 /// ErrorKind::usage, naming the nearest options or presets, and on options that have no effect or contradict another.
 bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options);
-/// What `alcove inspect` tells, and where to.
+
+/// What the command line of `alcove inspect` says.
 struct InspectOptions {
   RunOptions run;
   bool json = false;
@@ -34,7 +41,7 @@ std::string preset_file(const std::string& name);
 std::vector<std::string> presets_of(const std::vector<std::string>& words);
 /// Gives what a preset says, in the order of its file. Fails with ErrorKind::usage, naming preset and key, on keys that
 /// are no options.
-std::vector<Said> said_by_preset(const std::string& preset, const std::vector<OptionRow>& table);
+std::vector<OptionValue> values_of_preset(const std::string& preset);
 
 /// Gives what a preset is for: the first sentence of the comment that its file begins with, "" without one.
 std::string preset_sentence(const std::string& text);

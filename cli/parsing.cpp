@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <string_view>
 
@@ -14,12 +13,12 @@
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
 #include "core/options/options.h"
+#include "core/run/plan.h"
 
 namespace alcove {
 namespace {
 
 constexpr int kHelpColumn = 34;  // where the sentences begin
-constexpr const char* kDigits = "0123456789";
 
 /// The row as an option that only collects its words.
 CLI::Option* add_option(CLI::App& app, const OptionRow& row) {
@@ -73,36 +72,7 @@ const OptionRow* row_of(const Command& command, const std::string& complaint) {
   return row == command.rows.end() ? nullptr : &*row;
 }
 
-/// Where the number begins that ends before `end`.
-std::size_t begin_of_number(const std::string& name, std::size_t end) {
-  const std::size_t before = name.find_last_not_of(kDigits, end - 1);
-  return before == name.npos ? 0 : before + 1;
-}
-
-/// Whether a number is that of a version, as in shot_v002.exr.
-bool is_version(const std::string& name, std::size_t begin) {
-  const bool has_v = begin > 0 && lower_case(name.substr(begin - 1, 1)) == "v";
-  return has_v && (begin == 1 || !std::isalpha((unsigned char)name[begin - 2]));
-}
-
-/// A pattern's token for a number of so many digits; a lone # stands for four.
-std::string token_of(std::size_t digits) { return digits == 1 ? "%d" : std::string(digits, '#'); }
-
-/// The pattern of the sequence that a picture belongs to, by its last number that is none of a version; "" for a name
-/// that is none of a picture or has no such number.
-std::string pattern_of(const std::string& name) {
-  if (!names_input(name)) return "";
-  const std::size_t folder = name.rfind('/') == name.npos ? 0 : name.rfind('/') + 1;
-  std::size_t last = name.find_last_of(kDigits, name.rfind('.'));
-  while (last != name.npos && last >= folder) {
-    const std::size_t begin = begin_of_number(name, last + 1);
-    if (!is_version(name, begin)) return name.substr(0, begin) + token_of(last + 1 - begin) + name.substr(last + 1);
-    last = begin == 0 ? name.npos : name.find_last_of(kDigits, begin - 1);
-  }
-  return "";
-}
-
-/// Complains of what no option takes.
+/// Fails on a word that no option takes.
 [[noreturn]] void refuse_extra(const Command& command, const std::string& extra) {
   if (extra.starts_with('-')) {
     const std::string option = extra.substr(0, extra.find('='));
@@ -114,7 +84,7 @@ std::string pattern_of(const std::string& name) {
     if (!row.name.starts_with('-')) places.push_back(row.name);
   if (places.empty())
     fail(ErrorKind::usage, "{}: {} takes options only{}", extra, command.name, see_help(command.name));
-  const std::string pattern = pattern_of(extra);
+  const std::string pattern = names_input(extra) ? pattern_for(extra) : "";
   fail(ErrorKind::usage, "{}: {} takes one {}{}{}", extra, command.name, fmt::join(places, " and one "),
        pattern.empty() ? "" : "; a sequence is one name with a pattern: write " + pattern, see_help(command.name));
 }
@@ -152,7 +122,8 @@ bool has_common_rows(const Command& command) { return std::ranges::any_of(comman
 
 std::string see_help(const std::string& command) { return fmt::format("; see {} --help", command); }
 
-std::optional<std::vector<Typed>> find_typed(const Command& command, const std::vector<std::string>& arguments) {
+std::optional<std::vector<TypedOption>> typed_options(const Command& command,
+                                                      const std::vector<std::string>& arguments) {
   Parser parser(command, true);
   try {
     parser.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
@@ -165,23 +136,19 @@ std::optional<std::vector<Typed>> find_typed(const Command& command, const std::
   } catch (const CLI::ParseError& error) {
     complain(command, parser.app, error);
   }
-  std::vector<Typed> typed;
+  std::vector<TypedOption> typed;
   for (std::size_t i = 0; i < command.rows.size(); i++)
-    if (parser.options[i]->count() > 0) typed.push_back({&command.rows[i], parser.options[i]->reduced_results()});
+    if (parser.options[i]->count() > 0) typed.push_back({command.rows[i].name, parser.options[i]->reduced_results()});
   return typed;
 }
 
-bool parse_arguments(const Command& command, const std::vector<std::string>& arguments) {
-  const auto typed = find_typed(command, arguments);
-  if (!typed) return false;
-  for (const auto& [row, words] : *typed) {
-    try {
-      row->read(words);
-    } catch (const Error& error) {
-      fail(error.kind(), "{}{}", error.what(), see_help(command.name));
-    }
+void with_help(const Command& command, const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::usage) throw;
+    fail(ErrorKind::usage, "{}{}", error.what(), see_help(command.name));
   }
-  return true;
 }
 
 // Words that are inputs: by the file, by the ending, by the pattern.

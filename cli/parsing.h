@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,32 +17,44 @@ struct Command {
   std::string name;         // as typed, such as "alcove run"
   std::string description;  // with its examples
   std::vector<OptionRow> rows;
-  std::shared_ptr<void> bound = {};  // what the rows bind, where nothing else keeps it
 };
 
-/// A command with arguments of its own, to be shown and not to be parsed.
-template <class Arguments>
-Command shown(Command (*make)(Arguments&)) {
-  const auto arguments = std::make_shared<Arguments>();
-  Command command = make(*arguments);
-  command.bound = arguments;
-  return command;
-}
-
-/// The words that were typed for a row.
-struct Typed {
-  const OptionRow* row;
+/// An option that was typed, by the name of its row, with its words.
+struct TypedOption {
+  std::string name;
   Words words;
 };
 
-/// Finds the words of each row that was typed, in the order of the rows; none where --help or --help-all was asked for
-/// and printed. Fails with ErrorKind::usage in one sentence, with the nearest of the command's options where one is
+/// Finds the options that were typed, in the order of the rows; nothing where --help or --help-all was asked for and
+/// printed. Fails with ErrorKind::usage in one sentence, with the nearest of the command's options where one is
 /// misspelt.
-std::optional<std::vector<Typed>> find_typed(const Command& command, const std::vector<std::string>& arguments);
+std::optional<std::vector<TypedOption>> typed_options(const Command& command,
+                                                      const std::vector<std::string>& arguments);
 
-/// Reads the arguments into what the rows bind. Returns false where help was asked for and printed. Fails with
-/// ErrorKind::usage, also on values that the rows refuse.
-bool parse_arguments(const Command& command, const std::vector<std::string>& arguments);
+/// Calls it, and points to the help of the command in the sentence of an Error of kind usage.
+void with_help(const Command& command, const std::function<void()>& call);
+
+/// A subcommand whose options are the parts of an `Arguments`.
+template <class Arguments>
+struct CommandOf {
+  std::string name, description;  // as those of Command
+  std::vector<RowOf<Arguments>> rows = {};
+
+  Command shown() const { return {name, description, {rows.begin(), rows.end()}}; }
+  /// Gives what was typed; nothing where help was asked for and printed. Fails with ErrorKind::usage, also on values
+  /// that the rows refuse.
+  std::optional<Arguments> parse(const std::vector<std::string>& arguments) const {
+    const Command command = shown();
+    const auto typed = typed_options(command, arguments);
+    if (!typed) return std::nullopt;
+    Arguments parsed;
+    with_help(command, [&] {
+      for (const auto& option : *typed)
+        std::ranges::find(rows, option.name, &OptionRow::name)->read(parsed, option.words);
+    });
+    return parsed;
+  }
+};
 
 /// Whether help shows only some rows of the command, and --help-all all of them.
 bool has_common_rows(const Command& command);

@@ -10,7 +10,6 @@
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/base/json_text.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/options/options.h"
@@ -75,8 +74,8 @@ std::vector<std::string> presets_of(const std::vector<std::string>& words) {
   return presets;
 }
 
-std::vector<Said> said_by_preset(const std::string& preset, const std::vector<OptionRow>& table) {
-  return said_by_text(preset, read_text(preset_file(preset), "preset", "--preset"), table);
+std::vector<OptionValue> values_of_preset(const std::string& preset) {
+  return preset_values(preset, read_text(preset_file(preset), "preset", "--preset"));
 }
 
 std::string preset_sentence(const std::string& text) {
@@ -168,22 +167,24 @@ struct PresetsArguments {
   bool json = false;
 };
 
-Command presets_for(PresetsArguments& a) {
-  Command command{"alcove presets", "Lists the presets with what each is for, or prints the one of that name.\n", {}};
-  OptionGroup(command.rows, "", Effect::none).text("NAME", a.name, "", "a preset to print, or a TOML file");
+CommandOf<PresetsArguments> presets_syntax() {
+  CommandOf<PresetsArguments> command{"alcove presets",
+                                      "Lists the presets with what each is for, or prints the one of that name.\n"};
+  OptionGroup(command.rows, "", Effect::none)
+      .text("NAME", &PresetsArguments::name, "", "a preset to print, or a TOML file");
   OptionGroup(command.rows, "Options", Effect::none)
-      .flag("--json", a.json, "print the list as JSON: name, group, sentence, file");
+      .flag("--json", &PresetsArguments::json, "print the list as JSON: name, group, sentence, file");
   return command;
 }
 
 }  // namespace
 
-Command describe_presets() { return shown(presets_for); }
+Command describe_presets() { return presets_syntax().shown(); }
 
 int presets_command(const std::vector<std::string>& arguments) {
-  PresetsArguments a;
-  if (!parse_arguments(presets_for(a), arguments)) return 0;
-  const auto& [name, json] = a;
+  const auto parsed = presets_syntax().parse(arguments);
+  if (!parsed) return 0;
+  const auto& [name, json] = *parsed;
   if (!name.empty() && json) fail(ErrorKind::usage, "--json is of the list; {} is printed as it is", name);
   if (!name.empty())
     fmt::print("{}", read_text(preset_file(name), "preset", "NAME"));

@@ -28,7 +28,7 @@ std::string clock_text(double seconds) {
 
 }  // namespace
 
-Progress::Progress(const ProgressOptions& options, const std::string& log_json)
+Progress::Progress(const ProgressSettings& options, const std::string& log_json)
     : options_(options), log_path_(log_json) {
   if (options_.kind == "auto") options_.kind = errors_go_to_terminal() ? "bar" : "plain";
 }

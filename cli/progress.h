@@ -20,7 +20,7 @@ class Progress {
  public:
   /// log_json names a file, or is - for the standard output, or is empty for no log. All functions fail with
   /// ErrorKind::output where the log or the standard output cannot be written.
-  Progress(const ProgressOptions& options, const std::string& log_json);
+  Progress(const ProgressSettings& options, const std::string& log_json);
 
   void begin(const RunReport& report, int frames);
   /// Says what is new in RunReport::notes.
@@ -52,7 +52,7 @@ class Progress {
   void log(const std::string& event, const std::string& members);
   std::string rate_text() const;
 
-  ProgressOptions options_;
+  ProgressSettings options_;
   const std::string log_path_;
   std::unique_ptr<std::FILE, CloseFile> file_;
   std::FILE* log_ = nullptr;

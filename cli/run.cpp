@@ -15,7 +15,7 @@
 namespace alcove {
 namespace {
 
-/// The name of an output beside which people look for it: ao.####.exr for shot.####.exr.
+/// The usual name of the output of an input: ao.####.exr for shot.####.exr.
 std::string usual_output(const std::string& input) {
   const auto pattern = frame_pattern(input);
   if (!pattern) return "ao.exr";
@@ -23,19 +23,19 @@ std::string usual_output(const std::string& input) {
   return "ao." + input.substr(token, input.size() - token - pattern->after.size()) + ".exr";
 }
 
-/// Prints a line for each thing that is missing, and the command that has all of it. Returns whether nothing is.
-bool has_all(const Settings& settings, const std::vector<std::string>& arguments) {
-  const Lacking lacking = lacking_in(settings);
-  if (!lacking.any()) return true;
+/// Prints a line for each missing option, and the command that has all of them. Returns whether none is missing.
+bool has_all(FirstLook& look, const Settings& settings, const std::vector<std::string>& arguments) {
+  const MissingOptions missing = look.missing_options();
+  if (!missing.any()) return true;
   std::string command = "alcove run";
-  if (lacking.input) command += " frame.exr";
+  if (missing.input) command += " frame.exr";
   for (const auto& argument : arguments) command += " " + for_shell(argument);
-  if (lacking.output) command += " -o " + for_shell(usual_output(main_input(settings.input)));
-  if (lacking.camera) command += " --camera CAMERA.json";
-  if (lacking.radius)
-    command += " --radius " + (lacking.proposed_radius ? fmt::format("{}", *lacking.proposed_radius) : "auto");
+  if (missing.output) command += " -o " + for_shell(usual_output(main_input(settings.input)));
+  if (missing.camera) command += " --camera CAMERA.json";
+  if (missing.radius)
+    command += " --radius " + (missing.proposed_radius ? fmt::format("{}", *missing.proposed_radius) : "auto");
   print_error("alcove: error: missing:\n");
-  for (const auto& sentence : sentences_on(lacking)) print_error("  {}\n", printable(sentence));
+  for (const auto& sentence : missing.sentences()) print_error("  {}\n", printable(sentence));
   print_error("such as:\n{}\n", printable(command));
   return false;
 }
@@ -45,23 +45,23 @@ bool has_all(const Settings& settings, const std::vector<std::string>& arguments
 int run_command(const std::vector<std::string>& arguments) {
   RunOptions options;
   if (!parse_run_options(arguments, options)) return 0;
-  if (!has_all(options.settings, arguments)) return int(ErrorKind::usage);
+  FirstLook look(options.settings);
+  if (!has_all(look, options.settings, arguments)) return int(ErrorKind::usage);
   if (options.dry_run) {
-    fmt::print("{}", plan_text(options.settings));
+    fmt::print("{}", plan_text(look));
     return 0;
   }
   catch_ending_signals();
-  Progress progress(options.progress, options.settings.output.log_json);
+  Progress progress(options.settings.progress, options.settings.output.log_json);
   std::optional<Error> failure;
-  const RunReport report =
-      run_frames(options.settings, {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
-                                    [&](const RunReport& noted) { progress.note(noted); },
-                                    [&](const FrameReport& frame) {
-                                      progress.frame(frame);
-                                      if (frame.error) failure = frame.error;
-                                    },
-                                    [] { return caught_signal() != 0; },
-                                    [&](std::span<const FrameProgress> frames) { progress.working(frames); }});
+  const RunReport report = run_frames(look, {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
+                                             [&](const RunReport& noted) { progress.note(noted); },
+                                             [&](const FrameReport& frame) {
+                                               progress.frame(frame);
+                                               if (frame.error) failure = frame.error;
+                                             },
+                                             [] { return caught_signal() != 0; },
+                                             [&](std::span<const FrameProgress> frames) { progress.working(frames); }});
   progress.end(report);
   if (report.stop && !report.is_sequence) throw *report.stop;
   // Of a sequence each failure was told of with its frame.

@@ -11,5 +11,5 @@ foreach(file ${files})
   string(APPEND cases "  if (stem == \"${stem}\") return k_${stem};\n")
 endforeach()
 file(WRITE "${OUTPUT}"
-  "// Generated from kernels/*.comp by cmake/embed_kernels.cmake.\n#include \"core/gpu/kernel.h\"\n\nnamespace alcove::gpu {\nnamespace {\n${arrays}}  // namespace\n\n"
+  "// Generated from kernels/ by cmake/embed_kernels.cmake.\n#include \"core/gpu/kernel.h\"\n\nnamespace alcove::gpu {\nnamespace {\n${arrays}}  // namespace\n\n"
   "std::span<const std::uint32_t> kernel_code(std::string_view stem) {\n${cases}  return {};\n}\n\n}  // namespace alcove::gpu\n")

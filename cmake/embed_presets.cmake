@@ -1,4 +1,4 @@
-# Writes OUTPUT, a C++ source whose FUNCTION, declared in HEADER, gives the presets of FOLDER as texts: by their paths without .toml, those below EXCEPT left out.
+# Writes OUTPUT, a C++ source whose FUNCTION, declared in HEADER, gives the presets of FOLDER as texts, by their paths without .toml. Presets below EXCEPT are left out.
 # SPDX-License-Identifier: BSD-3-Clause
 file(GLOB_RECURSE files RELATIVE "${FOLDER}" "${FOLDER}/*.toml")
 set(texts "")

@@ -3,7 +3,7 @@
 string(REPLACE "," ";" files "${FILES}")
 file(READ "${PAGE}" page)
 
-# Stops the build where the page has no place for what should be put there.
+# Stops the build if the page has no mark of that name.
 macro(require_mark name)
   string(FIND "${page}" "{{${name}}}" at)
   if(at EQUAL -1)
@@ -17,7 +17,7 @@ foreach(file ${files})
   require_mark(${name})
   file(READ "${file}" text)
   if(text MATCHES "</(script|style)")
-    message(FATAL_ERROR "${file} holds a closing tag, which would end the block it is put into")
+    message(FATAL_ERROR "${file} holds a closing tag, which would end the block around it")
   endif()
   string(REPLACE "{{${name}}}" "${text}" page "${page}")
 endforeach()

@@ -1,8 +1,8 @@
-# Writes into FOLDER what PROGRAM says of itself: the man pages of it and of its COMMANDS (separated by commas), compressed as Debian
-# wants them, and completions for three shells.
+# Writes the texts that PROGRAM prints about itself into FOLDER: the man pages of it and of its COMMANDS (separated by commas), compressed as
+# Debian wants them, and completions for three shells.
 # SPDX-License-Identifier: BSD-3-Clause
 string(REPLACE "," ";" commands "${COMMANDS}")
-# A page of a command that is no more is not left behind.
+# Pages of commands that no longer exist must go.
 file(REMOVE_RECURSE ${FOLDER})
 set(completions bash-completion/completions/alcove zsh/vendor-completions/_alcove fish/vendor_completions.d/alcove.fish)
 foreach(file man/man1/alcove.1.gz ${completions})

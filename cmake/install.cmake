@@ -1,7 +1,7 @@
-# What `cmake --install` puts where, under any prefix: the program finds presets and the module of images from its own place.
+# The files of `cmake --install`, for any prefix: the program finds presets and the module of images from its own place.
 # SPDX-License-Identifier: BSD-3-Clause
 
-# What the program says of itself.
+# Man pages and completions, which the program prints itself.
 set(texts ${CMAKE_BINARY_DIR}/generated/share)
 add_custom_command(OUTPUT ${texts}/man/man1/alcove.1.gz
   COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:alcove> -DFOLDER=${texts} -DCOMMANDS=run,inspect,compare,bench,presets,devices,doctor
@@ -12,14 +12,14 @@ install(DIRECTORY ${texts} DESTINATION .)
 install(DIRECTORY hosts DESTINATION share/alcove FILES_MATCHING PATTERN *.py PATTERN *.toml PATTERN py.typed)
 install(DIRECTORY presets DESTINATION share/alcove FILES_MATCHING PATTERN *.toml)
 
-# The documents, in the folders that their links name, and the frame of the first steps.
+# The documents, in the folders of their links, and the frame of the first steps.
 set(documents share/doc/alcove)
 install(FILES README.md CHANGELOG.md DESTINATION ${documents})
 install(DIRECTORY docs DESTINATION ${documents} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg PATTERN *.json)
 install(FILES examples/interior.gbuffer.exr examples/interior.beauty.exr examples/interior.camera.json DESTINATION ${documents}/examples)
 install(DIRECTORY examples/farm DESTINATION ${documents}/examples USE_SOURCE_PERMISSIONS)
 
-# Our licence, as Debian's format has it: indented, and a dot on empty lines.
+# Our licence in Debian's format: indented, with a dot on empty lines.
 file(READ LICENSE licence)
 string(REGEX REPLACE "\n+$" "" licence "${licence}")
 string(REPLACE "\n\n" "\n.\n" licence "${licence}")

@@ -1,9 +1,9 @@
-# What `cpack -G DEB` and `cpack -G TGZ` make; scripts/package.sh calls both.
+# The packages of `cpack -G DEB` and `cpack -G TGZ`; scripts/package.sh calls both.
 # SPDX-License-Identifier: BSD-3-Clause
 set(CPACK_GENERATOR DEB TGZ)
-set(CPACK_PACKAGE_CONTACT "Alcove developers <alcove@alcove.invalid>")  # a field must have an address; this one is none
+set(CPACK_PACKAGE_CONTACT "Alcove developers <alcove@alcove.invalid>")  # the field needs an address; this one does not exist
 set(CPACK_STRIP_FILES ON)
-# Not what the umask of the builder leaves.
+# Fixed, so that the umask of the builder does not matter.
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_THREADS 0)
 
@@ -24,7 +24,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 
-# Render nodes have a driver of their own, hence no dependency on one: in the words of libvulkan1.
+# Render nodes have a driver of their own, so drivers are only recommended, in the words of libvulkan1.
 set(CPACK_DEBIAN_ALCOVE_PACKAGE_NAME alcove)
 set(CPACK_DEBIAN_ALCOVE_PACKAGE_RECOMMENDS "alcove-pictures, mesa-vulkan-drivers | vulkan-icd")
 set(CPACK_DEBIAN_ALCOVE_DESCRIPTION "ambient occlusion from rendered depth and normals
@@ -34,13 +34,13 @@ captures, and writes the AO, and composites with the beauty, as OpenEXR.
 
 It computes with Vulkan: on a GPU, or on the CPU with mesa-vulkan-drivers.")
 
-# By its version, since the interface between program and module is no promise.
+# The module depends on the version of the program, since the interface between them may change.
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
 set(CPACK_COMPONENT_PICTURES_DEPENDS alcove)
 set(CPACK_DEBIAN_PICTURES_PACKAGE_NAME alcove-pictures)
 set(CPACK_DEBIAN_PICTURES_DESCRIPTION "TIFF, PNG and other pictures for Alcove
 With this module, Alcove reads depth, normals and beauties from TIFF, PNG and
-what else OpenImageIO reads.")
+other formats that OpenImageIO reads.")
 set(CPACK_DEBIAN_PICTURES_PACKAGE_SOURCE alcove)
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libalcove0)
@@ -56,7 +56,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_NAME libalcove-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SOURCE alcove)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "ambient occlusion of planes in memory (development files)
-The header of libalcove, and what CMake and pkg-config know of it.")
+The header of libalcove, and its files for CMake and pkg-config.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-alcove)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
@@ -69,7 +69,7 @@ set(CPACK_DEBIAN_PYTHON_DESCRIPTION "ambient occlusion from Python, of files and
 Runs Alcove over files with its progress and its errors as exceptions, and
 computes the AO of numpy arrays with its library.")
 
-# What only Debian packages have: a changelog in Debian's form, and for both one folder of documents.
+# Parts of Debian packages alone: a changelog in Debian's form, and links to shared folders of documents.
 set(debian ${CMAKE_BINARY_DIR}/generated/debian)
 if(DPKG_DEB)
   execute_process(COMMAND date -uR -d ${ALCOVE_RELEASE_DATE} OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
@@ -79,7 +79,7 @@ if(DPKG_DEB)
   install(FILES ${debian}/changelog.gz DESTINATION share/doc/alcove EXCLUDE_FROM_ALL)
   file(WRITE ${debian}/triggers "activate-noawait ldconfig\n")
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${debian}/triggers)
-  # Those that need another one have its folder of documents.
+  # Packages that need another one share its folder of documents.
   file(CREATE_LINK alcove ${debian}/alcove-pictures SYMBOLIC)
   install(FILES ${debian}/alcove-pictures DESTINATION share/doc COMPONENT pictures EXCLUDE_FROM_ALL)
   file(CREATE_LINK libalcove0 ${debian}/libalcove-dev SYMBOLIC)

@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# What tests alone do not show: the address, undefined-behaviour and thread sanitizers, clang-tidy, some seconds of fuzzing for each target; and what no test reaches.
-#   scripts/check.sh              what reads others' bytes, every estimator, and sequences
-#   scripts/check.sh PART...      of that: addresses (with undefined behaviour), threads, tidy, fuzzing
+# Checks beside the tests: the address, undefined-behaviour and thread sanitizers, clang-tidy, some seconds of fuzzing for each target; and the coverage of the tests.
+#   scripts/check.sh              readers of files, every estimator, and sequences
+#   scripts/check.sh PART...      only these parts: addresses (with undefined behaviour), threads, tidy, fuzzing
 #   scripts/check.sh all          all sources and all tests
 #   scripts/check.sh coverage     only this: lines and branches of core/ and cli/ that the tests reach
 # Builds are in build-fuzz/ (fuzzing, and the address sanitizer with clang), build-asan/ (without it), build-tsan/, build-tidy/ and build-coverage/. ALCOVE_STRICT=ON
-# makes warnings in our code errors. Without clang, clang-tidy and fuzzing say so and are left out, unless CI is set.
+# makes warnings in our code errors. Without clang, clang-tidy and fuzzing are left out with a message; if CI is set, that is an error.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readers=(core/formats/{exr_header,exr_zip,exr_zip_writer,zip_chunk,sample_loops,dds,image_io,open_image,png,sequence}.cpp core/frame/{header_camera,camera,matte}.cpp core/base/{file,text}.cpp)
+readers=(core/formats/{exr_check,exr_zip,sample_loops,dds,image_io,open_image,png,sequence}.cpp core/frame/{header_camera,camera,matte}.cpp core/base/{file,text}.cpp)
 tests=(base/{text,new_file,memory_limit}_test
        formats/{file,file_names,open_image,bad_input,capture_formats,color,hostile,sequence,zip,zip_writer}_test
        frame/{camera,chan,resection,header_camera,gbuffer,parts,inputs,readings,sources}_test
@@ -36,7 +36,7 @@ names_of() {  # a regular expression for the names of tests ROOM/NAME
   names=$(printf '|%s' "${@##*/}")
   echo "(${names:1})\$"
 }
-programs_of() {  # the programs that hold them
+programs_of() {  # the programs of tests ROOM/NAME
   printf '%s_tests\n' "${@%%/*}" | sort -u
 }
 
@@ -66,8 +66,8 @@ if [ "$parts" = coverage ]; then
   failed=0
   ctest --test-dir build-coverage --output-on-failure -j "$(nproc)" >build-coverage/tests.log || failed=1
   tail -n 3 build-coverage/tests.log
-  # Library, module and program, and what of cli/ tests hold themselves; not the tests' own objects, which take gcov many times as long. With -j, gcovr 5.2
-  # waits for ever where gcov fails.
+  # These are the objects of library, module and program, and those of cli/ in tests; the tests' own objects would take gcov many times as long. With -j,
+  # gcovr 5.2 waits for ever if gcov fails.
   mkdir -p build-coverage/lines
   gcovr --root . --filter core/ --filter cli/ --exclude-throw-branches --json build-coverage/coverage.json --html-details build-coverage/lines/index.html \
     build-coverage/CMakeFiles build-coverage/tests/CMakeFiles/*/__
@@ -76,7 +76,7 @@ if [ "$parts" = coverage ]; then
   exit "$failed"
 fi
 
-# With clang, fuzzing takes the same build.
+# With clang, fuzzing uses the same build.
 sanitized=build-asan arguments=(-DALCOVE_SANITIZE=address,undefined)
 fuzz_targets=(tests/fuzz/*_fuzz.cpp)
 fuzz_targets=("${fuzz_targets[@]##*/}")
@@ -87,7 +87,7 @@ fi
 
 if does addresses; then
   step "address and undefined behaviour"
-  # Leaks are not looked for: what lavapipe and OpenEXR lose cannot be told apart, as their libraries are gone by then. Memory over many frames is a test.
+  # Leaks are not checked: lavapipe and OpenEXR leak too, and their libraries are unloaded by then, so leaks cannot be told apart. A test watches memory over many frames.
   export ASAN_OPTIONS=detect_leaks=0:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
   if [ ${#tests[@]} = 0 ]; then
     build "$sanitized" "${arguments[@]}" -DALCOVE_TESTS= -- all
@@ -101,7 +101,7 @@ fi
 
 if does threads; then
   step "threads"
-  # What drivers and codecs do among themselves is not watched: they are built without it, and their locks are not all seen.
+  # Drivers and codecs are built without the sanitizer, which does not see all of their locks, so they are not watched.
   export TSAN_OPTIONS=ignore_noninstrumented_modules=1
   # shellcheck disable=SC2046
   build build-tsan -DALCOVE_SANITIZE=thread -DALCOVE_TESTS="$(names_of "${threaded[@]}")" -- $(programs_of "${threaded[@]}")
@@ -110,7 +110,7 @@ fi
 
 if does tidy && has_clang clang-tidy; then
   step "clang-tidy"
-  # It does not read GCC's precompiled headers; without them it also sees that every file includes what it uses.
+  # clang-tidy cannot read GCC's precompiled headers. Without them, it also checks that every file includes the headers that it uses.
   cmake -S . -B build-tidy -G Ninja -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DBUILD_TESTING=OFF >/dev/null
   printf '%s\n' "${readers[@]}" | xargs -P "$(nproc)" -n 1 clang-tidy --quiet -p build-tidy --extra-arg=-Wno-unknown-warning-option 2>/dev/null
 fi

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lines and branches of core/ and cli/ that the tests reach, and the files with most that they do not, from the JSON of gcovr.
+"""Prints the lines and branches of core/ and cli/ that the tests reach, and the files with most unreached ones, from the JSON of gcovr.
 
   scripts/coverage_summary.py FILE.json [FILES]
 
@@ -10,7 +10,7 @@ import sys
 
 
 def ranges(numbers):
-    """[1, 2, 3, 7] as "1-3, 7"."""
+    """Writes [1, 2, 3, 7] as "1-3, 7"."""
     runs = []
     for number in numbers:
         if runs and number == runs[-1][1] + 1:

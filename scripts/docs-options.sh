@@ -1,5 +1,5 @@
 #!/bin/sh
-# Writes the program's option table into docs/options.md, after an option was added or changed: scripts/docs-options.sh [build/alcove]
+# Writes the program's option table into docs/options.md. Call it after a change of the options: scripts/docs-options.sh [build/alcove]
 # SPDX-License-Identifier: BSD-3-Clause
 set -eu
 program=${1:-build/alcove}

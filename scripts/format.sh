@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Lays out every source of ours as .clang-format says. GLSL is close enough to C++ for the same rules.
+# Formats every source of ours by .clang-format. GLSL is close enough to C++ for the same rules.
 #   scripts/format.sh           in place
-#   scripts/format.sh --check   names the files that would change, and fails if there are any (Debian package clang-format)
+#   scripts/format.sh --check   names the files that would change, and fails if there are any
+# It needs the Debian package clang-format.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# GLSL's includes have an order: a file may need what stands above it.
+# The order of GLSL's includes matters: a file may need those above it.
 formatted() {
   case $1 in
     *.comp|*.glsl) clang-format --sort-includes=false --assume-filename="$1.cpp" <"$1" ;;

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Builds what is given away, into build-package/: Debian packages of the program and of its module for pictures, and an archive of both.
+# Builds the packages into build-package/: Debian packages of the program, its module for pictures and its libraries, and an archive of all.
 #   scripts/package.sh [CMAKE ARGUMENTS]
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh --only-packages run build pictures package
-# Debian's flags, all of its hardening, and no debug information, which would be stripped again.
+# Debian's flags with all of its hardening, and without debug information, which would be stripped again.
 export DEB_BUILD_MAINT_OPTIONS=hardening=+all DEB_CXXFLAGS_MAINT_STRIP=-g
 linker_flags=$(dpkg-buildflags --get LDFLAGS)
 cmake -S . -B build-package -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON \

@@ -2,7 +2,7 @@
 """Draws the pictures of README.md and docs/ into docs/pictures/: scripts/pictures.py FRAMES [build/alcove]
 
 FRAMES is the folder of the rendered test scenes. The pictures of the README are two halves of one frame side by side:
-what there was before, and what Alcove makes of it; or AO by Alcove, and by ray tracing. Those of docs/settings.md are
+the beauty and the composite; or AO by Alcove and by ray tracing. Those of docs/settings.md are
 the same part of a frame several times, by other settings and by ray tracing.
 SPDX-License-Identifier: BSD-3-Clause
 """
@@ -57,7 +57,7 @@ def write_png(path, rows):
 
 
 def beside(pictures, columns, rows):
-    """That part of each."""
+    """The same part of each picture."""
     gap = b"\xff" * 3 * GAP
     return [gap.join(p[y][3 * columns[0] : 3 * columns[1]] for p in pictures) for y in range(*rows)]
 
@@ -69,7 +69,7 @@ class Scene:
         self.frames, self.program, self.scratch, self.name, self.radius = frames, program, scratch, name, radius
 
     def run(self, *options):
-        """A run in production quality, where the options say no other, into ao.exr."""
+        """Runs Alcove into ao.exr, in production quality unless the options say otherwise."""
         frame, camera = (self.frames / f"{self.name}.{end}" for end in ("gbuffer.exr", "camera.json"))
         command = [self.program, "run", frame, "--camera", camera, "-o", self.scratch / "ao.exr", "--set", "overwrite=true", "-q"]
         command += [] if "--preset" in options else ["--preset", "production"]
@@ -77,13 +77,13 @@ class Scene:
         subprocess.run([str(word) for word in [*command, *options]], check=True)
 
     def composite(self, beauty, *options):
-        """As displays show it."""
+        """The picture as displays show it."""
         preview = self.scratch / "preview.png"
         self.run("--beauty", beauty, "--composite", self.scratch / "comp.exr", "--preview", preview, *options)
         return read_png(preview)
 
     def shown(self, ao, channel):
-        """AO as it is, through the same transform as all pictures: a beauty that no AO is put into."""
+        """The AO through the transform of all pictures: as a beauty without AO in it."""
         return self.composite(ao, "--set", "beauty-channels=" + ",".join([channel] * 3), "--intensity", "0", "--preset", "draft")
 
     def ao(self, *options):

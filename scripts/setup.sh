@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing and builds Alcove into build/ in Release. Takes seconds when all is there.
+# Installs the Debian packages that are missing and builds Alcove into build/ in Release. Takes seconds if everything is built already.
 #   scripts/setup.sh [--only-program] [CMAKE ARGUMENTS]
 #   scripts/setup.sh --only-packages SECTION...
 # ALCOVE_STRICT=ON makes warnings in our code errors, as continuous integration does.
-# --only-program: build/alcove, with the packages of [run] and [build] and no tests. Without it, [pictures], [test] and the tests too.
-# --only-packages: the packages of these sections of packages.txt, and nothing is built.
+# --only-program: builds build/alcove alone, with the packages of [run] and [build]. Without it, those of [pictures] and [test], and the tests, too.
+# --only-packages: installs the packages of these sections of packages.txt, and builds nothing.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -36,21 +36,21 @@ give_up() {
 }
 
 if [ ${#missing[@]} -gt 0 ]; then
-  [ -x "$(command -v apt-get)" ] || give_up "This system has no apt-get. Install what these Debian packages hold, and build with CMake: ${missing[*]}"
+  [ -x "$(command -v apt-get)" ] || give_up "This system has no apt-get. Install the contents of these Debian packages, and build with CMake: ${missing[*]}"
   as_root=()
   if [ "$(id -u)" != 0 ]; then
     [ -x "$(command -v sudo)" ] || give_up "Only root can install packages, and there is no sudo. As root: apt-get install ${missing[*]}"
     as_root=(sudo)
   fi
   echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
-  "${as_root[@]}" apt-get update -qq || echo "apt-get update failed; the lists of packages that are here already may do"
-  # sudo passes no variables on, and a package that asks a question would wait for ever.
+  "${as_root[@]}" apt-get update -qq || echo "apt-get update failed; the present lists of packages may be enough"
+  # sudo passes no variables on. Without this one, a package that asks a question would wait for ever.
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null ||
-    give_up "The packages could not be installed: see above what apt-get says, and whether there is a network"
+    give_up "The packages could not be installed: see the messages of apt-get above, and check the network"
 fi
 
-# Passes on the lines of ninja's progress, "[12/104] ...": each on a terminal, over the last one; elsewhere every twentieth. Not by awk, since Debian's
-# reads 4 KiB of a pipe before it looks at the first line.
+# Passes on the lines of ninja's progress, "[12/104] ...": on a terminal every line, over the last one; elsewhere every twentieth. Debian's awk would
+# read 4 KiB of a pipe before the first line.
 show_progress() {
   local line has_shown=
   while IFS= read -r line; do
@@ -68,9 +68,9 @@ show_progress() {
 
 [ -n "$testing" ] || exit 0
 mkdir -p build
-# Where all is compiled once, sources together take less than half the time; where one is changed, each for itself does.
+# Sources compiled together take less than half the time. Compiled one by one they are faster after a change: scripts/setup.sh -DCMAKE_UNITY_BUILD=OFF
 together=()
-[ -f build/CMakeCache.txt ] || { [ "$testing" = ON ] && [ -z "${CI:-}" ]; } || together=(-DCMAKE_UNITY_BUILD=ON)
+[ -f build/CMakeCache.txt ] || together=(-DCMAKE_UNITY_BUILD=ON)
 echo "Configuring"
 cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING="$testing" -DALCOVE_STRICT="${ALCOVE_STRICT:-OFF}" "${together[@]}" "$@" >build/build.log 2>&1 || { cat build/build.log; exit 1; }
 echo "Compiling"

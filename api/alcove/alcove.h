@@ -9,15 +9,15 @@
 //     if (alcove_run(ao, 0) || alcove_get(ao, "ao", result, &one)) fprintf(stderr, "%s\n", alcove_error(ao));
 //     alcove_free(ao);
 //
-// It reads no files but presets, which are compiled in; writes none but the driver's compiled kernels in the XDG cache
-// folder ("no-pipeline-cache" leaves them out); changes neither locale, environment nor signals; and prints nothing
-// unless "validate" asks for it. Handles know nothing of each other: each may be used by one thread at a time, several
-// by several threads, and none is of use in a process that was forked meanwhile. A handle keeps its device, kernels and
-// buffers, so the first run takes some tenths of a second more than others.
+// The library reads no files except presets, which are compiled in. It writes none except the driver's compiled kernels
+// in the XDG cache folder ("no-pipeline-cache" turns that off). It leaves locale, environment and signals alone, and
+// prints nothing unless "validate" asks for it. Handles are independent: one thread at a time may use a handle, and
+// several threads may use one each. A forked process cannot use the handles of its parent. A handle keeps its device,
+// kernels and buffers, so only the first run takes some tenths of a second more.
 //
 // Conventions are those of the program: view space is right-handed, x right, y up, and the camera looks along -z; depth
-// is positive; AO is visibility, 1 = open. Where there is no surface depth is 0, infinite, NaN, or at or beyond the
-// option "sky"; the AO is 1 there.
+// is positive; AO is visibility, 1 = open. A pixel is sky if its depth is 0, infinite, NaN, or at least the option
+// "sky"; its AO is 1.
 #ifndef ALCOVE_ALCOVE_H
 #define ALCOVE_ALCOVE_H
 
@@ -29,20 +29,20 @@ extern "C" {
 
 #define ALCOVE_API __attribute__((visibility("default")))
 
-// What a function answers: 0, or why it failed, by the program's exit codes. alcove_error() has the sentence. A call
-// that fails changes nothing, but that the results of an earlier run are gone when a run fails.
+// The answer of a function: 0, or the kind of its failure, by the program's exit codes. alcove_error() has the
+// sentence. A call that fails changes nothing, except that a failed run drops the results of an earlier one.
 typedef enum alcove_code {
   ALCOVE_OK = 0,
   ALCOVE_FAILED = 1,  // a mistake of Alcove's own
-  ALCOVE_USAGE = 2,   // an option or an argument that is none, or contradicts another
+  ALCOVE_USAGE = 2,   // an unknown or wrong option or argument, or one that contradicts another
   ALCOVE_INPUT = 3,   // planes or a camera that make no sense
-  ALCOVE_DEVICE = 5   // no device, no memory of it, or it was lost
+  ALCOVE_DEVICE = 5   // no device, too little of its memory, or a lost device
 } alcove_code;
 
 typedef enum alcove_type { ALCOVE_FLOAT = 0, ALCOVE_HALF = 1 } alcove_type;
 
-// How a plane lies in memory, its upper left pixel first. Strides are in bytes, and may be negative; 0: packed, the
-// components of a pixel beside each other.
+// The layout of a plane in memory, its upper left pixel first. Strides are in bytes, and may be negative; 0: packed,
+// with the components of a pixel beside each other.
 typedef struct alcove_layout {
   int width, height;  // px
   int components;
@@ -50,28 +50,27 @@ typedef struct alcove_layout {
   ptrdiff_t pixel_stride, row_stride, component_stride;
 } alcove_layout;
 
-// A frame in work, with its settings.
+// A frame with its settings.
 typedef struct alcove_session alcove_session;
 
-// Gives a handle that has the default settings; null without memory. The device is opened by the first run.
+// Makes a handle with the default settings; null if there is no memory. The first run opens the device.
 ALCOVE_API alcove_session* alcove_new(void);
-// Null is fine.
+// Frees a handle; it may be null.
 ALCOVE_API void alcove_free(alcove_session* handle);
 
-// Sets an option by its long name, such as "radius" or "--radius"; docs/options.md lists all. Words are those of the
-// command line; of several values they stand with commas ("0.1,0.5"); a flag is "true" or "false"; null: as if it had
-// never been set. Options that name files, frames or reports are none of the library's. Whether options go together
-// is told by alcove_run().
+// Sets an option by its long name, such as "radius" or "--radius"; docs/options.md lists all. Values are the words of
+// the command line, several with commas ("0.1,0.5"); a flag is "true" or "false". Null resets the option. The library
+// does not take options that name files, frames or reports. alcove_run() checks whether options go together.
 ALCOVE_API alcove_code alcove_set(alcove_session* handle, const char* option, const char* value);
-// Takes a preset by its name: draft, standard, production, reference, or one of source/. What alcove_set() says wins;
-// of several presets the later ones. Null: none any more.
+// Adds a preset by its name: draft, standard, production, reference, or one of source/. Options of alcove_set() win
+// over presets, and later presets over earlier ones. Null removes all presets.
 ALCOVE_API alcove_code alcove_preset(alcove_session* handle, const char* name);
 
-// Gives a plane, which is copied. All of a frame have one size. Null data: there is none any more. Names:
+// Sets a plane, which is copied. All planes of a frame have one size. Null data removes the plane. Names:
 //   depth        1 component, of --depth-kind, planar by default
-//   position     3, instead of a depth; of position-space, which must be said where the camera has a place
-//   normal       3, or 2 by --normal-encoding, signed by default; of --normal-space, which must be said unless the
-//                camera has no place or says it; without normals they are reconstructed from depth
+//   position     3, instead of a depth; in position-space, which must be set if the camera has a position
+//   normal       3, or 2 by --normal-encoding, signed by default; in --normal-space, which must be set unless the
+//                camera has no position or a camera file says it; without this plane, normals come from depth
 //   behind       1, depth behind the first surface, of --behind-kind; each call adds one, at most 8
 //   material-ao  1, multiplied in
 //   matte        1, 0 to 1: where AO is wanted
@@ -80,36 +79,37 @@ ALCOVE_API alcove_code alcove_preset(alcove_session* handle, const char* name);
 ALCOVE_API alcove_code alcove_plane(alcove_session* handle, const char* name, const void* data,
                                     const alcove_layout* layout);
 
-// Gives a perspective camera: focal lengths and principal point in px of the planes from their upper left corner, and
-// world_to_camera, four rows of four for column vectors, a rotation with a translation; null: none. Without a camera
-// the options fov, focal with aperture, or ortho-width give one whose axis is in the middle. alcove_run() looks at it.
+// Sets a perspective camera: focal lengths and principal point in px of the planes from their upper left corner, and
+// world_to_camera, four rows of four for column vectors, a rotation with a translation; null for none. Without a
+// camera, the options fov, focal with aperture, or ortho-width give one whose axis is in the middle. alcove_run()
+// checks it.
 ALCOVE_API alcove_code alcove_camera(alcove_session* handle, double fx, double fy, double cx, double cy,
                                      const double* world_to_camera);
-// The same by the text of a camera file, which also tells orthographic cameras, left-handed ones, near and far, and
-// what depth and normals are: docs/camera.schema.json. Null: there is no camera any more.
+// Sets the camera by the text of a camera file, which also tells orthographic cameras, left-handed ones, near and far,
+// and the kinds of depth and normals: docs/camera.schema.json. Null removes the camera.
 ALCOVE_API alcove_code alcove_camera_json(alcove_session* handle, const char* text);
 
-// Computes what the option "aov" asks for: "ao" by default. `frame`, the number of the frame, picks the entry of a
-// camera file's `frames`, and changes --noise animated. Fails where the pixels speak against depth, normals or camera.
+// Computes the results that the option "aov" names: "ao" by default. `frame`, the number of the frame, picks the entry
+// of a camera file's `frames`, and changes --noise animated. Fails if the pixels contradict depth, normals or camera.
 ALCOVE_API alcove_code alcove_run(alcove_session* handle, int frame);
-// Tells how many components a result of the last run has; 0: there is none of that name.
+// Gives the number of components of a result of the last run; 0 if there is none of that name.
 ALCOVE_API int alcove_components(const alcove_session* handle, const char* aov);
-// Copies a result of the last run, which must have that size and so many components.
+// Copies a result of the last run into a plane with its size and its number of components.
 ALCOVE_API alcove_code alcove_get(alcove_session* handle, const char* aov, void* data, const alcove_layout* layout);
-// Tells a number of the last run: compute-ms (of the device, 0 where it does not tell), sky-pixels, repaired-depth and
+// Gives a number of the last run: compute-ms (of the device, 0 if it does not tell), sky-pixels, repaired-depth and
 // repaired-normals (pixels that made no sense), turned-normals (pixels whose normals faced away from the eye), radius.
-// NaN: there is none of that name.
+// NaN if there is none of that name.
 ALCOVE_API double alcove_number(const alcove_session* handle, const char* name);
-// Tells what may be wrong although the last run went well, a sentence a line: normals of which few agree with
-// the depth, a radius that the depth's precision cannot carry, or that is larger than the picture. "": nothing.
+// Gives the doubts about a run that did not fail, one sentence per line: few normals agree with the depth, or the
+// radius is too small for the depth's precision or larger than the picture. "" without doubts.
 ALCOVE_API const char* alcove_notes(const alcove_session* handle);
-// Tells the name of the device that is open; "": none is.
+// Gives the name of the open device; "" if none is open.
 ALCOVE_API const char* alcove_device(const alcove_session* handle);
 
-// Tells what was wrong with the last call that failed, in one sentence; "": none has. It stays until the next call
-// that answers with a code.
+// Gives the failure of the last call that failed, in one sentence; "" if none has. It stays until the next call that
+// answers with a code.
 ALCOVE_API const char* alcove_error(const alcove_session* handle);
-// Tells the library's version, such as "0.2.0".
+// Gives the library's version, such as "0.2.0".
 ALCOVE_API const char* alcove_version(void);
 
 #ifdef __cplusplus

@@ -20,7 +20,8 @@ enum class ErrorKind : int {
   comparison = 6,  // a comparison failed
 };
 
-/// What went wrong with which file, frame, part and channel, and the option that mends it: one sentence, no newline.
+/// An error as one sentence without a newline: the fault, its file, frame, part and channel, and the option that mends
+/// it.
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& text) : std::runtime_error(text), kind_(kind) {}

@@ -16,13 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a name is one that NewFile gives: a process, eight digits.
+/// Whether a name has the form that NewFile gives: a process number and eight digits.
 bool is_unfinished(const std::string& name) {
   static const std::regex kName(R"(\.alcove-[0-9]+-[0-9a-f]{8}\.tmp)");
   return std::regex_match(name, kName);
 }
 
-/// A hidden name in a folder that nobody else has, for a file in the making: remove_unfinished() knows it.
+/// An unused hidden name in a folder for a file in the making; remove_unfinished() knows its form.
 std::string unfinished_name(const std::string& folder) {
   return (fs::path(folder) / fmt::format(".alcove-{}-{:08x}.tmp", process_id(), std::random_device()())).string();
 }
@@ -41,7 +41,7 @@ void require_readable(const std::string& path, const char* what, const char* opt
 }
 
 std::string read_rest(std::istream& stream) {
-  // Block by block: an iterator over the stream would throw the library's own exception where the disk fails.
+  // The stream is read block by block, since an iterator would throw the library's own exception if the disk fails.
   std::string text;
   std::array<char, 1 << 14> block;
   while (stream.read(block.data(), block.size()) || stream.gcount() > 0)
@@ -67,11 +67,11 @@ void require_writable(const std::string& path, const char* option) {
     fail(ErrorKind::output, "{}: its folder {} does not exist ({})", path, folder.string(), option);
   if (!fs::is_directory(folder_status))
     fail(ErrorKind::output, "{}: {} is not a folder ({})", path, folder.string(), option);
-  // What stands there is renamed over: a device's name, such as /dev/stdout, would be gone for everybody.
+  // The output replaces whatever stands at its name. A device such as /dev/stdout would be gone for everybody.
   const std::string whole = fs::canonical(folder, error).string() + "/";
-  const bool is_systems = std::ranges::any_of(std::array{"/dev/", "/proc/", "/sys/"},
-                                              [&](const char* root) { return whole.starts_with(root); });
-  if (is_systems && !whole.starts_with("/dev/shm/"))
+  const bool is_system_folder = std::ranges::any_of(std::array{"/dev/", "/proc/", "/sys/"},
+                                                    [&](const char* root) { return whole.starts_with(root); });
+  if (is_system_folder && !whole.starts_with("/dev/shm/"))
     fail(ErrorKind::output, "{}: {} is no place for files; {} names the file to write", path, folder.string(), option);
   if (const auto why = may_make_files_in(folder.string()))
     fail(ErrorKind::output, "{}: its folder cannot be written: {} ({})", path, why.message(), option);
@@ -82,7 +82,7 @@ void require_writable(const std::string& path, const char* option) {
 
 void require_makeable(const std::string& path, const char* option) {
   std::error_code error;
-  std::string first = path;  // that is missing of the folders, or the file itself
+  std::string first = path;  // the topmost missing folder, or the file itself
   while (fs::status(folder_of(first), error).type() == fs::file_type::not_found && folder_of(first) != first)
     first = folder_of(first);
   require_writable(first, option);
@@ -111,7 +111,7 @@ void require_no_input(const std::string& path, const char* option, std::span<con
 }
 
 NewFile::NewFile(const std::string& path) : target_(path) {
-  // Whoever cleans up may take the file in the moment before it is locked.
+  // A cleaning process may remove the file in the moment before it is locked.
   do {
     temporary_ = unfinished_name(folder_of(target_));
     if (const auto error = file_.make(temporary_)) give_up("make a temporary file for", error);

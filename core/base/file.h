@@ -15,31 +15,31 @@ namespace alcove {
 /// "--camera").
 void require_readable(const std::string& path, const char* what, const char* option);
 
-/// Reads what is left in a stream. Where it cannot be read to its end, the stream is bad() afterwards.
+/// Reads the rest of a stream. If it cannot be read to its end, the stream is bad() afterwards.
 std::string read_rest(std::istream& stream);
 
 /// Reads a whole file. Fails with ErrorKind::input.
 std::string read_text(const std::string& path, const char* what, const char* option);
 
-/// Fails with ErrorKind::output unless a file can be made at `path`: its folder exists and is writable, and nothing but
-/// a regular file stands there. Called before any work, so that a long job does not fail at its end.
+/// Fails with ErrorKind::output unless a file can be made at `path`: its folder must exist and be writable, and only a
+/// regular file may stand there. Call it before any work, so that a long job does not fail at its end.
 void require_writable(const std::string& path, const char* option);
 
-/// Does the same for a file whose folders may be missing: they can be made.
+/// Fails as require_writable() does, but allows missing folders that can be made.
 void require_makeable(const std::string& path, const char* option);
 
-/// Makes the folders that a file lies in, where they are missing. Fails with ErrorKind::output.
+/// Makes the missing folders of a file's path. Fails with ErrorKind::output.
 void make_folder_of(const std::string& path, const char* option);
 
-/// Whether two names are, or would be, one file, whatever dots and links are in them.
+/// Whether two paths lead, or would lead, to one file, with dots and links resolved.
 bool same_file(const std::string& a, const std::string& b);
 
-/// Fails with ErrorKind::usage where `path`, which is to be written, is one of the inputs. Empty names are none.
+/// Fails with ErrorKind::usage if `path`, an output, is one of the inputs. Empty names do not count.
 void require_no_input(const std::string& path, const char* option, std::span<const std::string> inputs);
 
-/// A file in the making. It has a hidden name beside `path` that does not end as images do, so that folder watchers
-/// pass it by, and a lock for as long as its process lives. Unless it is committed nothing of it is left, and what was
-/// at `path` is as it was. All failures are ErrorKind::output.
+/// A file in the making. Its hidden name beside `path` does not end as images do, so that folder watchers pass it by.
+/// It is locked for as long as its process lives. Unless it is committed, it vanishes, and the file at `path` stays as
+/// it was. All failures are ErrorKind::output.
 class NewFile {
  public:
   explicit NewFile(const std::string& path);
@@ -50,12 +50,12 @@ class NewFile {
   NewFile& operator=(const NewFile&) = delete;
 
   void write_at(std::uint64_t offset, std::span<const char> bytes);
-  /// Gives the file its name once its bytes are on the disk, so that after a loss of power it is whole or not there. A
-  /// file that is replaced leaves it its permissions, its owner and its group, as far as this process may set them. A
-  /// symbolic link at `path` is replaced and what it names stays as it was, so that nobody who can write into a folder
-  /// sends what is written there elsewhere; links among the folders of the path are followed.
+  /// Gives the file its name once its bytes are on the disk, so that after a loss of power it is whole or absent. The
+  /// new file gets the permissions, owner and group of the file that it replaces, as far as this process may set them.
+  /// A symbolic link at `path` is replaced, and its target stays as it was: nobody who can write into a folder can
+  /// redirect an output. Links among the folders of the path are followed.
   void commit();
-  /// The name that it has until then.
+  /// The file's name until it is committed.
   const std::string& temporary() const { return temporary_; }
 
  private:
@@ -65,14 +65,15 @@ class NewFile {
   LockedFile file_;
 };
 
-/// Writes a file whose bytes are all there, as NewFile does.
+/// Writes a file at once, as NewFile does.
 void write_whole(const std::string& path, std::span<const char> bytes);
 
-/// Removes the unfinished files that killed processes have left in a folder, and returns their number. Those of living
-/// processes stay, whatever machine they run on. Only regular files are looked at: no link is followed, and no pipe is
-/// waited for. Never fails: what cannot be removed stays.
+/// Removes unfinished files of killed processes from a folder, and returns their number. Files of living processes
+/// stay, whatever machine they run on. Only regular files are looked at: links are not followed, and pipes are not
+/// waited for. Never fails: files that cannot be removed stay.
 int remove_unfinished(const std::string& folder);
 
-/// The folder that a file lies in.
+/// The folder of a file.
 std::string folder_of(const std::string& path);
+
 }  // namespace alcove

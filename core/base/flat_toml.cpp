@@ -23,35 +23,35 @@ std::string typed(const std::string& key, const toml::node& node) {
 }  // namespace
 
 void require_ascii_keys(const std::string& text) {
-  const std::size_t first = text.starts_with("\xef\xbb\xbf") ? 3 : 0;  // a mark of the byte order
-  std::string within;  // what ends the string or the comment that it is in
-  char before = '\n';  // the last character that is no blank
+  const std::size_t first = text.starts_with("\xef\xbb\xbf") ? 3 : 0;  // a byte order mark
+  std::string closing;  // the end of the string or comment at hand; empty outside of both
+  char last = '\n';     // the last character that is not a blank
   int line = 1;
   for (std::size_t i = first; i < text.size(); i++) {
     const char c = text[i];
     line += c == '\n';
-    if (within.empty() && (unsigned char)c >= 0x80)
+    if (closing.empty() && (unsigned char)c >= 0x80)
       fail(ErrorKind::usage, "line {}: letters beyond ASCII stand in quotes only", line);
-    if (within.empty() && (c == '"' || c == '\'')) {
-      // Within a word toml++ takes it for a letter of that, and what follows for more of them.
-      if (std::string_view("\n=[,{.").find(before) == std::string_view::npos)
+    if (closing.empty() && (c == '"' || c == '\'')) {
+      // toml++ takes a quote within a word for a letter, and the text behind it for more letters.
+      if (std::string_view("\n=[,{.").find(last) == std::string_view::npos)
         fail(ErrorKind::usage, "line {}: a quote stands within a word", line);
       const bool is_long = text.compare(i, 3, std::string(3, c)) == 0;
-      within = std::string(is_long ? 3 : 1, c);
-      i += within.size() - 1;
-    } else if (within.empty() && c == '#') {
-      within.assign(1, '\n');
-    } else if (!within.empty() && c == '\\' && within[0] == '"') {
+      closing = std::string(is_long ? 3 : 1, c);
+      i += closing.size() - 1;
+    } else if (closing.empty() && c == '#') {
+      closing.assign(1, '\n');
+    } else if (!closing.empty() && c == '\\' && closing[0] == '"') {
       i++;
-    } else if (!within.empty() && text.compare(i, within.size(), within) == 0) {
-      i += within.size() - 1;
+    } else if (!closing.empty() && text.compare(i, closing.size(), closing) == 0) {
+      i += closing.size() - 1;
       // A long string may end with two quotes of its own.
-      for (int k = 0; within.size() == 3 && k < 2 && i + 1 < text.size() && text[i + 1] == within[0]; k++) i++;
-      within.clear();
-    } else if (within.size() == 1 && c == '\n') {
-      within.clear();
+      for (int k = 0; closing.size() == 3 && k < 2 && i + 1 < text.size() && text[i + 1] == closing[0]; k++) i++;
+      closing.clear();
+    } else if (closing.size() == 1 && c == '\n') {
+      closing.clear();
     }
-    if (c != ' ' && c != '\t' && c != '\r') before = c;
+    if (c != ' ' && c != '\t' && c != '\r') last = c;
   }
 }
 

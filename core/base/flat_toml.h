@@ -7,14 +7,14 @@
 
 namespace alcove {
 
-/// A key with its value, or with the values of its list, as they would be typed on a command line.
+/// A key with its value, or with the values of its list, as typed on a command line.
 struct FlatEntry {
   std::string key;
   std::vector<std::string> values;
 };
 
-/// Fails with ErrorKind::usage, naming the line, where letters beyond ASCII stand outside of quotes and comments. TOML
-/// has none there, and toml++ 3 does undefined things with some of them. Nor does a quote stand within a word.
+/// Fails with ErrorKind::usage, naming the line, if letters beyond ASCII stand outside of quotes and comments, or a
+/// quote stands within a word. TOML has neither, and toml++ 3 does undefined things with some of them.
 void require_ascii_keys(const std::string& text);
 
 /// Gives the entries in the order of the file's keys. Fails with ErrorKind::usage on text that is no TOML and on

@@ -11,7 +11,7 @@ namespace alcove {
 /// Gives the value of a half float's bits.
 inline float from_half(std::uint16_t bits) { return imath_half_to_float(bits); }
 
-/// Rounds to the nearest half float. Beyond their range it is infinite.
+/// Rounds to the nearest half float. Values beyond its range become infinite.
 inline std::uint16_t to_half(float value) { return imath_float_to_half(value); }
 
 }  // namespace alcove

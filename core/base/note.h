@@ -1,4 +1,4 @@
-// What the user should know about a frame or a run although nothing failed: a stable code and a sentence.
+// Notes to the user about a frame or a run that did not fail: a stable code and a sentence each.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,9 +8,9 @@
 
 namespace alcove {
 
-/// What a note is about. Its name is stable: scripts may look for it.
+/// The subject of a note. Its name is stable: scripts may look for it.
 enum class NoteCode {
-  // how the frame is read
+  // reading of the frame
   unusual_reading,
   assumed_reading,
   proven_reading,
@@ -26,7 +26,7 @@ enum class NoteCode {
   principal_point,
   field_of_view,
   camera_scaled,
-  // what harms AO
+  // faults that harm AO
   half_depth,
   overflown_depth,
   jittered_depth,
@@ -39,16 +39,16 @@ enum class NoteCode {
   lossy_compression,
   damaged_file,
   windows_differ,
-  // whether the radius suits the frame
+  // fit of the radius
   radius_below_precision,
   radius_below_pixel,
   radius_beyond_picture,
-  // what lies behind the first surface
+  // hidden surfaces
   empty_layer,
   nothing_hidden,
   before_first,
   repaired_samples,
-  // what was repaired or replaced
+  // repaired or replaced pixels
   repaired_depth,
   repaired_normals,
   turned_normals,
@@ -58,61 +58,61 @@ enum class NoteCode {
   unused_input,
   unread_ranks,
   no_indirect_light,
-  // how it was computed
+  // computing
   device_memory,
   in_parts,
   no_gpu,
-  // which frames there are, and what was chosen for them
+  // frames, and choices for them
   sequence_hole,
   frame_number,
   automatic_radius,
 };
 
-/// What the header of an output says of a note. Headers are the same bits for the same inputs.
+/// The form of a note in the header of an output. Headers are the same bits for the same inputs.
 enum class InHeader {
   text,     // its sentence
-  meaning,  // the code's meaning, for the sentence has a number that depends on how the frame was cut into tiles
-  nothing,  // it says nothing about the pixels of the frame
+  meaning,  // the code's meaning, since a number in the sentence depends on how the frame was cut into tiles
+  nothing,  // left out, since the note is not about the pixels of the frame
 };
 
-/// What is known of a code.
+/// The facts about a code.
 struct NoteFacts {
   NoteCode code;
   const char* name;     // as --log-json, --stats and headers have it
-  bool is_warning;      // the result may not be what is wanted; else it is only good to know
+  bool is_warning;      // the result may be wrong; else the note is only good to know
   const char* meaning;  // for lists of all codes; ends without a full stop
   InHeader in_header = InHeader::text;
 };
 
-/// All codes, in the order of the enumeration.
+/// The facts of all codes, in the order of the enumeration.
 std::span<const NoteFacts> note_table();
 const NoteFacts& facts_of(NoteCode code);
 
 struct Note {
   NoteCode code;
-  std::string text;  // a sentence without a full stop; it may hold text of files, so printable() is for who shows it
-  std::string file = {};  // that it is about; empty: the frame's
+  std::string text;       // a sentence without a full stop; it may hold text of files: show it by printable()
+  std::string file = {};  // its subject; empty: the frame's file
 
   bool operator==(const Note&) const = default;
 };
 
 using Notes = std::vector<Note>;
 
-/// "warning" or "note".
+/// The word "warning" or "note".
 const char* level_of(const Note& note);
 
-/// "FILE: TEXT [CODE]", without the file where neither the note nor the caller names one; `frame` is the frame's file.
+/// The line "FILE: TEXT [CODE]". FILE is the note's, else `frame`, the frame's file; if both are empty, it is left out.
 std::string line_of(const Note& note, const std::string& frame);
 
-/// Adds those of `more` that are not there yet.
+/// Adds the notes of `more` that `notes` lacks.
 void add_new(Notes& notes, const Notes& more);
 
 Notes warnings_of(const Notes& notes);
 
-/// The sentences alone.
+/// The sentences of notes, without their codes.
 std::vector<std::string> texts_of(const Notes& notes);
 
-/// The attribute alcove/notes: a line per warning, "CODE: TEXT"; "" where there is none.
+/// The attribute alcove/notes: a line "CODE: TEXT" per warning; "" without warnings.
 std::string header_text(const Notes& notes);
 
 /// The table of all codes as docs/troubleshooting.md shows it.

@@ -1,18 +1,83 @@
-// The words that options take, and what each of them stands for.
+// The words that settings are made of, such as kinds of depth and of normals, and their spelling in options.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 
-#include "core/base/settings.h"
-
 namespace alcove {
+
+// surfaces in a file of --behind. surfaces: fronts or backs; fronts: surfaces seen from outside, as culled peels and
+// other elements are; backs: surfaces seen from inside, which close the solid before them; thickness: how far the first
+// surface's solid goes on along the depth
+enum class BehindKind { surfaces, fronts, backs, thickness };
+// the frame that motion vectors point to
+enum class MotionKind { automatic, previous, next };
+enum class DepthKind { automatic, planar, ray, inverse, device, normalized, log, position };
+// device depth between the near and the far plane; zero_to_one: Vulkan, Direct3D; minus_one_to_one: OpenGL
+enum class DeviceRange { zero_to_one, minus_one_to_one };
+enum class NormalSpace { automatic, world, view };
+enum class PositionSpace { automatic, world, view };
+enum class NormalEncoding { automatic, signed_float, unorm, octahedral, spheremap };
+enum class Falloff : std::uint32_t { none, linear, quadratic, smooth };
+enum class Estimator { gtao, bitmask, hbao, crytek };
+// samples of gtao along a slice: at so many steps; at all pixels, by their outlines; at each pixel by itself
+enum class SliceSearch { steps, exact, every_pixel };
+// the plane from which HBAO measures a horizon: the plane across the view ray, or the surface
+enum class Elevation { view, surface };
+// distribution of Crytek's samples in the hemisphere: more near the receiver, or even in volume
+enum class SampleKernel { clustered, uniform };
+// fading of Crytek's hits by the difference of depth between receiver and hit
+enum class RangeCheck { none, ratio, smoothstep };
+enum class ThicknessKind { automatic, infinite, constant };
+// places where surfaces are taken to go on unseen: none; beyond the picture's border; there and behind nearer surfaces
+enum class Completion { none, border, all };
+// pixels with an estimate of their own: evenly over the image; more where surfaces show few pixels
+enum class Density { uniform, adaptive };
+// pixels of the frame per pixel of the estimate, in x and in y
+enum class Resolution { full = 1, half = 2, quarter = 4 };
+enum class Denoise { none, bilateral, box };
+enum class Noise { fixed, animated };  // the pattern of sample noise: the same in all frames, or one per frame
+// filter by which a renderer makes a pixel from samples around its centre; see core/chain/results/reduce.h
+enum class PixelFilterKind { box, gaussian, blackman_harris };
+enum class AoChannels { mono, rgb };
+enum class OutputType { half_float, single_float };
+enum class Missing { error, skip };  // treatment of a frame without its input
+
+/// The range between which device, normalized and log depth are counted.
+struct DepthRange {
+  // distance of the planes, in the file's units, 0 < near < far; far may be infinite (device only)
+  std::optional<double> near, far;
+  bool reversed = false;  // the near plane has the largest value
+  DeviceRange device = DeviceRange::zero_to_one;
+  double log_constant = 1;  // C of z = ((1 + C far)^d - 1) / C, 1 / the file's units, > 0
+  // planar, ray and inverse depth: the values are below 0; view positions: their z is not as the camera's
+  bool negative = false;
+  // normalized depth: values go on beyond the near plane, or beyond the far plane, and were not cut off there
+  bool goes_before_near = false, goes_beyond_far = false;
+};
+
+/// The axes of normals that point the other way.
+struct NormalFlips {
+  bool x = false, y = false, z = false;
+};
+
+/// The files of one option, each at its own index; "" for none.
+constexpr std::size_t kMostBehind = 8;
+using FileList = std::array<std::string, kMostBehind>;
+
+/// A rectangle in pixels, from the display window's upper left corner.
+struct Region {
+  int x = 0, y = 0, width = 0, height = 0;
+};
 
 template <class T>
 using Word = std::pair<const char*, T>;
 
-/// The words of an enumeration, in the order of the alphabet.
+/// The words of an enumeration, in alphabetical order.
 template <class T>
 inline constexpr int kWordsOf = 0;
 template <>

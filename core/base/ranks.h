@@ -1,4 +1,4 @@
-// Values by their place among others.
+// Values by their rank among others.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace alcove {
 
-/// The value that has so many smaller ones before it. Puts the values into another order.
+/// The value with `rank` smaller values before it. Reorders the values.
 template <class T>
 T value_at_rank(std::vector<T>& values, std::size_t rank) {
   const auto at = values.begin() + std::ptrdiff_t(rank);
@@ -16,7 +16,7 @@ T value_at_rank(std::vector<T>& values, std::size_t rank) {
   return *at;
 }
 
-/// The middle one, of any number but none; of an even number the upper one.
+/// The median of at least one value; of an even number, the upper of the two middle ones.
 template <class T>
 T median_of(std::vector<T> values) {
   return value_at_rank(values, values.size() / 2);

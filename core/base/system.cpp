@@ -1,5 +1,8 @@
 // POSIX and Linux, behind plain functions.
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Sources: Linux's Documentation/admin-guide/cgroup-v2.rst ("Memory Interface Files") and cgroup-v1/memory.rst, the
+// manual pages cgroups(7) and proc_pid_mountinfo(5), and sbatch(1) for Slurm's variables.
 #include "core/base/system.h"
 
 #include <dlfcn.h>
@@ -17,17 +20,24 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
+#include <sstream>
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
+
+#include "core/base/text.h"
 
 namespace alcove {
+
 namespace {
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
@@ -47,8 +57,8 @@ void remember_signal(int number) {
   signal_number.compare_exchange_strong(none, number);
 }
 
-/// Takes the lock that says "somebody is writing this". On file systems without locks nothing is locked: then only
-/// who waits for the lock goes on without it.
+/// Takes the lock that marks a file as being written. File systems without locks lock nothing; there, only a caller
+/// that waits goes on without a lock.
 bool lock(int descriptor, bool waits) {
   while (::flock(descriptor, LOCK_EX | (waits ? 0 : LOCK_NB)) != 0)
     if (errno != EINTR) return waits && errno != EWOULDBLOCK;
@@ -67,7 +77,7 @@ std::error_code write_bytes_at(int descriptor, std::uint64_t offset, std::span<c
   return {};
 }
 
-/// Whether a file system merely does not know the call.
+/// Whether the error only means that the file system lacks the call.
 bool is_unsupported(int error) { return error == EINVAL || error == ENOSYS || error == ENOTSUP || error == EROFS; }
 
 }  // namespace
@@ -200,16 +210,16 @@ std::error_code LockedFile::write_at(std::uint64_t offset, std::span<const char>
 void LockedFile::take_after(const std::string& path) {
   struct stat before {};
   if (::lstat(path.c_str(), &before) != 0 || !S_ISREG(before.st_mode)) return;
-  // Only root gives files away; whoever is a member of the group may hand over to it.
+  // Only root may give files away; members of a group may hand files over to it.
   const bool has_owner = ::fchown(descriptor_, before.st_uid, before.st_gid) == 0;
   const bool has_group = has_owner || ::fchown(descriptor_, uid_t(-1), before.st_gid) == 0;
-  // Without the group that they were meant for, the group's permissions would let others in.
+  // Without its group, the permissions for the group would let others in.
   const mode_t kept = has_owner ? 07777 : has_group ? 0777 : 0707;
   ::fchmod(descriptor_, before.st_mode & kept);
 }
 
 std::error_code LockedFile::sync() {
-  // File systems of networks let a signal interrupt these calls.
+  // On network file systems, signals can interrupt these calls.
   int failed = 0;
   do {
     failed = ::fsync(descriptor_);
@@ -225,6 +235,171 @@ std::error_code LockedFile::sync() {
 
 void LockedFile::close() {
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+}
+
+namespace {
+
+/// The names of the files of one version of control groups.
+struct GroupFiles {
+  std::vector<const char*> limits;  // each a number of bytes, or "max"
+  const char* usage;
+  std::vector<std::string> caches;  // words of memory.stat: cached files, which are dropped if memory is short
+};
+const GroupFiles kVersion1{
+    {"memory.limit_in_bytes"}, "memory.usage_in_bytes", {"total_inactive_file", "total_active_file"}};
+// Above memory.high, processes are slowed down to a standstill.
+const GroupFiles kVersion2{{"memory.max", "memory.high"}, "memory.current", {"inactive_file", "active_file"}};
+
+std::optional<std::uint64_t> number_in(std::string_view text) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return number;
+}
+
+/// The only number in a file; nothing if there is none, as in "max".
+std::optional<std::uint64_t> number_of_file(const std::string& path) {
+  std::ifstream file(path);
+  std::string word;
+  return file >> word ? number_in(word) : std::nullopt;
+}
+
+/// The sum of the numbers behind the given words at the beginnings of a file's lines; nothing if no line has any.
+std::optional<std::uint64_t> sum_of_lines(const std::string& path, const std::vector<std::string>& words) {
+  std::ifstream file(path);
+  std::optional<std::uint64_t> sum;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream fields(line);
+    std::string word, value;
+    if (!(fields >> word >> value) || std::ranges::find(words, word) == words.end()) continue;
+    if (const auto number = number_in(value)) sum = sum.value_or(0) + *number;
+  }
+  return sum;
+}
+
+/// The bytes left in one group, without regard to the groups above it.
+std::uint64_t left_in_group(const std::string& folder, const GroupFiles& files) {
+  std::uint64_t limit = kNoMemoryLimit;
+  for (const char* name : files.limits)
+    limit = std::min(limit, number_of_file(folder + "/" + name).value_or(kNoMemoryLimit));
+  if (limit == kNoMemoryLimit) return limit;
+  const std::uint64_t usage = number_of_file(folder + "/" + files.usage).value_or(0),
+                      caches = sum_of_lines(folder + "/memory.stat", files.caches).value_or(0);
+  const std::uint64_t taken = usage - std::min(usage, caches);
+  return limit - std::min(limit, taken);
+}
+
+/// A mounted hierarchy of control groups: the group that its folder shows.
+struct GroupMount {
+  std::string group, folder;
+  bool is_version_2 = false;
+};
+
+/// mountinfo writes spaces, tabs, line ends and backslashes of names as three octal digits.
+std::string unescaped(const std::string& text) {
+  const auto is_octal = [](char c) { return c >= '0' && c <= '7'; };
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); i++) {
+    const bool is_escape = text[i] == '\\' && i + 3 < text.size() && is_octal(text[i + 1]) && is_octal(text[i + 2]) &&
+                           is_octal(text[i + 3]);
+    if (is_escape) {
+      plain += char((text[i + 1] - '0') * 64 + (text[i + 2] - '0') * 8 + (text[i + 3] - '0'));
+      i += 3;
+    } else {
+      plain += text[i];
+    }
+  }
+  return plain;
+}
+
+bool is_in_list(const std::string& word, const std::string& list) {
+  const auto words = split(list);
+  return std::ranges::find(words, word) != words.end();
+}
+
+/// The mounts of the hierarchies that limit memory. A line is "ID PARENT MAJOR:MINOR GROUP FOLDER OPTIONS ... - TYPE
+/// SOURCE OPTIONS", with any number of optional fields before the dash.
+std::vector<GroupMount> group_mounts(const std::string& root) {
+  std::ifstream file(root + "/proc/self/mountinfo");
+  std::vector<GroupMount> mounts;
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t dash = line.find(" - ");
+    if (dash == line.npos) continue;
+    std::istringstream before(line.substr(0, dash)), after(line.substr(dash + 3));
+    std::string skipped, group, folder, type, source, options;
+    before >> skipped >> skipped >> skipped >> group >> folder;
+    after >> type >> source >> options;
+    const bool limits_memory = type == "cgroup2" || (type == "cgroup" && is_in_list("memory", options));
+    if (limits_memory && !folder.empty()) mounts.push_back({unescaped(group), unescaped(folder), type == "cgroup2"});
+  }
+  return mounts;
+}
+
+/// The least bytes left in a group and in all visible groups above it.
+std::uint64_t left_upwards(const std::string& root, const GroupMount& mount, const std::string& group) {
+  // A container may see its own group as the top of the hierarchy, or by a path that leads outside of its view.
+  std::string below = group;
+  const std::string top = mount.group == "/" ? "" : mount.group;
+  if (below == top || below.starts_with(top + "/"))
+    below = below.substr(top.size());
+  else
+    below.clear();
+  if (below.find("/..") != below.npos) below.clear();
+  while (below.ends_with('/')) below.pop_back();
+
+  const GroupFiles& files = mount.is_version_2 ? kVersion2 : kVersion1;
+  std::uint64_t least = kNoMemoryLimit;
+  while (true) {
+    least = std::min(least, left_in_group(root + mount.folder + below, files));
+    if (below.empty()) return least;
+    below.resize(below.rfind('/') == below.npos ? 0 : below.rfind('/'));
+  }
+}
+
+/// The number in an environment variable; nothing if it holds none, or one too large for any machine.
+std::optional<std::uint64_t> number_of_variable(const char* name) {
+  constexpr std::uint64_t kMost = 1ull << 28;  // MiB: 256 TiB
+  const char* text = std::getenv(name);
+  const auto number = text ? number_in(text) : std::nullopt;
+  return number && *number <= kMost ? number : std::nullopt;
+}
+
+}  // namespace
+
+std::uint64_t memory_left_in_groups(const std::string& root) {
+  const std::vector<GroupMount> mounts = group_mounts(root);
+  std::ifstream file(root + "/proc/self/cgroup");
+  std::uint64_t least = kNoMemoryLimit;
+  // A line is "ID:CONTROLLERS:GROUP"; version 2 names no controllers.
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t first = line.find(':'), second = first == line.npos ? first : line.find(':', first + 1);
+    if (second == line.npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1), group = line.substr(second + 1);
+    if (!controllers.empty() && !is_in_list("memory", controllers)) continue;
+    for (const auto& mount : mounts)
+      if (mount.is_version_2 == controllers.empty()) least = std::min(least, left_upwards(root, mount, group));
+  }
+  return least;
+}
+
+std::uint64_t memory_left_on_machine(const std::string& root) {
+  constexpr std::uint64_t kUnit = 1024;  // bytes: the file counts in kB, by which it means KiB
+  const auto available = sum_of_lines(root + "/proc/meminfo", {"MemAvailable:"});
+  return available ? *available * kUnit : kNoMemoryLimit;
+}
+
+std::uint64_t memory_of_slurm_job() {
+  constexpr std::uint64_t kUnit = 1 << 20;  // bytes: Slurm counts in MB, by which it means MiB
+  // 0 asks for all memory of the node.
+  if (const auto of_node = number_of_variable("SLURM_MEM_PER_NODE"); of_node && *of_node > 0) return *of_node * kUnit;
+  const auto of_core = number_of_variable("SLURM_MEM_PER_CPU"), cores = number_of_variable("SLURM_CPUS_ON_NODE");
+  constexpr std::uint64_t kMostCores = 1 << 15;
+  if (of_core && cores && *of_core > 0 && *cores > 0) return *of_core * std::min(*cores, kMostCores) * kUnit;
+  return kNoMemoryLimit;
+}
+
+std::uint64_t free_memory() {
+  return std::min({memory_left_in_groups(), memory_left_on_machine(), memory_of_slurm_job()});
 }
 
 }  // namespace alcove

@@ -3,6 +3,7 @@
 #include "core/base/text.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -28,7 +29,7 @@ struct Character {
   std::size_t bytes;  // 0: the first byte belongs to no character
 };
 
-/// How many bytes a character has that begins with this one; 0 if none does.
+/// The number of bytes of a character with this first byte; 0 if no character begins with it.
 std::size_t bytes_after(unsigned char lead) {
   if (lead < 0x80) return 1;
   if (lead < 0xc2) return 0;
@@ -37,7 +38,7 @@ std::size_t bytes_after(unsigned char lead) {
   return lead < 0xf5 ? 4 : 0;
 }
 
-/// Decodes one character. Overlong spellings and halves of surrogate pairs are none.
+/// Decodes one character. Overlong spellings and halves of surrogate pairs are not characters.
 Character first_character(std::string_view text) {
   constexpr Character kNone{0, 0};
   constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};  // codes that need so many bytes
@@ -54,16 +55,16 @@ Character first_character(std::string_view text) {
   return code < kLeast[bytes] || code > 0x10ffff || is_surrogate ? kNone : Character{code, bytes};
 }
 
-/// Controls, of which terminals obey some.
+/// Whether a character is a control character, which terminals may obey.
 bool is_control(char32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }
 
-/// Characters that turn the direction of writing, so that a name shows as another.
+/// Whether a character turns the direction of writing, so that a name looks like another.
 bool turns_writing(char32_t code) {
   return code == 0x61c || code == 0x200e || code == 0x200f || (code >= 0x202a && code <= 0x202e) ||
          (code >= 0x2066 && code <= 0x2069);
 }
 
-/// The text in UTF-8, with ? in the place of the characters that `hides` picks.
+/// The text in UTF-8, with ? in place of the characters that `hides` picks.
 template <class Hides>
 std::string escaped(std::string_view text, Hides hides) {
   std::string shown;
@@ -112,8 +113,8 @@ std::string list_of(std::span<const std::string> names, std::size_t most) {
 
 std::string linked(std::span<const std::string> words, const char* link) {
   if (words.size() < 2) return words.empty() ? "" : words.front();
-  const auto most = words.first(words.size() - 1);
-  return fmt::format("{} {} {}", fmt::join(most, ", "), link, words.back());
+  const auto all_but_last = words.first(words.size() - 1);
+  return fmt::format("{} {} {}", fmt::join(all_but_last, ", "), link, words.back());
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -133,7 +134,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 namespace {
 
-/// The end of a dotted name with as many parts as `like` has: "Deph.Z" of "ViewLayer.Deph.Z" for "Depth.Z".
+/// The end of a dotted name, with as many parts as `like` has: "Deph.Z" of "ViewLayer.Deph.Z" for "Depth.Z".
 std::string_view tail_like(std::string_view name, std::string_view like) {
   auto dots = std::ranges::count(like, '.');
   for (std::size_t at = name.size(); at-- > 0;)
@@ -141,8 +142,7 @@ std::string_view tail_like(std::string_view name, std::string_view like) {
   return name;
 }
 
-/// An edit distance in which a name below another layer, or one that is part of the other, is near however long the
-/// rest is.
+/// An edit distance. A name in another layer, or one that contains the other, is near however long the rest is.
 std::size_t distance_of(std::string_view name, std::string_view candidate) {
   const std::string a = lower_case(name), b = lower_case(candidate);
   if (a == b) return 0;
@@ -151,7 +151,7 @@ std::size_t distance_of(std::string_view name, std::string_view candidate) {
   return contained ? 1 : std::min(edit_distance(name, candidate), below);
 }
 
-/// How many digits a decimal number has before its point; below 1 where it has none but zeros.
+/// The number of digits of a decimal number before its point; below 1 if they are all zeros.
 double decimal_exponent(std::string_view text) {
   const std::size_t e = std::min(text.find_first_of("eE"), text.size());
   const std::size_t point = std::min(text.substr(0, e).find('.'), e);
@@ -188,7 +188,7 @@ std::optional<double> number_of(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
   if (error != std::errc::result_out_of_range) return value;
-  // It leaves the value as it was, be it too large or too near to 0.
+  // std::from_chars leaves the value alone, whether the number is too large or too near to 0.
   const double size = decimal_exponent(text) > 0 ? std::numeric_limits<double>::infinity() : 0;
   return text.starts_with('-') ? -size : size;
 }
@@ -209,5 +209,26 @@ std::string for_shell(const std::string& word) {
 std::string typed(std::string_view option, std::string_view value) {
   return fmt::format("{}{}{}", option, option.starts_with("--set ") ? '=' : ' ', value);
 }
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json with_valid_strings(const Json& json) {
+  if (json.is_string()) return as_utf8(json.get_ref<const std::string&>());
+  if (!json.is_structured()) return json;
+  Json valid = json.is_array() ? Json::array() : Json::object();
+  for (const auto& [key, value] : json.items()) {
+    if (json.is_array())
+      valid.push_back(with_valid_strings(value));
+    else
+      valid[as_utf8(key)] = with_valid_strings(value);
+  }
+  return valid;
+}
+
+}  // namespace
+
+std::string json_text(const nlohmann::ordered_json& json, int indent) { return with_valid_strings(json).dump(indent); }
 
 }  // namespace alcove

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <optional>
 #include <span>
 #include <string>
@@ -15,7 +17,7 @@ std::string lower_case(std::string_view text);
 /// Gives the parts between commas, without the spaces around them. An empty text has one part, which is empty.
 std::vector<std::string> split(const std::string& text);
 
-/// Gives "a, b, c": at most `most` names, then "and N more"; "nothing" if there are none.
+/// Gives "a, b, c": at most `most` names, then "and N more"; "nothing" for none.
 std::string list_of(std::span<const std::string> names, std::size_t most = 24);
 
 /// Gives "a", "a or b", "a, b or c", with the link between the last two.
@@ -24,29 +26,33 @@ std::string linked(std::span<const std::string> words, const char* link);
 /// Counts the insertions, deletions and replacements that turn one text into the other. Case is ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// Gives up to `most` of the candidates that resemble `name`, the nearest first; none if all are far off.
+/// Gives up to `most` candidates that resemble `name`, the nearest first; none if all are far off.
 std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates,
                                        std::size_t most = 3);
 
-/// The text in valid UTF-8. Names of files may hold any bytes: each byte that belongs to no character becomes \xff, in
-/// its hexadecimal digits.
+/// The text in valid UTF-8. Names of files may hold any bytes: each byte outside of a character becomes \xff, with its
+/// hexadecimal digits.
 std::string as_utf8(std::string_view text);
 
-/// The same for a terminal: each control character also becomes ?, since names in files may hold what a terminal would
-/// obey, and so does each character that turns the direction of writing.
+/// The text in valid UTF-8 for a terminal. Each control character becomes ?, since a terminal would obey it, and so
+/// does each character that turns the direction of writing.
 std::string printable(std::string_view text);
 
-/// A word as a shell takes it: quoted where it must be.
+/// A word as a shell takes it, with quotes if it needs them.
 std::string for_shell(const std::string& word);
 
-/// An option with its value as they are typed: "--view left"; of a key "--set stride=4".
+/// An option with its value as typed: "--view left"; of a key, "--set stride=4".
 std::string typed(std::string_view option, std::string_view value);
 
-/// Reads a text that is a number and nothing else, in whatever language the process speaks: decimals have a point. The
-/// number may be infinite or NaN, and is infinite where it is too large.
+/// Reads a text that is a number and nothing else, with a decimal point in every locale. The number may be infinite or
+/// NaN; numbers that are too large become infinite.
 std::optional<double> number_of(std::string_view text);
 
-/// Gives " (did you mean a or b?)" to be put behind a message, or an empty text if no candidate is near.
+/// Gives " (did you mean a or b?)" for the end of a message, or an empty text if no candidate is near.
 std::string suggestion(std::string_view name, std::span<const std::string> candidates);
+
+/// The document in valid UTF-8, on one line or with `indent` spaces per level. Keys and strings may hold names of
+/// files, which may be no UTF-8: as_utf8() escapes them.
+std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
 }  // namespace alcove

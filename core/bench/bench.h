@@ -9,7 +9,7 @@
 
 #include "core/base/settings.h"
 #include "core/bench/suite.h"
-#include "core/gpu/pass_time.h"
+#include "core/gpu/device_info.h"
 #include "core/reference/reference.h"
 
 namespace alcove {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/base/json_text.h"
+#include "core/base/text.h"
 #include "core/bench/bench.h"
 #include "core/measure/report.h"
 

@@ -12,7 +12,6 @@
 #include "core/chain/compute.h"
 #include "core/frame/radius.h"
 #include "core/reference/reference.h"
-#include "core/reference/reference_estimators.h"
 #include "core/reference/reference_scene.h"
 
 namespace alcove {

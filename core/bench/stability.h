@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/note.h"
-#include "core/gpu/pass_time.h"
+#include "core/gpu/device_info.h"
 
 namespace alcove {
 namespace gpu {

@@ -9,7 +9,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/base/json_text.h"
 #include "core/base/text.h"
 #include "core/bench/stability.h"
 

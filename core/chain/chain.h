@@ -3,9 +3,9 @@
 #pragma once
 
 #include "core/base/settings.h"
-#include "core/chain/aov.h"
-#include "core/chain/frame_inputs.h"
-#include "core/chain/outputs.h"
+#include "core/chain/base/frame_inputs.h"
+#include "core/chain/results/aov.h"
+#include "core/chain/results/outputs.h"
 
 namespace alcove {
 

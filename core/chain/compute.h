@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/chain/frame_inputs.h"
+#include "core/chain/base/frame_inputs.h"
 #include "core/frame/reading.h"
 
 namespace alcove {

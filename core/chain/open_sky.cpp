@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "core/base/estimator_facts.h"
-#include "core/chain/geometry.h"
-#include "core/chain/pass_common.h"
-#include "kernels/estimate.h"
+#include "core/chain/base/pass_common.h"
+#include "core/chain/geometry/geometry.h"
+#include "kernels/estimate/estimate.h"
 
 namespace alcove {
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/base/settings.h"
-#include "core/chain/aov.h"
-#include "core/chain/frame_inputs.h"
+#include "core/chain/base/frame_inputs.h"
+#include "core/chain/results/aov.h"
 
 namespace alcove {
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/chain/pass_common.h"
-#include "kernels/estimate.h"
+#include "core/chain/base/pass_common.h"
+#include "kernels/estimate/estimate.h"
 
 namespace alcove {
 namespace {

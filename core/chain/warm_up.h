@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/chain/aov.h"
+#include "core/chain/results/aov.h"
 #include "core/gpu/device.h"
 
 namespace alcove {

@@ -18,7 +18,7 @@ namespace {
 
 namespace OCIO = OCIO_NAMESPACE;
 
-/// Used when neither --set ocio nor the OCIO variable names a configuration.
+/// The configuration if neither --set ocio nor the OCIO variable names one.
 constexpr const char* kBuiltinConfig = R"(ocio_profile_version: 2
 name: alcove-builtin
 roles:
@@ -53,11 +53,11 @@ OCIO::ConstConfigRcPtr open_config(const std::string& path) {
   return OCIO::Config::CreateFromFile(file.c_str());
 }
 
-/// The name as the configuration spells it, in any case of letters; fails where it has none such.
+/// The name as the configuration spells it, found in any case of letters. Fails if it has none such.
 std::string known_name(const std::string& config, const char* option, const std::string& name,
                        const std::vector<std::string>& names) {
-  for (const auto& known : names)
-    if (lower_case(known) == lower_case(name)) return known;
+  for (const auto& candidate : names)
+    if (lower_case(candidate) == lower_case(name)) return candidate;
   const std::string file = display_config_file(config);
   fail(ErrorKind::input, "{}: {}: the configuration has no such name{}; it has {}",
        file.empty() ? "the built-in OpenColorIO configuration (--set ocio names another)" : file, typed(option, name),

@@ -8,19 +8,19 @@
 
 namespace alcove {
 
-/// The file that DisplayTransform reads: `config`, else what the OCIO variable names; "" where the built-in one serves.
+/// The file that DisplayTransform reads: `config`, else that of the OCIO variable; "" for the built-in configuration.
 std::string display_config_file(const std::string& config);
 
-/// A view of a display of a configuration: `config` (a file), else what the OCIO variable names, else a small built-in
-/// one (linear Rec.709 to sRGB). Empty names stand for the defaults. Fails with ErrorKind::input when the configuration
-/// cannot be used, and where it has no such display or view, listing those that it has.
+/// A view of a display, by a configuration: `config` (a file), else that of the OCIO variable, else a small built-in
+/// one (linear Rec.709 to sRGB). Empty names stand for the defaults. Fails with ErrorKind::input if the configuration
+/// cannot be used, or lacks the display or view, listing those that it has.
 class DisplayTransform {
  public:
   explicit DisplayTransform(const std::string& config, const std::string& display = "", const std::string& view = "");
   ~DisplayTransform();
-  /// Interleaved r, g, b from the role scene_linear to display values, in place.
+  /// Converts interleaved r, g, b from the role scene_linear to display values, in place.
   void apply(std::span<float> rgb) const;
-  /// "display / view", for the log.
+  /// The text "display / view", for the log.
   const std::string& description() const { return description_; }
 
  private:

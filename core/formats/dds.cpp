@@ -17,7 +17,7 @@
 namespace alcove {
 namespace {
 
-constexpr std::size_t kHeaderWords = 32, kDx10Words = 5;  // with the four letters at the beginning
+constexpr std::size_t kHeaderWords = 32, kDx10Words = 5;  // the first with the four letters at the beginning
 constexpr std::uint32_t kMostPixels = 1u << 16;           // in width and in height
 constexpr std::uint32_t kDx10 = 0x30315844;               // "DX10"
 
@@ -74,7 +74,7 @@ class DdsReader : public PictureReader {
            kMostPixels, option);
     if (format_ == std::end(kFormats) || (!has_dx10 && code < 100))
       fail(ErrorKind::input,
-           "{}: DDS format {} is not known: save depth as R32, D24 or R16 and normals as RGBA16F, RGBA8 or "
+           "{}: DDS format {} cannot be read: save depth as R32, D24 or R16 and normals as RGBA16F, RGBA8 or "
            "R10G10B10A2, or as EXR ({})",
            path, code, option);
     pixels_ = 4 * (kHeaderWords + (has_dx10 ? kDx10Words : 0));
@@ -108,7 +108,7 @@ class DdsReader : public PictureReader {
   const std::string path_, option_;
   std::ifstream file_;
   const Format* format_ = nullptr;
-  std::size_t pixels_ = 0;  // where they begin in the file
+  std::size_t pixels_ = 0;  // their place in the file
 };
 
 }  // namespace

@@ -10,14 +10,14 @@
 namespace alcove {
 namespace {
 
-constexpr std::size_t kFewSamples = 32;  // are sorted fastest by insertion
-constexpr float kOpaque = 0.999F;        // half floats round what is nearly so
-constexpr double kRounding = 1e-6;       // of a body's opacity, cut in pieces or not
-constexpr double kFewest = 1e-12;        // of the transmittance that is told from none
+constexpr std::size_t kFewSamples = 32;  // so few are sorted fastest by insertion
+constexpr float kOpaque = 0.999F;        // counts as opaque, since half floats round
+constexpr double kRounding = 1e-6;       // of a body's opacity, whether or not it is cut in pieces
+constexpr double kFewest = 1e-12;        // the least transmittance that differs from none
 
 bool is_volume(const DeepSample& sample) { return sample.back > sample.front; }
 
-/// A total order: what is computed along it does not depend on how samples were stored.
+/// A total order, so that results do not depend on the order of storage.
 bool is_before(const DeepSample& a, const DeepSample& b) {
   return std::tie(a.front, a.back, a.opacity) < std::tie(b.front, b.back, b.opacity);
 }
@@ -35,7 +35,7 @@ void sort(std::span<DeepSample> samples) {
   }
 }
 
-/// How much a sample takes of the light: opacities multiply, and these add.
+/// The optical density of a sample: opacities multiply, densities add.
 double density_of(const DeepSample& sample) { return -std::log(std::max(kFewest, 1.0 - double(sample.opacity))); }
 
 }  // namespace
@@ -54,7 +54,7 @@ double DeepPixel::reach(double z) const {
   return z + rules_.separation[0] + z * (rules_.separation[1] + z * rules_.separation[2]);
 }
 
-/// Gives the samples that may be surfaces: none lies at the eye, at no depth, or beyond all skies.
+/// Gives the samples that may be surfaces: those at the eye, at no depth, or beyond all skies are left out.
 std::span<DeepSample> DeepPixel::repair(std::span<DeepSample> samples, DeepCounts& counts) {
   std::size_t kept = 0;
   for (DeepSample sample : samples) {
@@ -110,7 +110,7 @@ void DeepPixel::add_volumes(std::span<const DeepSample> samples) {
 }
 
 void DeepPixel::add_body(std::span<const DeepSample> volumes, float end) {
-  const double enough = -std::log(std::max(kFewest, 1.0 - rules_.opacity)) * (1 - kRounding);
+  const double threshold = -std::log(std::max(kFewest, 1.0 - rules_.opacity)) * (1 - kRounding);
   by_end_.assign(volumes.begin(), volumes.end());
   std::ranges::sort(by_end_, {}, &DeepSample::back);
   double density = 0, slope = 0, z = volumes[0].front;
@@ -120,17 +120,17 @@ void DeepPixel::add_body(std::span<const DeepSample> volumes, float end) {
     const bool opens = open < volumes.size() && volumes[open].front <= by_end_[closed].back;
     const DeepSample& sample = opens ? volumes[open] : by_end_[closed];
     const double next = opens ? sample.front : sample.back;
-    const double grown = density + slope * (next - z);
-    if (slope > 0 && grown >= enough) {
-      const double front = std::min(next, z + std::max(0.0, enough - density) / slope);
+    const double reached = density + slope * (next - z);
+    if (slope > 0 && reached >= threshold) {
+      const double front = std::min(next, z + std::max(0.0, threshold - density) / slope);
       found_.push_back({float(front), float(front) < end ? end : kNoDeepSurface});
       return;
     }
-    density = grown;
+    density = reached;
     z = next;
     (opens ? open : closed)++;
     // An opaque volume is opaque from its front on.
-    if (opens && (sample.opacity >= 1 || enough <= 0)) {
+    if (opens && (sample.opacity >= 1 || threshold <= 0)) {
       found_.push_back({float(z), float(z) < end ? end : kNoDeepSurface});
       return;
     }

@@ -1,4 +1,5 @@
-// OpenEXR files in and out: headers, chosen channels in one pass, whole files. Other pictures are read like them.
+// Reads, writes and copies OpenEXR files: headers, chosen channels in one pass, whole files. Pictures of other formats
+// are read by the same class.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -24,9 +25,9 @@ struct ExrChannel {
   bool subsampled;  // fewer samples than pixels: cannot be read as a plane
 };
 
-/// How a deep part is stored, in the words of OpenEXR.
+/// The storage of a deep part, in the words of OpenEXR.
 struct DeepLayout {
-  std::string state;  // of its samples: messy, sorted, non-overlapping or tidy; what is not said is messy
+  std::string state;  // of its samples: messy (also if not given), sorted, non-overlapping or tidy
   std::string compression;
   bool is_tiled = false;
 };
@@ -34,23 +35,23 @@ struct DeepLayout {
 struct ExrPart {
   std::string name;  // empty in single-part files
   std::string view;  // of stereo files that have one part per view; empty: none
-  // the views of stereo files whose channels name their view, the default first; empty: none
+  // for stereo files whose channels name their view: the views, the default first; empty: none
   std::vector<std::string> multi_view;
   Window data;
   std::vector<ExrChannel> channels;
-  int rows_together = 1;  // that are compressed together: a multiple of them is decoded without waste
-  // of a part that has several samples a pixel, or none: its channels are no planes; see ExrFile::take_deep()
+  int rows_together = 1;  // rows compressed together: multiples of them are decoded without waste
+  // for a part with several samples per pixel, or none; its channels are not planes: see ExrFile::take_deep()
   std::optional<DeepLayout> deep = {};
   bool dwa = false;  // compressed by DWAA or DWAB, which are lossy for channels whose name ends in R, G, B, Y, RY or BY
 };
 
-/// The attributes of one part's header, of every type, and those that only the first part has. They are carried into
+/// The attributes of one part's header, of every type, with those that only the first part has. They are carried into
 /// outputs.
 class ExrAttributes;
 class PictureReader;
 
-/// A channel to read and its destination: one float per pixel of the part's data window, or of some of its rows, row by
-/// row.
+/// A channel to read, and its destination: one float per pixel, row by row, for the part's data window or for some of
+/// its rows.
 struct ExrRead {
   int part;
   std::string channel;
@@ -59,7 +60,7 @@ struct ExrRead {
 
 class ExrFile;
 
-/// Deep parts of another file, whose samples count together with those of one.
+/// Deep parts of another file, whose samples count together with those of the first.
 struct DeepElement {
   const ExrFile* file;
   std::vector<int> parts;
@@ -68,10 +69,10 @@ struct DeepElement {
 /// An EXR file whose header has been read. Every failure is ErrorKind::input and names the file.
 class ExrFile {
  public:
-  /// Fails on a missing file, a folder, a file that is no EXR, a part without channels, and headers that ask for more
-  /// than their file can hold.
+  /// Opens a file and reads its header. Fails on a missing file, a folder, a file that is not an EXR, a part without
+  /// channels, and headers that ask for more than their file can hold.
   explicit ExrFile(const std::string& path, const char* option);
-  /// A picture of another format, to be read like an EXR of one part.
+  /// Wraps a picture of another format, which is then read like an EXR of one part.
   ExrFile(const std::string& path, const char* option, std::unique_ptr<PictureReader> picture);
   ~ExrFile();
   ExrFile(ExrFile&&) noexcept;
@@ -82,32 +83,32 @@ class ExrFile {
   /// The width of a pixel over its height.
   double pixel_aspect() const;
   std::shared_ptr<const ExrAttributes> attributes(int part) const;
-  /// Gives as text the attributes of a part that do not describe its storage. Numbers, strings and matrices are given
-  /// by value, of which the first 64 KiB count, and all else by type.
+  /// Gives the attributes of a part that do not describe its storage, as text. Numbers, strings and matrices are given
+  /// by value, cut off at 64 KiB, and all others by type.
   std::map<std::string, std::string> attribute_texts(int part) const;
-  /// Gives the attributes that are texts and whose names begin so, whole, whatever they describe.
+  /// Gives the whole text of every text attribute whose name begins with `prefix`.
   std::map<std::string, std::string> whole_texts(int part, const std::string& prefix) const;
 
-  /// The most that codecs work on while the file is read, in bytes.
+  /// The most bytes that codecs work on while the file is read.
   std::uint64_t bytes_beside_pixels() const;
-  /// The bytes of the rows that are decoded together; 0 where no EXR file is read.
+  /// The bytes of the rows that are decoded together; 0 for other formats.
   std::uint64_t codec_group() const;
-  /// Gives back what reading takes. From then on only parts, windows and that number are there.
+  /// Frees the memory of reading. Afterwards only parts, windows and bytes_beside_pixels() are available.
   void close();
 
-  /// The samples of these deep parts and of those of other files, all together, make the channels deep_channel() of
-  /// the first of them from now on, over these pixels, which become the data window of that part. A part need not have
-  /// all of them. Fails where a part has no Z, and where chunks claim more than their file can hold.
+  /// Makes surfaces of deep samples: those of these parts and of `others`, all together. From then on they are the
+  /// channels deep_channel() of the first part, over the pixels of `data`, which becomes the data window of that part.
+  /// A part may lack some of these pixels. Fails if a part has no Z, and if chunks claim more than their file can hold.
   void take_deep(const std::vector<int>& parts, const DeepRules& rules, const Window& data,
                  std::span<const DeepElement> others = {});
-  /// The same over the window of the first part.
+  /// Makes surfaces of deep samples over the window of the first part.
   void take_deep(const std::vector<int>& parts, const DeepRules& rules);
-  /// What was met in the deep samples that were read so far.
+  /// The counts over the deep samples that were read so far.
   DeepCounts deep_counts() const;
 
-  /// Reads the channels as float, each part decoded once. Fails on truncated or corrupt data.
+  /// Reads the channels as float, decoding each part once. Fails on truncated or corrupt data.
   void read(std::span<const ExrRead> reads);
-  /// Reads only `rows` rows of the parts' data windows, from the `first` one on.
+  /// Reads `rows` rows of the parts' data windows, from the `first` one on.
   void read(std::span<const ExrRead> reads, int first, int rows);
 
  private:
@@ -115,26 +116,26 @@ class ExrFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The formats that a reader of a file can use.
+/// The formats that a caller of open_image() takes.
 enum class Formats {
-  of_frames,  // those that hold depth and normals without loss: the ones that frame_formats() lists
-  all,        // also what else OpenImageIO reads, such as JPEG
+  of_frames,  // formats that hold depth and normals without loss: frame_formats() lists them
+  all,        // also other formats that OpenImageIO reads, such as JPEG
 };
 
-/// Opens a picture of every format that is read; its first bytes tell the format, whatever its name ends in. `option`
-/// says where the user named the file. Fails with ErrorKind::input, naming the file's format and those that are read,
-/// if it is none of these; also if it is missing or damaged.
+/// Opens a picture of any format that is read; the first bytes tell the format, not the ending of the name. `option` is
+/// the one that named the file. Fails with ErrorKind::input, naming the file's format and the accepted ones, if it is
+/// none of these; also if it is missing or damaged.
 ExrFile open_image(const std::string& path, const char* option, Formats formats);
 
-/// "OpenEXR, DDS, PNG, TIFF, TGA, BMP or Radiance HDR"
+/// The text "OpenEXR, DDS, PNG, TIFF, TGA, BMP or Radiance HDR".
 const char* frame_formats();
 
-/// The name of a plane of depth that samples make: of the fronts of all pixels' first surfaces, of the second ones ...;
-/// or of where the bodies behind these fronts end. `surface` is below kMostDeepSurfaces.
+/// The name of a plane of depth made of deep samples: that of all pixels' first surfaces (`surface` 0), second surfaces
+/// ..., by their fronts or, with `back`, by the ends of the bodies behind them. `surface` is below kMostDeepSurfaces.
 std::string deep_channel(std::size_t surface, bool back);
 
-/// Fails with ErrorKind::input if planes of that window are too much for host memory. It is asked before they are made,
-/// since a header may say anything.
+/// Fails with ErrorKind::input if planes of that window need too much host memory. Call it before making them, since a
+/// header may say anything.
 void require_host_room(const std::string& path, const Window& data);
 
 /// A plane to write: one float per pixel of the data window.
@@ -148,14 +149,14 @@ struct ExrOutput {
   Window data, display;
   double pixel_aspect = 1;
   std::string compression = "zip";  // none, rle, zips, zip, piz, dwaa, dwab
-  // carried over, but those that describe the input's own channels and storage
+  // attributes of the input to carry over; those that describe its channels and storage are left out
   std::shared_ptr<const ExrAttributes> attributes;
   std::map<std::string, std::string> own_attributes;  // added as strings
   std::vector<ExrPlane> planes;
 };
 
-/// Writes a single-part scan-line file from top to bottom. The file has its name once it is finished, and is gone if it
-/// is not. Fails with ErrorKind::output.
+/// Writes a single-part scan-line file from top to bottom. The file gets its name when it is finished, and vanishes if
+/// it is not. Fails with ErrorKind::output.
 class ExrWriter {
  public:
   /// Ignores the pixels of output.planes.
@@ -165,8 +166,8 @@ class ExrWriter {
 
   /// Writes the next rows of every plane, as wide as the data window.
   void write(std::span<const std::span<const float>> planes);
-  /// Ends the file after its last row. `late` holds attributes, as text, that were not known when the file was begun:
-  /// since its header stands before its rows, these are copied behind a new one, compressed as they are.
+  /// Ends the file after its last row. `late` holds text attributes that were not known at the beginning. Since the
+  /// header stands before the rows, the rows are then copied behind a new header, compressed as they are.
   void finish(const std::map<std::string, std::string>& late = {});
 
  private:
@@ -177,26 +178,71 @@ class ExrWriter {
 /// Writes a whole file with the pixels of output.planes.
 void write_exr(const std::string& path, const ExrOutput& output);
 
-/// Reads the named channels, from the first part that holds all of them; without names, every channel of the first
-/// part. Fails with ErrorKind::input.
+/// Reads the named channels of the first part that holds all of them; without names, every channel of the first part.
+/// Fails with ErrorKind::input.
 Image read_exr_image(const std::string& path, const std::vector<std::string>& channels = {});
 
-/// Gives a text attribute of the first part of a file that is whole, with every chunk within it; a file that was cut
-/// short shows it in no other way. Gives nothing if the file is cut, is no EXR, or has no such attribute.
+/// Gives a text attribute of the first part of a file whose chunks all lie within the file: nothing else reveals a file
+/// that was cut short. Gives nothing if the file is cut, is not an EXR, or lacks the attribute.
 std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name);
 
-/// Sets how many threads the codecs may use in the whole process. 0: none beside the caller's.
+/// Sets the number of threads that codecs may use in the whole process. 0: only the caller's.
 void set_exr_threads(int threads);
 
-/// Sets how many bytes the codec of each file that is opened from now on may work on: where rows are long, fewer
-/// threads work on one file then.
+/// Sets the bytes that the codec of each file opened from now on may work on. With long rows, fewer threads then work
+/// on one file.
 void set_exr_memory(std::uint64_t bytes);
 
 /// The most rows that any compression of outputs puts together.
 constexpr std::uint64_t kRowsOfOutput = 32;
 
-/// The bytes that a codec works on of which a group of rows takes so many: as set_exr_memory() has it, or where it may
-/// work on `most_bytes`.
+/// The bytes that a codec works on for groups of rows of `group_bytes` bytes, with the limit of set_exr_memory(), or of
+/// `most_bytes`.
 std::uint64_t exr_codec_bytes(std::uint64_t group_bytes, std::optional<std::uint64_t> most_bytes = {});
+
+/// A channel to write: one float per pixel of the window. It replaces that of the original, or is new.
+struct CopiedPlane {
+  int part;
+  std::string channel;
+  SampleType type;
+};
+
+struct ExrCopySettings {
+  std::string original;  // the file's path
+  Window window;         // pixels to write of the parts below: the data window of the planes' parts, or a part of it
+  std::string compression =
+      "keep";                       // of the planes' parts: as in ExrOutput; keep: unchanged, or zip if that loses bits
+  std::vector<CopiedPlane> planes;  // at least one
+  std::map<std::string, std::string> own_attributes;  // added as strings to the first part and to those of the planes
+};
+
+/// Copies an EXR file with some channels replaced or added, from top to bottom. The copy gets its name when it is
+/// finished, and vanishes if it is not.
+///
+/// A part without planes is copied chunk by chunk as it is compressed, also deep samples, tiles and their levels. In a
+/// part with planes, all other channels keep their type and every bit, and tiles become scan lines. If the window is
+/// smaller than the planes' data window, all flat parts with that data window are cut to it too. Fails with
+/// ErrorKind::output, or with ErrorKind::input if the original cannot be read.
+class ExrCopy {
+ public:
+  ExrCopy(const std::string& path, const ExrCopySettings& settings);
+  ~ExrCopy();
+  ExrCopy(ExrCopy&&) noexcept;
+
+  /// Writes the next rows of every plane, as wide as the window.
+  void write(std::span<const std::span<const float>> planes);
+  /// Ends the file after its last row, as ExrWriter::finish() does.
+  void finish(const std::map<std::string, std::string>& late = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Whether DWAA and DWAB lose bits of a channel. They go by the last part of its name.
+bool is_lossy_in_dwa(const std::string& channel);
+
+/// The number of an original's rows that are copied at a time.
+constexpr std::uint64_t kRowsOfOriginal = 64;
 
 }  // namespace alcove

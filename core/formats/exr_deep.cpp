@@ -1,9 +1,13 @@
-// Chunks of deep data: where they lie, threads that unpack them, and the surfaces of their pixels.
+// Deep parts: where chunks lie, threads that unpack them, and the surfaces of their pixels.
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// OpenEXR's document "File Layout" says how bytes are packed: split into halves, made differences, and deflated or put
+// together as runs.
 #include "core/formats/exr_deep.h"
 
 #include <ImfChannelList.h>
 #include <ImfPartType.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -14,29 +18,118 @@
 
 #include "core/base/error.h"
 #include "core/base/half.h"
+#include "core/base/image.h"
 #include "core/base/system.h"
-#include "core/base/windows.h"
-#include "core/formats/deep_chunk.h"
 #include "core/formats/exr_shared.h"
 #include "core/formats/sample_loops.h"
 
 namespace alcove {
+
+namespace {
+
+constexpr std::uint64_t kDeflateRatio = 1032;  // of the longest match by the shortest code
+constexpr std::uint64_t kRunRatio = 64;        // 128 bytes by two
+constexpr std::uint64_t kShortest = 64;        // bytes that any chunk may have
+
+bool inflate_all(std::span<const std::uint8_t> packed, std::span<std::uint8_t> to) {
+  uLongf length = uLongf(to.size());
+  return uncompress(to.data(), &length, packed.data(), uLong(packed.size())) == Z_OK && length == to.size();
+}
+
+/// Expands runs: a count below 0 stands before that many bytes; another count before a byte that comes once more often.
+bool expand_runs(std::span<const std::uint8_t> packed, std::span<std::uint8_t> to) {
+  std::size_t from = 0, at = 0;
+  while (from < packed.size()) {
+    const int count = std::int8_t(packed[from++]);
+    const std::size_t length = count < 0 ? std::size_t(-count) : std::size_t(count) + 1;
+    if (length > to.size() - at || (count < 0 ? length : 1) > packed.size() - from) return false;
+    if (count < 0)
+      std::copy_n(packed.begin() + std::ptrdiff_t(from), length, to.begin() + std::ptrdiff_t(at));
+    else
+      std::fill_n(to.begin() + std::ptrdiff_t(at), length, packed[from]);
+    from += count < 0 ? length : 1;
+    at += length;
+  }
+  return at == to.size();
+}
+
+/// Sums the differences up, and interleaves the bytes of both halves.
+void put_together(std::span<std::uint8_t> split, std::span<std::uint8_t> to) {
+  const std::size_t half = (split.size() + 1) / 2;
+  sum_up(split.data() + 1, split.size() - 1, split[0]);
+  interleave(split.data(), split.data() + half, split.size() / 2, to.data());
+  if (split.size() % 2) to.back() = split[half - 1];
+}
+
+}  // namespace
+
+std::uint64_t longest_unpacked(DeepCompression compression, std::uint64_t packed_bytes) {
+  switch (compression) {
+    case DeepCompression::none: return packed_bytes;
+    case DeepCompression::rle: return kShortest + kRunRatio * packed_bytes;
+    case DeepCompression::zip: break;
+  }
+  return kShortest + kDeflateRatio * packed_bytes;
+}
+
+bool unpack_deep(DeepCompression compression, std::span<const std::uint8_t> packed, std::span<std::uint8_t> to,
+                 std::vector<std::uint8_t>& scratch) {
+  // Bytes that packing would lengthen are stored as they are.
+  if (packed.size() == to.size()) {
+    std::ranges::copy(packed, to.begin());
+    return true;
+  }
+  if (compression == DeepCompression::none || to.empty()) return false;
+  if (scratch.size() < to.size()) scratch.resize(to.size());
+  const std::span split(scratch.data(), to.size());
+  if (!(compression == DeepCompression::zip ? inflate_all(packed, split) : expand_runs(packed, split))) return false;
+  put_together(split, to);
+  return true;
+}
+
+bool counts_of_table(std::span<const std::uint8_t> table, std::size_t width, std::vector<std::uint32_t>& counts) {
+  counts.resize(table.size() / sizeof(std::uint32_t));
+  std::uint32_t sum = 0;
+  for (std::size_t i = 0; i < counts.size(); i++) {
+    const auto until = number_at<std::uint32_t>(table.data() + i * sizeof(std::uint32_t));
+    if (i % width == 0) sum = 0;
+    if (until < sum || until > std::uint32_t(std::numeric_limits<std::int32_t>::max())) return false;
+    counts[i] = until - sum;
+    sum = until;
+  }
+  return true;
+}
+
+bool lines_of_counts(std::span<const std::uint32_t> counts, std::size_t width, std::uint64_t sample_bytes,
+                     std::uint64_t bytes, std::vector<std::size_t>& lines) {
+  // The samples left are counted down: a sum of sizes that a file has chosen could wrap.
+  std::uint64_t left = bytes / sample_bytes;
+  lines.clear();
+  for (std::size_t i = 0; i < counts.size(); i++) {
+    if (i % width == 0) lines.push_back(bytes - left * sample_bytes);
+    if (counts[i] > left) return false;
+    left -= counts[i];
+  }
+  lines.push_back(bytes);
+  return left == 0 && bytes % sample_bytes == 0;
+}
+
 namespace {
 
 constexpr std::uint64_t kMostChunk = std::uint64_t(1) << 28;  // bytes: more than any line or tile that was ever seen
-constexpr std::uint64_t kCopies = 3;                          // of a chunk: packed, split in halves, as it is
+constexpr std::uint64_t kCopies = 3;                          // of a chunk: packed, split in halves, unpacked
 
-/// What a channel says of a sample.
+/// The meaning of a deep channel.
 enum class Role { none, front, back, alpha };
 
 /// A channel that is read, and its place: chunks hold each line channel by channel.
 struct TakenChannel {
   Role role;
   Imf::PixelType type;
-  std::size_t offset;  // bytes of the channels before it, of a sample
+  std::size_t offset;  // bytes of a sample's channels before it
 };
 
-/// Where a chunk's table of counts and its samples lie; sizes in bytes.
+/// The place of a chunk's table of counts, and the sizes of that table and of its samples, which follow it; in bytes.
 struct Chunk {
   std::uint64_t table = 0, table_size = 0, packed_size = 0, unpacked_size = 0;
 };
@@ -47,18 +140,18 @@ struct Part : DeepStored {
 
   Window data = window_of(header.dataWindow());
   bool is_tiled = header.type() == Imf::DEEPTILE;
-  int tile_width = data.width, tile_height = 1;  // px; of lines: those of a chunk
+  int tile_width = data.width, tile_height = 1;  // px; for scan lines: a chunk
   DeepCompression compression = header.compression() == Imf::NO_COMPRESSION    ? DeepCompression::none
                                 : header.compression() == Imf::RLE_COMPRESSION ? DeepCompression::rle
                                                                                : DeepCompression::zip;
   std::uint64_t file_bytes = 0;
   std::vector<Chunk> chunks;        // row by row
-  std::vector<TakenChannel> taken;  // that are read
+  std::vector<TakenChannel> taken;  // channels to read
   std::size_t sample_bytes = 0;     // of all channels
-  // Of the counts of a whole tile, which tiles at the border may store too; 0: that is more than any chunk may hold.
+  // Bytes of the counts of a whole tile, which tiles at the border may store too; 0: more than any chunk may hold.
   std::uint64_t whole_table = 0;
   bool has_back = false;
-  std::size_t alphas = 0;  // 1, or 3 of red, green and blue, whose mean counts; 0: all is opaque
+  std::size_t alphas = 0;  // 1, or 3 of red, green and blue, whose mean counts; 0: every sample is opaque
 
   std::int64_t across() const { return (std::int64_t(data.width) + tile_width - 1) / tile_width; }
   std::int64_t down() const { return (std::int64_t(data.height) + tile_height - 1) / tile_height; }
@@ -81,21 +174,21 @@ bool read_at(std::ifstream& file, std::uint64_t offset, std::span<std::uint8_t> 
          file.read(reinterpret_cast<char*>(to.data()), std::streamsize(to.size()));
 }
 
-/// A chunk that a thread works on.
+/// A thread's chunk, packed and unpacked.
 struct Unpacked {
   std::vector<std::uint8_t> packed, table, data, scratch;
   std::vector<std::uint32_t> counts;  // of each pixel
-  std::vector<std::size_t> lines;     // where the samples of each line begin, bytes
+  std::vector<std::size_t> lines;     // place of each line's samples, bytes
   std::vector<DeepSample> samples;    // of one line
-  std::size_t next = 0;               // of them
+  std::size_t next = 0;               // the next of these samples
 };
 
-/// The chunks of a part that show a line of a cell.
+/// The unpacked chunks of a part that cover a line of a cell.
 struct Loaded {
   std::ifstream file;
   std::vector<Unpacked> chunks;  // side by side
-  int row = -1, first = -1;      // of the part's chunks: where they lie; -1: there are none yet
-  Window shown;                  // the pixels of the line that the part has
+  int row = -1, first = -1;      // their row and first column in the part; -1: none yet
+  Window shown;                  // the line's pixels within the part
 };
 
 }  // namespace
@@ -105,12 +198,13 @@ struct DeepReader::Impl {
   Window data;
   DeepRules rules;
   std::vector<Part> parts;
-  // What is made at once: a chunk where all parts have the same, else as many lines as are in the largest one.
+  // The pixels that a thread makes at once: a chunk if all parts have the same, else as many lines as the largest chunk
+  // has.
   Window cell;
   std::size_t workers = 1;
-  std::uint64_t worker_bytes = 0;  // that one takes for the largest chunks of all parts
+  std::uint64_t worker_bytes = 0;  // memory of a thread for the largest chunks of all parts
   DeepCounts counts;
-  std::vector<bool> counted;  // lines that were read before
+  std::vector<bool> counted;  // one per line: read before
 
   Impl(const char* option_, const Window& data_, const DeepRules& rules_)
       : option(option_), data(data_), rules(rules_) {}
@@ -142,7 +236,7 @@ void DeepReader::Impl::add_part(const DeepStored& stored) {
   if (part.tile_width <= 0 || part.tile_height <= 0) refuse(part, "its tiles are empty");
   const std::uint64_t pixels = std::uint64_t(part.tile_width) * std::uint64_t(part.tile_height);
   part.whole_table = pixels < kMostChunk / sizeof(std::uint32_t) ? sizeof(std::uint32_t) * pixels : 0;
-  // Larger ones hold nothing more.
+  // Larger tiles would hold no more pixels.
   part.tile_width = std::min(part.tile_width, part.data.width);
   part.tile_height = std::min(part.tile_height, part.data.height);
   find_channels(part);
@@ -176,7 +270,7 @@ void DeepReader::Impl::find_channels(Part& part) const {
          part.path, part.part, option);
 }
 
-/// Reads where the chunks lie. Their number is what the file has room for.
+/// Reads the places of the chunks, at most as many as the file has room for.
 void DeepReader::Impl::find_chunks(Part& part) const {
   constexpr std::uint64_t kOffset = 8;  // bytes
   const std::uint64_t count = std::uint64_t(part.across()) * std::uint64_t(part.down());
@@ -192,7 +286,7 @@ void DeepReader::Impl::find_chunks(Part& part) const {
           chunk_at(part, file, number_at<std::uint64_t>(offsets.data() + kOffset * part.chunks.size()), column, row));
 }
 
-/// Where a chunk lies. Its sizes are none that the file, or what packs it, could not hold.
+/// Reads the place and the sizes of a chunk, and refuses sizes that the file or the compression cannot hold.
 Chunk DeepReader::Impl::chunk_at(const Part& part, std::ifstream& file, std::uint64_t offset, int column,
                                  int row) const {
   std::array<std::uint8_t, 44> head{};  // the longest: part, place of a tile, three sizes
@@ -201,14 +295,14 @@ Chunk DeepReader::Impl::chunk_at(const Part& part, std::ifstream& file, std::uin
     return size <= part.file_bytes && from <= part.file_bytes - size;
   };
   if (offset == 0 || !is_within(offset, length) || !read_at(file, offset, std::span(head).first(length)))
-    refuse(part, fmt::format("chunk {}, {} is not there", column, row));
-  const auto says = [&](std::size_t at, std::int64_t number) {
+    refuse(part, fmt::format("chunk {}, {} is missing", column, row));
+  const auto holds = [&](std::size_t at, std::int64_t number) {
     return std::int64_t(number_at<std::int32_t>(head.data() + at)) == number;
   };
   const bool is_right =
-      (!part.names_part || says(0, part.part)) &&
-      (part.is_tiled ? says(place, column) && says(place + 4, row) && says(place + 8, 0) && says(place + 12, 0)
-                     : says(place, std::int64_t(part.data.y) + std::int64_t(row) * part.tile_height));
+      (!part.names_part || holds(0, part.part)) &&
+      (part.is_tiled ? holds(place, column) && holds(place + 4, row) && holds(place + 8, 0) && holds(place + 12, 0)
+                     : holds(place, std::int64_t(part.data.y) + std::int64_t(row) * part.tile_height));
   if (!is_right) refuse(part, fmt::format("at the place of chunk {}, {} is something else", column, row));
 
   const Chunk chunk{offset + length, number_at<std::uint64_t>(head.data() + sizes),
@@ -225,8 +319,8 @@ Chunk DeepReader::Impl::chunk_at(const Part& part, std::ifstream& file, std::uin
   return chunk;
 }
 
-/// The bytes that making surfaces takes for each sample of a line, if all are of one pixel: vectors that grow are up to
-/// twice as long as what they hold.
+/// The memory for making surfaces, per sample of a line, if all samples are of one pixel: growing vectors are up to
+/// twice as long as their contents.
 static std::uint64_t bytes_of_sample(const Part& part, bool is_alone) {
   constexpr std::uint64_t kSurface = 2 * sizeof(float), kGrowth = 2;
   const std::uint64_t together = is_alone ? 0 : kGrowth * sizeof(DeepSample);
@@ -244,7 +338,7 @@ void DeepReader::Impl::choose_cell() {
                    : Window{0, 0, data.width, std::min(lines, data.height)};
 }
 
-/// Takes as many threads as may work on the largest chunks.
+/// Chooses the number of threads that may work on the largest chunks.
 void DeepReader::Impl::share_out(std::uint64_t most_bytes) {
   for (const Part& part : parts) {
     std::uint64_t largest = 0, samples = 0;
@@ -259,11 +353,10 @@ void DeepReader::Impl::share_out(std::uint64_t most_bytes) {
     worker_bytes += together * (kCopies * (largest + tables) + samples * bytes_of_sample(part, parts.size() == 1));
   }
   if (worker_bytes > most_bytes)
-    fail(
-        ErrorKind::input,
-        "{}: its largest deep lines or tiles take {} MiB to read, and {} MiB are there for that: let the run take more "
-        "by --memory, or write smaller ones ({})",
-        parts.front().path, worker_bytes / kMebibyte + 1, most_bytes / kMebibyte, option);
+    fail(ErrorKind::input,
+         "{}: its largest deep lines or tiles take {} MiB to read, and only {} MiB are allowed: raise --memory, or "
+         "write smaller ones ({})",
+         parts.front().path, worker_bytes / kMebibyte + 1, most_bytes / kMebibyte, option);
   workers = exr_workers(most_bytes / std::max<std::uint64_t>(1, worker_bytes), std::numeric_limits<std::size_t>::max());
 }
 
@@ -291,7 +384,7 @@ void DeepReader::Impl::unpack(const Part& part, int column, int row, std::ifstre
     refuse(part, fmt::format("the samples of chunk {}, {} are damaged", column, row));
 }
 
-/// Takes the samples of a line out of a chunk.
+/// Decodes the samples of a chunk's line.
 void DeepReader::Impl::take_line(const Part& part, std::size_t line, Unpacked& chunk) const {
   const std::size_t count = (chunk.lines[line + 1] - chunk.lines[line]) / part.sample_bytes;
   chunk.samples.assign(count, {0, 0, part.alphas == 0 ? 1.0F : 0.0F});
@@ -313,7 +406,7 @@ void DeepReader::Impl::take_line(const Part& part, std::size_t line, Unpacked& c
     for (auto& sample : chunk.samples) sample.back = sample.front;
 }
 
-/// Unpacks the chunks that show a line of a cell, unless they are there, and takes the line's samples.
+/// Unpacks the chunks that cover a line of a cell, unless they are loaded, and decodes the line's samples.
 void DeepReader::Impl::load(const Part& part, const Window& line, Loaded& to) const {
   to.shown = common_part(part.data, line);
   if (to.shown.pixels() == 0) return;
@@ -330,7 +423,7 @@ void DeepReader::Impl::load(const Part& part, const Window& line, Loaded& to) co
   for (auto& chunk : to.chunks) take_line(part, std::size_t(line.y - part.data.y - row * part.tile_height), chunk);
 }
 
-/// The samples of the next pixel of a part's line, if it shows that pixel.
+/// The samples of the next pixel of a part's line; none outside of the part.
 static std::span<DeepSample> next_pixel(const Part& part, Loaded& loaded, int x, int y) {
   if (x < loaded.shown.x || x >= loaded.shown.x + loaded.shown.width) return {};
   const int across = x - part.data.x, column = across / part.tile_width;
@@ -343,7 +436,7 @@ static std::span<DeepSample> next_pixel(const Part& part, Loaded& loaded, int x,
   return samples;
 }
 
-/// The same of all parts.
+/// The samples of the next pixel of a line in all parts together.
 static std::span<DeepSample> next_pixel(const std::vector<Part>& parts, std::vector<Loaded>& loaded, int x, int y,
                                         std::vector<DeepSample>& together) {
   if (parts.size() == 1) return next_pixel(parts[0], loaded[0], x, y);

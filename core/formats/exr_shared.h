@@ -1,4 +1,4 @@
-// What the sources share that read and write EXR files. No other file includes this.
+// Declarations that only the sources of core/formats/exr* share.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -51,25 +51,26 @@ inline std::size_t bytes_of(Imf::PixelType type) { return type == Imf::HALF ? 2 
 /// Gives OpenEXR's description of an error on one line.
 std::string one_line(const std::exception& error);
 
-/// Whether an attribute says how the input is stored or what its channels are, which does not hold for another file.
+/// Whether an attribute describes the storage or the channels of the input, which differ in an output.
 bool describes_storage(const std::string& name);
 
-/// Looks at an EXR's header before OpenEXR believes what it says: walks the attributes of all parts, allocating nothing
-/// by their sizes. The file stands at its beginning. Fails with ErrorKind::input where an attribute is larger than the
-/// file, all of them are longer than 32 MiB, or a part has more lines or tiles than the file has room for their
-/// offsets: OpenEXR would make room for both. Gives the bytes of the header, behind which the tables of chunks stand.
+/// Checks an EXR's header before OpenEXR believes it: walks the attributes of all parts without allocating by their
+/// sizes. The file stands at its beginning. Fails with ErrorKind::input if an attribute is larger than the file, if all
+/// of them are longer than 32 MiB, or if a part has more lines or tiles than the file has room for their offsets, since
+/// OpenEXR would allocate for both. Gives the bytes of the header; the tables of chunks stand behind it.
 std::uint64_t require_sane_header(std::istream& file, const std::string& path, const char* option);
 
-/// How many of OpenEXR's threads work on so many pieces, of which `most` may go on at once; 1: only the caller's.
+/// The number of OpenEXR's threads for so many pieces, at most `most` at once; 1: only the caller's
+/// thread.
 std::size_t exr_workers(std::size_t pieces, std::size_t most);
 
 /// Calls work(piece, worker) for all numbers below `pieces`, the lower ones first, on so many of OpenEXR's threads, or
-/// on the caller's where that is 1. `worker` tells the threads apart. Where a piece fails no other one is begun, and
-/// the lowest that failed throws: so a damaged file ends the same on any number of threads.
+/// on the caller's if `workers` is 1. `worker` is the number of the thread. If a piece fails, no other one is begun,
+/// and the failure of the lowest piece is thrown: so a damaged file ends the same on any number of threads.
 void on_exr_threads(std::size_t pieces, std::size_t workers,
                     const std::function<void(std::size_t piece, std::size_t worker)>& work);
 
-/// An output stream into a file in the making. OpenEXR swallows what fails while it closes a file; failure() keeps it.
+/// An output stream into a file in the making. OpenEXR swallows failures while it closes a file; failure() keeps them.
 class FileStream : public Imf::OStream {
  public:
   explicit FileStream(const std::string& path) : Imf::OStream(path.c_str()), file_(path) {}
@@ -94,8 +95,8 @@ class FileStream : public Imf::OStream {
   std::optional<Error> failure_;
 };
 
-/// Runs a step of writing a file into a stream. Where the stream failed, its error is the reason that OpenEXR does not
-/// tell. What is wrong with a file that is read for it is an Error, which passes.
+/// Runs a step of writing a file into a stream. If the stream failed, its error is thrown, since OpenEXR does not tell
+/// the reason. An Error about a file that is read for it passes.
 template <class Function>
 void run_writing(const FileStream& stream, const std::string& path, Function&& function) {
   try {
@@ -108,17 +109,17 @@ void run_writing(const FileStream& stream, const std::string& path, Function&& f
   if (stream.failure()) throw *stream.failure();
 }
 
-/// Whether an attribute says how Alcove has made the input, which does not hold for what is made from it.
+/// Whether an attribute records how Alcove made the input, which does not hold for an output made from it.
 bool is_own_attribute(std::string_view name);
 
-/// The compression of that name of ExrOutput; ZIP where there is none.
+/// The compression of that name, as in ExrOutput; ZIP for unknown names.
 Imf::Compression compression_of(const std::string& name);
 
 /// The type of a plane's channel.
 Imf::PixelType pixel_type_of(SampleType type);
 
-/// Rows of a plane as OpenEXR takes them; `halves` keeps those that are converted. Values are rounded to the nearest
-/// half; beyond half's range they become its largest value, not infinity.
+/// Rows of a plane as OpenEXR takes them; `halves` keeps the converted ones. Values are rounded to the nearest half;
+/// beyond half's range they become its largest value, not infinity.
 Imf::Slice slice_of(const Window& rows, SampleType type, std::span<const float> pixels,
                     std::deque<std::vector<std::uint16_t>>& halves);
 

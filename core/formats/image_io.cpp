@@ -16,12 +16,12 @@
 namespace alcove {
 namespace {
 
-/// Gives the first of several messages: decoders go on after an error and report the next one.
+/// Gives the first of several messages: decoders go on after an error, and report the next one too.
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// Bytes of pixels that one byte of a packed file may stand for. Deflate packs 1032 bytes of up to 8 pixels each.
+// The most bytes of pixels for one byte of a packed file. Deflate packs 1032 bytes of up to 8 pixels each.
 constexpr std::uint64_t kDensest = 1 << 14;
-constexpr std::size_t kBlockBytes = 1 << 20;  // of pixels that are decoded at once, or one row
+constexpr std::size_t kBlockBytes = 1 << 20;  // of pixels decoded at once, but at least one row
 
 class OiioReader : public PictureReader {
  public:
@@ -38,7 +38,7 @@ class OiioReader : public PictureReader {
     data = {spec.x, spec.y, spec.width, spec.height};
     display = {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
     names = spec.channelnames;
-    // TIFF alone is always decoded strip by strip, and may pack one colour without end.
+    // Only TIFF is always decoded strip by strip, and may pack one colour without end.
     if (spec.image_bytes(true) / kDensest > OIIO::Filesystem::file_size(path) &&
         std::string_view(input_->format_name()) != "tiff")
       fail(ErrorKind::input, "{}: its header claims {} pixels, which its {} bytes cannot hold ({})", path,
@@ -59,7 +59,7 @@ class OiioReader : public PictureReader {
                                                                 int(stride), OIIO::TypeFloat, interleaved.data())
                                            : input_->read_scanlines(0, 0, top, bottom, 0, 0, int(stride),
                                                                     OIIO::TypeFloat, interleaved.data());
-      // Where a file ends too early, the reader of TIFF reports success and gives zeros; only has_error() tells.
+      // If a file ends too early, the reader of TIFF reports success and gives zeros; only has_error() tells.
       if (!is_read || input_->has_error())
         fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete ({}): {}", path_,
              option_, first_line(input_->geterror()));

@@ -1,4 +1,4 @@
-// Pictures of other formats in: DDS by ourselves, and all else through OpenImageIO.
+// Readers of other picture formats: DDS by our own code, all others through OpenImageIO.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,13 +12,13 @@
 
 namespace alcove {
 
-/// A picture whose header has been read, and whose pixels can be read some rows at a time. It gives the first image as
-/// it is stored: integers become 0 to 1, no colour is converted and no alpha multiplied in.
+/// A picture whose header has been read, and whose pixels can be read some rows at a time. Only the first image is
+/// read, as it is stored: integers become 0 to 1, no colour is converted, and no alpha is multiplied in.
 class PictureReader {
  public:
   virtual ~PictureReader() = default;
 
-  /// The windows are as the file says; those of most formats begin at 0, 0. There is one name per channel.
+  /// The windows in the file; those of most formats begin at 0, 0. `names` has one name per channel.
   Window data, display;
   std::vector<std::string> names;
 
@@ -26,27 +26,27 @@ class PictureReader {
     std::size_t index;  // of names
     float* to;          // row by row
   };
-  /// Reads `rows` rows from the `first` one on, and holds a few of them at a time. Fails with ErrorKind::input.
+  /// Reads `rows` rows from the `first` one on, a few at a time. Fails with ErrorKind::input.
   virtual void read(int first, int rows, std::span<const Channel> channels) = 0;
 };
 
-/// Why pictures of other formats than EXR and DDS cannot be read; empty where they can.
+/// The reason why pictures of other formats than EXR and DDS cannot be read; empty if they can.
 std::string why_no_image_io();
 
-/// Opens a DDS texture as RenderDoc saves it, and reads its first image. Its format must be one of R32_FLOAT,
-/// D32_FLOAT, R16_UNORM, D16_UNORM, R16_FLOAT, R24_UNORM_X8 / D24_UNORM_S8, R32G32_FLOAT, R16G16_FLOAT, R16G16_UNORM,
+/// Opens a DDS texture as RenderDoc saves it, and reads its first image. Its format must be R32_FLOAT, D32_FLOAT,
+/// R16_UNORM, D16_UNORM, R16_FLOAT, R24_UNORM_X8 / D24_UNORM_S8, R32G32_FLOAT, R16G16_FLOAT, R16G16_UNORM,
 /// R8G8B8A8_UNORM, R10G10B10A2_UNORM, R16G16B16A16 (float and unorm) or R32G32B32A32_FLOAT. The channels are called R,
-/// G, B, A as far as there are any; unorm values go from 0 to 1. Fails with ErrorKind::input on other formats, on
-/// headers that make no sense, and on files that are too short.
+/// G, B, A, as many as there are; unorm values go from 0 to 1. Fails with ErrorKind::input on other formats, on headers
+/// that make no sense, and on files that are too short.
 std::unique_ptr<PictureReader> open_dds(const std::string& path, const char* option);
 
 /// Opens a picture of any format that OpenImageIO reads. Fails with ErrorKind::input, also if a header claims more
 /// pixels than its file can hold; `option` is for the message.
 std::unique_ptr<PictureReader> open_picture(const std::string& path, const char* option);
 
-/// The interface between the program and core/formats/image_io.cpp, a module that is loaded on first use: OpenImageIO
-/// brings some 200 shared libraries along (video, GIS, computer vision). To load them costs a fifth of a second, more
-/// than all the rest of a small frame, and a job with EXRs only needs none of them.
+/// The interface between the program and core/formats/image_io.cpp, a module that is loaded on first use. OpenImageIO
+/// brings some 200 shared libraries along (video, GIS, computer vision). Loading them takes a fifth of a second, more
+/// than the rest of a small frame, and a job with EXRs only needs none of them.
 struct ImageIoModule {
   std::unique_ptr<PictureReader> (*open_picture)(const std::string& path, const char* option);
 };

@@ -1,4 +1,4 @@
-// The table of signatures, and the reader for each format. The one of OpenImageIO is loaded on first use.
+// The table of signatures, and the reader for each format. That of OpenImageIO is loaded on first use.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <filesystem>
@@ -80,13 +80,13 @@ const Signature* format_of(const std::string& path, std::ifstream& file, const s
   return has_tga_end(file) || lower_case(path).ends_with(".tga") ? &kTga : nullptr;
 }
 
-/// Null, and why in `why`, where the module cannot be loaded. It is found beside the program or in ../lib/alcove, by
-/// the program's run path.
+/// Loads the module; if that fails, gives null, with the reason in `why`. The program's run path finds it beside the
+/// program or in ../lib/alcove.
 const ImageIoModule* load(std::string& why) {
   return static_cast<const ImageIoModule*>(symbol_of(kImageIoFile, kImageIoSymbol, why));
 }
 
-/// `path` is the picture that needs it.
+/// The loaded module. Fails for `path`, the picture that needs it.
 const ImageIoModule& module(const std::string& path) {
   static const ImageIoModule* loaded = [&] {
     std::string why;

@@ -46,7 +46,7 @@ std::vector<ChannelPair> chosen_pairs(const Picture& result, const Picture& refe
   return pairs;
 }
 
-/// The one channel of a picture that is AO by its name, or its only one; none where several are.
+/// The name of a picture's AO channel: the only channel, or the only one with an AO name; "" if several qualify.
 std::string likely_ao(const Picture& picture) {
   if (picture.channels().size() == 1) return picture.channels()[0].name;
   std::string found;
@@ -59,11 +59,11 @@ std::string likely_ao(const Picture& picture) {
   return found;
 }
 
-/// What --channel is likely to say of two pictures.
+/// The likely value of --channel for two pictures.
 std::string likely_pair(const Picture& result, const Picture& reference) {
   const std::string of_result = likely_ao(result), of_reference = likely_ao(reference);
-  const bool knows = !of_result.empty() && !of_reference.empty();
-  return "RESULT=REFERENCE" + (knows ? fmt::format(", such as --channel {}={}", of_result, of_reference) : "");
+  const bool has_names = !of_result.empty() && !of_reference.empty();
+  return "RESULT=REFERENCE" + (has_names ? fmt::format(", such as --channel {}={}", of_result, of_reference) : "");
 }
 
 /// Pairs the channels whose names are the same once `key` has been applied to them.
@@ -76,7 +76,7 @@ std::vector<ChannelPair> same_names(const Picture& result, const Picture& refere
   return pairs;
 }
 
-/// Whether a channel is one of x, y and z that its layer all has.
+/// Whether a channel is x, y or z of a layer that has all three.
 bool is_of_vector(const Picture& picture, std::size_t index) {
   const std::string name = lower_case(picture.channels()[index].name);
   const std::string layer = name.substr(0, name.size() - last_part(name).size());

@@ -1,4 +1,4 @@
-// A picture file of any kind, EXR or not, as channels that can be found and read by name.
+// A picture file of any format, with channels found and read by name.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,13 +14,13 @@ namespace alcove {
 /// A channel of a picture.
 struct PictureChannel {
   std::string name;  // full: an EXR part's name stands for a layer where the channel does not repeat it
-  Window data;       // where it has pixels
+  Window data;       // its pixels
   int part = 0;      // EXR only
   std::string name_in_part;
 };
 
-/// A file that open_image() has opened. Every failure is ErrorKind::input and names the file; `option` says where the
-/// user named it.
+/// A file that open_image() has opened. Every failure is ErrorKind::input and names the file; `option` is the one that
+/// named it.
 class Picture {
  public:
   Picture(const std::string& path, const char* option);
@@ -32,11 +32,11 @@ class Picture {
   std::vector<std::string> names() const;
 
   /// Gives the index into channels() of the channel with that full name, or else with that end of its name after a dot:
-  /// "R" finds "ViewLayer.Combined.R". Case is ignored. Fails if there is none, naming the nearest, and if there are
+  /// "R" finds "ViewLayer.Combined.R". Case is ignored. Fails if there is none, naming the nearest, or if there are
   /// several.
   std::size_t find(const std::string& name, const char* option) const;
 
-  /// Reads their planes, one behind the other, row by row. Fails if they do not cover the same pixels.
+  /// Reads the planes of channels, one behind the other, row by row. Fails if they do not cover the same pixels.
   std::vector<float> read(std::span<const std::size_t> channels);
 
  private:
@@ -50,11 +50,11 @@ struct ChannelPair {
   std::size_t result, reference;
 };
 
-/// Pairs the channels that two pictures share. `chosen` is a list with commas of names, or of RESULT=REFERENCE where
-/// the names differ. Without it, the only channels of both are paired, whatever their names; else those with the same
-/// full name; else those with the same last part of the name, but for one that is of a vector in one picture alone.
-/// Case is ignored. Fails with ErrorKind::input, listing the channels of both, if there are no pairs and if a last part
-/// stands for several channels.
+/// Pairs the channels of two pictures. `chosen` is a list with commas of names, or of RESULT=REFERENCE if the names
+/// differ. Without it, the first of these rules that finds pairs is used: the only channel of each, whatever their
+/// names; channels with the same full name; channels with the same last part of the name. The last rule leaves out a
+/// channel that belongs to a vector in one picture alone. Case is ignored. Fails with ErrorKind::input, listing the
+/// channels of both, if there are no pairs or if a last part stands for several channels.
 std::vector<ChannelPair> match_channels(const Picture& result, const Picture& reference, const std::string& chosen);
 
 }  // namespace alcove

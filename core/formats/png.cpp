@@ -22,12 +22,12 @@ namespace alcove {
 namespace {
 
 constexpr const char *kMadeBy = "alcove", *kShows = "Description";  // keywords of texts
-constexpr std::size_t kTextWithin = 4096;                           // bytes: texts stand before the pixels
+constexpr std::size_t kTextWithin = 4096;                           // bytes that hold the texts, before the pixels
 
-constexpr std::size_t kErrorBytes = 256;  // of a message of libpng's, which are shorter
+constexpr std::size_t kErrorBytes = 256;  // longer than any message of libpng
 
-/// What libpng's callbacks write to: the encoded bytes, and what went wrong. No exception may pass through libpng, and
-/// its errors jump over destructors, so that a message has its place here already.
+/// The target of libpng's callbacks: the encoded bytes, and the error. No exception may pass through libpng, and its
+/// errors jump over destructors, so messages have a fixed place.
 struct Sink {
   std::vector<char> bytes;
   std::array<char, kErrorBytes> error{};
@@ -38,7 +38,7 @@ void copy_text(png_const_charp text, std::array<char, kErrorBytes>& to) {
   (void)std::snprintf(to.data(), to.size(), "%s", text);
 }
 
-/// False where no memory is left.
+/// Appends bytes; false if no memory is left.
 bool has_appended(Sink& sink, const png_byte* bytes, std::size_t count) noexcept {
   try {
     sink.bytes.insert(sink.bytes.end(), bytes, bytes + count);
@@ -49,7 +49,7 @@ bool has_appended(Sink& sink, const png_byte* bytes, std::size_t count) noexcept
 }
 
 void append(png_structp png, png_bytep bytes, png_size_t count) {
-  // The jump begins here and not in the handler, which would never end.
+  // The jump begins here, since a jump in the error handler would never end.
   if (!has_appended(*static_cast<Sink*>(png_get_io_ptr(png)), bytes, count)) png_error(png, "no memory is left for it");
 }
 
@@ -62,7 +62,7 @@ void keep_warning(png_structp png, png_const_charp text) {
   copy_text(text, static_cast<Sink*>(png_get_error_ptr(png))->warning);
 }
 
-/// What libpng says of its failure.
+/// The reason that libpng gives for its failure.
 std::string reason_of(const Sink& sink) {
   const std::string error = sink.error.data();
   return sink.warning[0] ? error + ": " + sink.warning.data() : error;
@@ -74,7 +74,7 @@ struct Writer {
   ~Writer() { png_destroy_write_struct(&png, &info); }
 };
 
-/// Nothing here has a destructor, since an error jumps out of the calls below to the setjmp.
+/// Writes the picture. Nothing here has a destructor, since an error jumps from the calls below to the setjmp.
 bool write_all(png_structp png, png_infop info, int width, int height, int channels, png_bytepp rows,
                std::span<png_text> texts) {
   if (setjmp(png_jmpbuf(png))) return false;
@@ -99,10 +99,10 @@ std::vector<char> encode_png(const std::string& name, int width, int height, int
   for (int y = 0; y < height; y++)
     rows.push_back(bytes.data() + std::size_t(y) * std::size_t(width) * std::size_t(channels));
 
-  // libpng takes texts that it might change.
-  std::array<std::pair<std::string, std::string>, 2> said{{{kMadeBy, made_by}, {kShows, shows}}};
+  // libpng takes texts by mutable pointers.
+  std::array<std::pair<std::string, std::string>, 2> named_texts{{{kMadeBy, made_by}, {kShows, shows}}};
   std::vector<png_text> texts;
-  for (auto& [keyword, value] : said) {
+  for (auto& [keyword, value] : named_texts) {
     if (value.empty()) continue;
     png_text& text = texts.emplace_back();
     text.compression = PNG_TEXT_COMPRESSION_NONE;

@@ -1,4 +1,4 @@
-// Plain loops, which the compiler makes vectors of; by hand what it cannot: sums, and half floats on x86.
+// Plain loops, which the compiler vectorizes. Sums, and half floats on x86, are vectorized by hand, since it cannot.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/sample_loops.h"
 
@@ -17,10 +17,11 @@ namespace {
 constexpr int kMiddle = 128;  // stands for no difference
 constexpr float kLargestHalf = 65504;
 
-// Each does as many as fit into its vectors, and gives their number.
+// Each function below handles as many values as fill its vectors, and gives their number.
 #ifdef __x86_64__
 
-/// Sums within 16 bytes take four steps: each adds to every byte the sum of as many bytes before it as it has itself.
+/// Sums up 16 bytes in four steps: each step adds to every byte the sum of as many bytes before it as the byte has
+/// itself.
 __attribute__((target("ssse3"))) std::size_t sum_up_vectors(std::uint8_t* differences, std::size_t count,
                                                             std::uint8_t before) {
   const __m128i middle = _mm_set1_epi8(char(kMiddle)), of_last = _mm_set1_epi8(15);
@@ -39,7 +40,7 @@ __attribute__((target("ssse3"))) std::size_t sum_up_vectors(std::uint8_t* differ
   return i;
 }
 
-/// The instruction makes signalling NaNs quiet: where there is a NaN it ends.
+/// Stops at a NaN, since the instruction makes signalling NaNs quiet.
 __attribute__((target("avx2,f16c"))) std::size_t widen_vectors(const std::uint8_t* halves, std::size_t count,
                                                                float* to) {
   const __m128i no_sign = _mm_set1_epi16(0x7fff), infinity = _mm_set1_epi16(0x7c00);
@@ -65,7 +66,7 @@ __attribute__((target("avx2,f16c"))) std::size_t narrow_vectors(const float* flo
   return i;
 }
 
-/// Clang 14 has no name for F16C, and a hypervisor may hide it where there is AVX2.
+/// Whether the processor has AVX2 and F16C. Clang 14 has no name for F16C, and a hypervisor may hide it beside AVX2.
 bool has_half_vectors() {
   unsigned a = 0, b = 0, c = 0, d = 0;
   return __builtin_cpu_supports("avx2") && __get_cpuid(1, &a, &b, &c, &d) && (c & bit_F16C) != 0;
@@ -83,7 +84,7 @@ std::size_t narrow_vectors(const float*, std::size_t, std::uint16_t*) { return 0
 
 #endif
 
-/// Calls vectors(i), which gives how many it has done from i on, and one(i) for some of what it leaves.
+/// Calls vectors(i), which gives the number of values that it has done from i on, and one(i) for some of the rest.
 template <class Vectors, class One>
 void for_halves(std::size_t count, const Vectors& vectors, const One& one) {
   constexpr std::size_t kSome = 8;

@@ -1,6 +1,8 @@
-// Tokens, ranges, directory listings and endings.
+// Tokens, ranges, directory listings, numbers in names, and endings.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/sequence.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -8,16 +10,18 @@
 #include <filesystem>
 #include <sstream>
 #include <unordered_set>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 
 namespace alcove {
+
 namespace {
 
 constexpr long kMostFrames = 1'000'000;
-constexpr long kFrameLimit = 1'000'000'000;  // all frame numbers are nearer to 0
-constexpr int kMostDigits = 16;
+constexpr long kFrameLimit = 1'000'000'000;  // frame numbers lie nearer to 0
+constexpr int kMostPadding = 16;
 
 /// A place for the frame number in a path.
 struct Token {
@@ -39,16 +43,16 @@ std::optional<Token> token_at(const std::string& path, std::size_t begin) {
   if (kind == '#' || kind == '@') {
     end = std::min(path.find_first_not_of(kind, begin), path.size());
     const int length = int(end - begin);
-    if (length > kMostDigits || path.substr(begin, end - begin) == "@") return std::nullopt;
+    if (length > kMostPadding || path.substr(begin, end - begin) == "@") return std::nullopt;
     return Token{begin, end, kind == '#' && length == 1 ? 4 : length};
   }
   if (kind == '%') {
     int digits = 0;
     if (end < path.size() && path[end] == '0')
       for (auto next = digit(path, end); next; next = digit(path, end))
-        digits = std::min(10 * digits + *next, kMostDigits + 1);
-    return ends_with('d') && digits <= kMostDigits ? std::optional(Token{begin, end, std::max(1, digits)})
-                                                   : std::nullopt;
+        digits = std::min(10 * digits + *next, kMostPadding + 1);
+    return ends_with('d') && digits <= kMostPadding ? std::optional(Token{begin, end, std::max(1, digits)})
+                                                    : std::nullopt;
   }
   if (kind != '$' && kind != '<') return std::nullopt;
   if (!ends_with('F') && !(kind == '<' && path[end - 1] == 'f')) return std::nullopt;
@@ -66,7 +70,7 @@ std::optional<Token> find_token(const std::string& path, std::size_t from) {
   return std::nullopt;
 }
 
-/// A range as it is written: a, a-b, a-bxS or a-b:S.
+/// A range of a list: a, a-b, a-bxS or a-b:S.
 struct Range {
   long first = 0, last = 0, step = 1;
 };
@@ -88,9 +92,9 @@ std::optional<Range> range_of(const std::string& text) {
   return range;
 }
 
-/// Adds one part of a list, which is for messages. `listed` counts frames as often as they are there.
+/// Adds one part of a list. `list` is for messages. `listed` counts frames, repeated ones too.
 void add_part(const std::string& text, const std::string& list, std::vector<int>& frames,
-              std::unordered_set<int>& known, long& listed) {
+              std::unordered_set<int>& distinct, long& listed) {
   const auto range = range_of(text);
   if (!range)
     fail(ErrorKind::usage,
@@ -105,10 +109,10 @@ void add_part(const std::string& text, const std::string& list, std::vector<int>
   if (listed > kMostFrames)
     fail(ErrorKind::usage, "--frames {}: with {} there are more than {} frames", list, text, kMostFrames);
   for (long frame = first; stride > 0 ? frame <= last : frame >= last; frame += stride)
-    if (known.insert(int(frame)).second) frames.push_back(int(frame));
+    if (distinct.insert(int(frame)).second) frames.push_back(int(frame));
 }
 
-/// Gives the frame whose path this is.
+/// Gives the frame with this path.
 std::optional<int> frame_of(const FramePattern& name, const std::string& text) {
   if (text.size() <= name.before.size() + name.after.size() || !text.starts_with(name.before) ||
       !text.ends_with(name.after))
@@ -129,7 +133,7 @@ bool is_passed_over(const std::string& ending) {
          std::ranges::find(kOfUnfinished, ending) != kOfUnfinished.end();
 }
 
-/// The ending of the name with its dot, in small letters, behind which others may be passed over; "" where there is
+/// The ending of a name, with its dot and in small letters; passed-over endings behind it do not count. "" if there is
 /// none.
 std::string ending_of(const std::string& path) {
   std::filesystem::path name = std::filesystem::path(path).filename();
@@ -153,7 +157,7 @@ std::optional<FramePattern> frame_pattern(const std::string& path) {
 
 std::vector<int> parse_frames(const std::string& list) {
   std::vector<int> frames;
-  std::unordered_set<int> known;
+  std::unordered_set<int> distinct;
   long listed = 0;
   std::istringstream parts(list + ",");
   for (std::string part; std::getline(parts, part, ',');) {
@@ -161,7 +165,7 @@ std::vector<int> parse_frames(const std::string& list) {
     std::string word;
     if (!(words >> word))
       fail(ErrorKind::usage, "--frames {}: the list is empty, or has nothing between two commas", list);
-    do add_part(word, list, frames, known, listed);
+    do add_part(word, list, frames, distinct, listed);
     while (words >> word);
   }
   return frames;
@@ -201,7 +205,95 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
 void require_ending(const std::string& path, const char* option, const char* ending, const char* format) {
   const std::string found = ending_of(path);
   if (found.empty() || found == ending) return;
-  fail(ErrorKind::usage, "{}: {} writes {} and nothing else: let its name end in {}", path, option, format, ending);
+  fail(ErrorKind::usage, "{}: {} writes only {}: let its name end in {}", path, option, format, ending);
+}
+
+namespace {
+
+constexpr const char* kDigits = "0123456789";
+constexpr const char* kSeparators = "._- ";
+constexpr std::size_t kUsualDigits = 4;  // of a frame's number, if nothing else tells
+constexpr std::size_t kMostDigits = 9;   // longer numbers are dates, times or hashes
+
+/// A word between separators.
+struct Part {
+  std::string text;
+  char before, after;  // the separators beside it; 0 at the ends of the name
+  bool is_negative;    // a minus sign stands before it
+};
+
+bool is_digits(const std::string& text) { return !text.empty() && text.find_first_not_of(kDigits) == text.npos; }
+
+/// The digits at the end of a word: "0005" of "shot0005"; "" if there are none.
+std::string digits_at_end(const std::string& text) {
+  const std::size_t last = text.find_last_not_of(kDigits);
+  return last == text.npos ? text : text.substr(last + 1);
+}
+
+bool is_version(const std::string& text) {
+  const std::string word = lower_case(text.substr(0, text.size() - digits_at_end(text).size()));
+  return text.size() > word.size() && (word.ends_with("v") || word == "ver" || word == "version");
+}
+
+/// Whether a word is a size, such as "1920x1080".
+bool is_size(const std::string& text) {
+  const std::size_t by = text.find_last_not_of(kDigits);
+  return by != text.npos && by > 0 && lower_case(text.substr(by, 1)) == "x" && is_digits(text.substr(0, by));
+}
+
+std::vector<Part> parts_of(const std::string& name) {
+  std::vector<Part> parts;
+  const auto is_separator = [&](std::size_t at) {
+    return std::string_view(kSeparators).find(name[at]) != std::string_view::npos;
+  };
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find_first_of(kSeparators, begin), name.size());
+    const char before = begin ? name[begin - 1] : char(0), after = end < name.size() ? name[end] : char(0);
+    const bool is_negative = before == '-' && (begin == 1 || is_separator(begin - 2));
+    if (end > begin) parts.push_back({name.substr(begin, end - begin), before, after, is_negative});
+    begin = end + 1;
+  }
+  return parts;
+}
+
+/// Whether a number by itself is surely that of a frame. `before` holds the parts before it.
+bool is_clear(const Part& part, std::span<const Part> before) {
+  const bool is_long = part.text.size() >= kUsualDigits;
+  const bool is_subversion = !before.empty() && is_version(before.back().text) && part.text.size() < 3;
+  const bool is_of_date = part.before == '-' && !before.empty() && is_digits(before.back().text) && !is_long;
+  if (is_subversion || is_of_date) return false;
+  return is_long || part.after == 0 || (part.before == '.' && part.after == '.');
+}
+
+FrameNumber number_of(const Part& part) {
+  const int number = std::stoi(part.text);
+  return {part.is_negative ? -number : number, part.text, ""};
+}
+
+/// Looks at the last word of a name in which no number stands by itself.
+FrameNumber at_end_of_word(const Part& part) {
+  const std::string digits = digits_at_end(part.text);
+  if (digits.empty() || is_size(part.text) || digits.size() > kMostDigits) return {};
+  if (is_version(part.text)) return {{}, digits, fmt::format("{} is a version", part.text)};
+  if (digits.size() < kUsualDigits)
+    return {{}, digits, fmt::format("{} may be the number of a shot or of a take", part.text)};
+  return {std::stoi(digits), digits, ""};
+}
+
+}  // namespace
+
+FrameNumber frame_number_in(const std::string& path) {
+  const std::filesystem::path file(path);
+  const std::string ending = file.extension().string();
+  const bool is_number = ending.size() > 1 && is_digits(ending.substr(1));  // shot.0005 has no other ending
+  const std::vector<Part> parts = parts_of(is_number ? file.filename().string() : file.stem().string());
+  for (std::size_t i = parts.size(); i-- > 0;) {
+    const Part& part = parts[i];
+    if (!is_digits(part.text) || part.text.size() > kMostDigits) continue;
+    if (is_clear(part, std::span(parts).first(i))) return number_of(part);
+    return {{}, part.text, fmt::format("{} may be something else", part.text)};
+  }
+  return parts.empty() ? FrameNumber{} : at_end_of_word(parts.back());
 }
 
 }  // namespace alcove

@@ -10,7 +10,7 @@
 #include "core/base/image.h"
 #include "core/base/settings.h"
 #include "core/frame/linear.h"
-#include "kernels/shared.h"
+#include "kernels/base/shared.h"
 
 namespace alcove {
 

@@ -10,7 +10,7 @@
 
 #include "core/base/ranks.h"
 #include "core/frame/flatness.h"
-#include "kernels/geometry.h"
+#include "kernels/geometry/geometry.h"
 
 namespace alcove {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/image.h"
 #include "core/base/option_words.h"
-#include "core/base/windows.h"
-#include "kernels/geometry.h"
+#include "kernels/geometry/geometry.h"
 
 namespace alcove {
 namespace {
@@ -226,6 +226,13 @@ bool list_all(std::span<const BehindPlane> planes) {
   return std::ranges::all_of(
       planes, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces && plane.is_whole; });
 }
+
+Reading over(Reading reading, const Window& window) {
+  reading.data = window;
+  return reading;
+}
+
+View view_of(const Reading& reading, const Window& window) { return view_of(reading.camera, window, reading.display); }
 
 Window picture_of(const Reading& reading, const Window& part) {
   return reduced(part, reading.display, reading.supersampling);

@@ -16,7 +16,7 @@
 
 namespace alcove {
 
-/// Raw value -> planar depth in scene units. The forms are those of kernels/geometry.h.
+/// Raw value -> planar depth in scene units. The forms are those of kernels/geometry/geometry.h.
 struct DepthMap {
   uint form = 0;
   bool along_ray = false;  // the form gives the distance to the eye
@@ -146,7 +146,12 @@ struct Reading : Meaning {
   std::vector<AmbientReading> ambient;  // the lights that AO may dim; none: it dims the whole beauty
 };
 
-/// The part of the picture that is written for a part of the frame: see core/base/windows.h.
+/// The same reading of a part of the frame.
+Reading over(Reading reading, const Window& window);
+/// The projection over a part of the frame.
+View view_of(const Reading& reading, const Window& window);
+
+/// The part of the picture that is written for a part of the frame: see core/base/image.h.
 Window picture_of(const Reading& reading, const Window& part);
 
 /// Takes over the meaning of another frame of the sequence. The clip planes stay this frame's own, as its own camera
@@ -178,7 +183,7 @@ DepthPrecision depth_precision_of(const Reading& reading);
 struct HostFrame : Reading {
   // of depth_kind, positions: planes x, y, z; sky: at or beyond `sky`, or 0, infinite, NaN
   std::vector<float> depth;
-  // planes x, y, z (or two, see kernels/geometry.h) in normal_space; empty: reconstructed from depth
+  // planes x, y, z (or two, see kernels/geometry/geometry.h) in normal_space; empty: reconstructed from depth
   std::vector<float> normal;
   // planes of depth behind the first surface, in any order, as Reading::behind says; empty: none is known
   std::vector<float> behind_depth;

@@ -1,20 +1,67 @@
-// Buffers in the memory that choose_memory names, with guards around them in tests.
+// The type of memory for each use, and buffers in it, with guards around them in tests.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/gpu/buffer.h"
 
 #include <algorithm>
+#include <span>
 
 #include "core/base/error.h"
 
 namespace alcove::gpu {
+
+namespace {
+
+constexpr VkMemoryPropertyFlags kDeviceLocal = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+constexpr VkMemoryPropertyFlags kHostVisible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
+/// Coherent memory needs no flush and no invalidation.
+constexpr VkMemoryPropertyFlags kHostWritten = kHostVisible | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+constexpr VkMemoryPropertyFlags kHostRead = kHostWritten | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+/// The properties that need no feature of the device.
+constexpr VkMemoryPropertyFlags kPlain = kDeviceLocal | kHostRead;
+
+/// Properties that a type must have, and must not have.
+struct Wish {
+  VkMemoryPropertyFlags wanted = 0;
+  VkMemoryPropertyFlags unwanted = 0;
+};
+
+// The wishes for each use, the best first. Device memory that the host sees but does not cache can be a small window,
+// so plain device memory goes before it.
+constexpr Wish kForKernels[] = {{kDeviceLocal | kHostRead}, {kDeviceLocal, kHostVisible}, {kDeviceLocal}};
+constexpr Wish kForHost[] = {{kHostRead, kDeviceLocal}, {kHostRead}, {kHostWritten, kDeviceLocal}, {kHostWritten}};
+constexpr Wish kForBoth[] = {{kDeviceLocal | kHostRead}, {kHostRead}, {kHostWritten}};
+
+std::span<const Wish> wishes_for(MemoryUse use) {
+  switch (use) {
+    case MemoryUse::kernels: return kForKernels;
+    case MemoryUse::host: return kForHost;
+    case MemoryUse::both: break;
+  }
+  return kForBoth;
+}
+
+}  // namespace
+
+std::optional<MemoryType> choose_memory(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
+                                        MemoryUse use) {
+  for (const Wish& wish : wishes_for(use))
+    for (std::uint32_t type = 0; type < memory.memoryTypeCount; type++) {
+      const VkMemoryPropertyFlags flags = memory.memoryTypes[type].propertyFlags;
+      const bool is_plain = (flags & ~kPlain) == 0;
+      const bool is_wished = (flags & wish.wanted) == wish.wanted && (flags & wish.unwanted) == 0;
+      if ((allowed >> type & 1) && is_plain && is_wished) return MemoryType{type, (flags & kHostRead) == kHostRead};
+    }
+  return std::nullopt;
+}
+
 namespace {
 
 constexpr std::byte kUnwritten{0xff};  // four of them are a NaN
 
-/// A buffer of less than this is kept for any smaller size: it costs less than another allocation.
+/// Buffers smaller than this are kept for any smaller size: that costs less than another allocation.
 constexpr std::size_t kSmallBytes = 1 << 20;
 
-/// The host writes a few numbers into buffers while a frame is recorded, and pixels only before.
+/// While a frame is recorded, the host writes only a few numbers into buffers; it writes pixels before.
 constexpr std::size_t kRehearsedBytes = 1 << 16;
 
 double mebibytes(std::size_t bytes) { return double(bytes) / (1 << 20); }
@@ -41,10 +88,9 @@ Buffer::Buffer(std::size_t bytes, Use use)
 
 void Buffer::place(Device& device) {
   if (!allocate(device, MemoryUse::kernels, device_side_))
-    throw OutOfMemory(
-        ErrorKind::device,
-        fmt::format("{} has no room for a buffer of {:.1f} MiB: end what else uses its memory, or use another --device",
-                    device.info().name, mebibytes(bytes_)));
+    throw OutOfMemory(ErrorKind::device, fmt::format("{} has no room for a buffer of {:.1f} MiB: end other programs "
+                                                     "that use its memory, or use another --device",
+                                                     device.info().name, mebibytes(bytes_)));
   if (device_side_.is_cached && device.options().map_memory) host_ = map(device, device_side_);
   if (use_ == Use::upload) make_staging(device);
 }

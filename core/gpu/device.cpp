@@ -1,21 +1,272 @@
-// Making the instance and the device, step by step; its queue, memory and cache of pipelines.
+// Lists and chooses devices; makes the instance and the device, step by step, with its queue, memory and kernels.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/gpu/device.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstring>
 #include <limits>
+#include <memory>
+#include <type_traits>
 
 #include "core/base/error.h"
-#include "core/gpu/device_choice.h"
+#include "core/base/text.h"
 #include "core/gpu/kernel.h"
 
 namespace alcove::gpu {
+
 namespace {
 
-/// The extension of devices that have only a part of Vulkan. Whoever uses such a device must enable it. No stable
-/// header has a macro for its name.
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+std::string version_text(std::uint32_t version) {
+  return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                     VK_API_VERSION_PATCH(version));
+}
+
+std::string uuid_text(const std::uint8_t (&uuid)[VK_UUID_SIZE]) {
+  std::string text;
+  for (int i = 0; i < int(VK_UUID_SIZE); i++)
+    text += fmt::format("{}{:02x}", i == 4 || i == 6 || i == 8 || i == 10 ? "-" : "", uuid[i]);
+  return text;
+}
+
+DeviceType type_of(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return DeviceType::cpu;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return DeviceType::integrated_gpu;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return DeviceType::discrete_gpu;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return DeviceType::virtual_gpu;
+    default: return DeviceType::other;
+  }
+}
+
+bool is_among(const std::vector<VkExtensionProperties>& extensions, const char* name) {
+  return std::ranges::any_of(extensions, [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+/// Whether the loader hides devices with only a portable part of Vulkan, such as MoltenVK's, unless a program asks for
+/// them.
+bool loader_hides_devices() {
+  std::uint32_t count = 0;
+  if (vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr) != VK_SUCCESS) return false;
+  std::vector<VkExtensionProperties> extensions(count);
+  if (vkEnumerateInstanceExtensionProperties(nullptr, &count, extensions.data()) != VK_SUCCESS) return false;
+  return is_among(extensions, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+}
+
+/// The first thing that the kernels need and a device lacks; empty if it lacks nothing.
+std::string missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties) {
+  if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan 1.2";
+  if (!compute_family(device)) return "a compute queue";
+  if (!has_extension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) return VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+  VkPhysicalDeviceVulkan12Features features12{};
+  features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  VkPhysicalDeviceFeatures2 features{};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  features.pNext = &features12;
+  vkGetPhysicalDeviceFeatures2(device, &features);
+  return features12.scalarBlockLayout ? "" : "scalar block layout";
+}
+
+/// The free bytes of the largest device-local heap; all its bytes if the driver does not tell.
+std::uint64_t free_bytes_of(VkPhysicalDevice device) {
+  VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{};
+  budget.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT;
+  VkPhysicalDeviceMemoryProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2;
+  const bool has_budget = has_extension(device, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+  if (has_budget) properties.pNext = &budget;
+  vkGetPhysicalDeviceMemoryProperties2(device, &properties);
+
+  const VkPhysicalDeviceMemoryProperties& memory = properties.memoryProperties;
+  std::uint64_t largest = 0;
+  std::uint64_t free = 0;
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; i++) {
+    const bool is_local = memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT;
+    if (!is_local || memory.memoryHeaps[i].size <= largest) continue;
+    largest = memory.memoryHeaps[i].size;
+    free = has_budget ? budget.heapBudget[i] - std::min(budget.heapBudget[i], budget.heapUsage[i]) : largest;
+  }
+  return free;
+}
+
+PhysicalDevice describe(VkPhysicalDevice device, std::uint32_t index) {
+  VkPhysicalDeviceVulkan11Properties properties11{};
+  properties11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
+  VkPhysicalDeviceVulkan12Properties properties12{};
+  properties12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
+  properties12.pNext = &properties11;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = &properties12;
+  vkGetPhysicalDeviceProperties2(device, &properties);
+  VkPhysicalDeviceMemoryProperties memory;
+  vkGetPhysicalDeviceMemoryProperties(device, &memory);
+
+  DeviceInfo info{};
+  info.index = index;
+  info.name = properties.properties.deviceName;
+  info.uuid = uuid_text(properties11.deviceUUID);
+  info.driver = fmt::format("{} {}", properties12.driverName, properties12.driverInfo);
+  info.api_version = version_text(properties.properties.apiVersion);
+  info.type = type_of(properties.properties.deviceType);
+  info.buffer_bytes = properties.properties.limits.maxStorageBufferRange;
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; i++)
+    if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) info.memory_bytes += memory.memoryHeaps[i].size;
+  if (properties.properties.apiVersion >= VK_API_VERSION_1_1) info.free_bytes = free_bytes_of(device);
+  const std::string missing = missing_in(device, properties.properties);
+  if (!missing.empty()) info.unusable = "it lacks " + missing;
+  return {device, info};
+}
+
+/// The rank of a type of device for `auto`, the best first.
+int rank_of(DeviceType type) {
+  switch (type) {
+    case DeviceType::discrete_gpu: return 0;
+    case DeviceType::integrated_gpu: return 1;
+    case DeviceType::virtual_gpu: return 2;
+    case DeviceType::other: return 3;
+    case DeviceType::cpu: return 4;
+  }
+  return 5;
+}
+
+bool is_number(const std::string& text) {
+  return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Whether `choice` names a device.
+bool is_named(const DeviceInfo& device, const std::string& choice) {
+  if (choice.empty()) return false;
+  if (lower_case(choice) == "auto") return true;
+  if (lower_case(choice) == "cpu") return device.type == DeviceType::cpu;
+  if (is_number(choice)) return std::to_string(device.index) == choice;
+  return device.uuid == lower_case(choice) || lower_case(device.name).find(lower_case(choice)) != std::string::npos;
+}
+
+/// The devices as text, one clause each: name, index, type, and the reason why one is useless.
+std::string list_of(const std::vector<PhysicalDevice>& devices) {
+  std::string list;
+  for (const auto& [handle, info] : devices) {
+    const std::string reason = info.unusable.empty() ? "" : ", " + info.unusable;
+    list += fmt::format("{}{} (index {}, {}{})", list.empty() ? "" : "; ", info.name, info.index, name_of(info.type),
+                        reason);
+  }
+  return list;
+}
+
+}  // namespace
+
+const char* name_of(DeviceType type) {
+  switch (type) {
+    case DeviceType::cpu: return "cpu";
+    case DeviceType::integrated_gpu: return "integrated";
+    case DeviceType::discrete_gpu: return "discrete";
+    case DeviceType::virtual_gpu: return "virtual";
+    case DeviceType::other: break;
+  }
+  return "other";
+}
+
+VkInstance make_instance(bool validate) {
+  VkApplicationInfo application{};
+  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  application.pApplicationName = "alcove";
+  application.apiVersion = VK_API_VERSION_1_2;
+  VkInstanceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  info.pApplicationInfo = &application;
+  std::vector<const char*> extensions;
+  if (loader_hides_devices()) {
+    extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+    info.flags = VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR;
+  }
+  if (validate) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+  info.enabledLayerCount = validate ? 1 : 0;
+  info.ppEnabledLayerNames = &kValidationLayer;
+  info.enabledExtensionCount = std::uint32_t(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
+  VkInstance instance = VK_NULL_HANDLE;
+  const VkResult result = vkCreateInstance(&info, nullptr, &instance);
+  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) return VK_NULL_HANDLE;
+  if (result == VK_ERROR_LAYER_NOT_PRESENT)
+    fail(ErrorKind::device, "--validate: the layer {} is not installed (Debian: vulkan-validationlayers)",
+         kValidationLayer);
+  check(result, "vkCreateInstance");
+  return instance;
+}
+
+std::vector<PhysicalDevice> physical_devices(VkInstance instance) {
+  std::uint32_t count = 0;
+  check(vkEnumeratePhysicalDevices(instance, &count, nullptr), "vkEnumeratePhysicalDevices");
+  std::vector<VkPhysicalDevice> handles(count);
+  check(vkEnumeratePhysicalDevices(instance, &count, handles.data()), "vkEnumeratePhysicalDevices");
+  std::vector<PhysicalDevice> devices;
+  for (std::uint32_t i = 0; i < count; i++) devices.push_back(describe(handles[i], i));
+  return devices;
+}
+
+std::vector<DeviceInfo> list_devices() {
+  const auto destroy = [](VkInstance instance) { vkDestroyInstance(instance, nullptr); };
+  const std::unique_ptr<std::remove_pointer_t<VkInstance>, decltype(destroy)> instance(make_instance(false));
+  if (!instance) return {};
+  std::vector<DeviceInfo> infos;
+  for (auto& device : physical_devices(instance.get())) infos.push_back(std::move(device.info));
+  return infos;
+}
+
+std::string loader_version() {
+  std::uint32_t version = VK_API_VERSION_1_0;  // the only version without the call
+  check(vkEnumerateInstanceVersion(&version), "vkEnumerateInstanceVersion");
+  return version_text(version);
+}
+
+std::vector<std::string> driver_variables() {
+  return {"VK_DRIVER_FILES", "VK_ICD_FILENAMES",       "VK_INSTANCE_LAYERS",
+          "LP_NUM_THREADS",  "LP_NATIVE_VECTOR_WIDTH", "CUDA_VISIBLE_DEVICES"};
+}
+
+PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const DeviceOptions& options) {
+  const PhysicalDevice* best = nullptr;
+  for (const auto& device : devices) {
+    if (!device.info.unusable.empty() || !is_named(device.info, options.choice)) continue;
+    if (!best || rank_of(device.info.type) < rank_of(best->info.type)) best = &device;
+  }
+  if (devices.empty())
+    fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
+  if (!best)
+    fail(ErrorKind::device, "no usable Vulkan device matches --device \"{}\"; this machine has {}", options.choice,
+         list_of(devices));
+  if (options.require_gpu && best->info.type == DeviceType::cpu)
+    fail(ErrorKind::device, "a GPU is required, and --device {} finds none; this machine has {}", options.choice,
+         list_of(devices));
+  return *best;
+}
+
+std::optional<QueueFamily> compute_family(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  for (std::uint32_t i = 0; i < count; i++)
+    if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) return QueueFamily{i, families[i].timestampValidBits};
+  return std::nullopt;
+}
+
+bool has_extension(VkPhysicalDevice device, const char* name) {
+  std::uint32_t count = 0;
+  if (vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS) return false;
+  std::vector<VkExtensionProperties> extensions(count);
+  if (vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()) != VK_SUCCESS) return false;
+  return is_among(extensions, name);
+}
+
+namespace {
+
+/// The extension of devices with only a part of Vulkan, which users of such a device must enable. No stable header has
+/// a macro for its name.
 constexpr const char* kPortabilitySubset = "VK_KHR_portability_subset";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -99,8 +350,8 @@ void Device::read_properties() {
   properties2.pNext = &properties12;
   vkGetPhysicalDeviceProperties2(physical_, &properties2);
   const VkPhysicalDeviceProperties& properties = properties2.properties;
-  // lavapipe keeps NaN and infinity in any case, as the tests of damaged frames show. Told to, it leaves out other
-  // optimizations too, and its results differ in their last bits from those without.
+  // lavapipe keeps NaN and infinity in any case, as the tests of damaged frames show. In that mode it also drops other
+  // optimizations, and its results differ in their last bits.
   const bool is_lavapipe = properties12.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
   preserves_nan_ = properties12.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE && !is_lavapipe;
   nanoseconds_per_tick_ = properties.limits.timestampPeriod;
@@ -161,7 +412,7 @@ void Device::save_pipeline_cache() noexcept {
     if (vkGetPipelineCacheData(device_, pipeline_cache_, &bytes, data.data()) != VK_SUCCESS) return;
     write_cache(path, std::span(data).first(bytes));
   } catch (const std::exception&) {
-    // This runs in a destructor, perhaps because memory ran out. Without the cache the next start takes longer.
+    // This runs in a destructor, perhaps because memory ran out. Without the cache, only the next start takes longer.
   }
 }
 
@@ -180,8 +431,8 @@ const Kernel& Device::kernel(const std::string& stem, const std::vector<std::uin
 }
 
 Memory Device::allocate(VkDeviceSize bytes, std::uint32_t type) {
-  // Small buffers do not share allocations: a frame has some 40, and drivers allow 4096 at least, so only some hundred
-  // frames at a time get here.
+  // Small buffers do not share allocations: a frame has some 40, and drivers allow at least 4096, so only some hundred
+  // frames at a time reach that limit.
   if (++allocations_ > most_allocations_) {
     allocations_--;
     throw OutOfMemory(ErrorKind::device,
@@ -214,7 +465,7 @@ void Device::submit(std::span<const VkCommandBuffer> submissions, std::span<cons
     info.pCommandBuffers = &submissions[i];
     const std::lock_guard lock(mutex_);
     const VkResult result = vkQueueSubmit(queue_, 1, &info, fences[i]);
-    // Whoever recorded them is about to reuse or free what the earlier ones still work on.
+    // The caller is about to reuse or free the buffers that earlier submissions still work on.
     if (result != VK_SUCCESS && i > 0) vkQueueWaitIdle(queue_);
     check(result, "vkQueueSubmit");
   }

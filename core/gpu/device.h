@@ -1,24 +1,67 @@
-// A Vulkan device in use: its one compute queue, its memory, its kernels.
+// Vulkan devices: which there are, the choice of one, and that one in use with its queue, its memory and its kernels.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <vulkan/vulkan.h>
+#include <vulkan/vulkan_core.h>
 
 #include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/gpu/check.h"
+#include "core/base/error.h"
 #include "core/gpu/device_info.h"
 #include "core/gpu/pipeline_cache.h"
 
 namespace alcove::gpu {
+
+/// The device is lost with everything on it; another may be made in its place.
+class DeviceLost : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Too little memory is left on the device or the host, or the driver allows no further allocation. Fewer frames at a
+/// time, or smaller tiles, may fit.
+class OutOfMemory : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Fails with ErrorKind::device and the name of the call, unless `result` is VK_SUCCESS. A lost device throws
+/// DeviceLost, and a lack of memory OutOfMemory.
+void check(VkResult result, const char* call);
+
+struct PhysicalDevice {
+  VkPhysicalDevice handle;
+  DeviceInfo info;
+};
+
+/// A Vulkan instance, with the validation layer if `validate` asks for it; null if the loader finds no driver at all.
+VkInstance make_instance(bool validate);
+
+/// The devices of an instance, also those that Alcove cannot use.
+std::vector<PhysicalDevice> physical_devices(VkInstance instance);
+
+/// The device that the options ask for; `auto` prefers discrete GPUs, and takes a CPU last. Fails with
+/// ErrorKind::device if none fits, naming those of the machine.
+PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const DeviceOptions& options);
+
+struct QueueFamily {
+  std::uint32_t index;
+  std::uint32_t timestamp_bits;  // 0: no timestamps
+};
+/// The first queue family that computes; nullopt if none does.
+std::optional<QueueFamily> compute_family(VkPhysicalDevice device);
+
+bool has_extension(VkPhysicalDevice device, const char* name);
 
 class Device;
 class Kernel;
@@ -26,7 +69,7 @@ class Kernel;
 /// A kernel's stem, and its specialization constants (ids 0, 1, 2 ...).
 using KernelName = std::pair<std::string, std::vector<std::uint32_t>>;
 
-/// Owns one Vulkan handle that a device (or instance) destroys; moves, never copies.
+/// An owner of one Vulkan handle that a device (or instance) destroys. Moves, never copies.
 template <class Owner, class T, void (*destroy)(Owner, T, const VkAllocationCallbacks*)>
 class Handle {
  public:
@@ -51,14 +94,14 @@ template <class T, void (*destroy)(VkDevice, T, const VkAllocationCallbacks*)>
 using DeviceHandle = Handle<VkDevice, T, destroy>;
 
 void free_memory(Device* device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks);
-/// Device memory that counts among the allocations which the driver allows.
+/// Device memory; it counts among the allocations that the driver allows.
 using Memory = Handle<Device*, VkDeviceMemory, free_memory>;
 
-/// A logical device with one compute queue. Not movable: everything made on it refers to it. Several threads may use
-/// it, each with its own recorder.
+/// A logical device with one compute queue. Not movable, since everything made on it refers to it. Several threads may
+/// use it, each with its own recorder.
 class Device {
  public:
-  /// Fails with ErrorKind::device when no device fits, naming those that there are.
+  /// Fails with ErrorKind::device if no device fits, naming those of the machine.
   explicit Device(const DeviceOptions& options);
   ~Device();
   Device(const Device&) = delete;
@@ -66,27 +109,29 @@ class Device {
 
   const DeviceInfo& info() const { return info_; }
   const DeviceOptions& options() const { return options_; }
-  /// Messages of the validation layer so far.
+  /// The number of messages of the validation layer so far.
   int validation_messages() const { return validation_messages_; }
   double nanoseconds_per_tick() const { return nanoseconds_per_tick_; }
   bool has_timestamps() const { return timestamp_bits_ != 0; }
   std::uint64_t timestamp_mask() const { return timestamp_bits_ >= 64 ? ~0ull : (1ull << timestamp_bits_) - 1; }
-  /// Whether kernels must be told, and can be, that NaN, infinity and the sign of zero matter: see with_preserved_nan.
+  /// Whether kernels need, and the device has, a mode in which NaN, infinity and the sign of zero matter: see
+  /// with_preserved_nan().
   bool preserves_nan() const { return preserves_nan_; }
-  /// How long a submission may take; infinite on a CPU, which drives no display, unless the options say otherwise.
+  /// The longest time of a submission, in ms; infinite on a CPU, which drives no display, unless the options say
+  /// otherwise.
   double submission_ms() const;
 
   /// The kernel of that stem, compiled on first use for these specialization constants (ids 0, 1, 2 ...). Threads that
-  /// ask for one that is being compiled wait for it, and others do not.
+  /// ask for a kernel in the making wait for it; others do not wait.
   const Kernel& kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization);
 
-  /// Allocates so many bytes of memory of that type; gives null when too little is left. Fails with OutOfMemory when
-  /// the driver allows no further allocation, however small.
+  /// Allocates so many bytes of memory of that type; gives null if too little is left. Fails with OutOfMemory if the
+  /// driver allows no further allocation, however small.
   Memory allocate(VkDeviceSize bytes, std::uint32_t type);
 
   VkDevice handle() const { return device_; }
-  /// Hands submissions to the queue, one after the other; as many fences tell when each is done. Where this fails, none
-  /// of them is under way any more.
+  /// Hands submissions to the queue, one after the other; one fence per submission signals its end. If it fails, no
+  /// submission is under way any more.
   void submit(std::span<const VkCommandBuffer> submissions, std::span<const VkFence> fences);
   std::uint32_t queue_family() const { return queue_family_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }

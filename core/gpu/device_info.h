@@ -1,4 +1,5 @@
-// What is known of a device before it is used, and how one is asked for. This header needs no Vulkan.
+// Facts about a device before it is used, the options that choose one, and the times of passes. This header needs no
+// Vulkan.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,28 +12,28 @@ namespace alcove::gpu {
 
 enum class DeviceType { cpu, integrated_gpu, discrete_gpu, virtual_gpu, other };
 
-/// One Vulkan device of this machine, as `alcove devices` lists it.
+/// A Vulkan device of this machine, as `alcove devices` lists it.
 struct DeviceInfo {
   std::uint32_t index;
   std::string name, uuid, driver, api_version;
   DeviceType type;
   std::uint64_t memory_bytes;  // of all device-local heaps
-  std::uint64_t free_bytes;    // what is free of the largest of them; all of it where the driver does not tell
+  std::uint64_t free_bytes;    // free bytes of the largest heap; all its bytes if the driver does not tell
   std::uint64_t buffer_bytes;  // the largest storage buffer
-  std::string unusable;        // why Alcove cannot compute on it; empty: it can
+  std::string unusable;        // the reason why Alcove cannot compute on it; empty if it can
 };
 const char* name_of(DeviceType type);
 
-/// All devices that the loader finds; empty when there is none. Fails only when the loader itself does.
+/// The devices that the loader finds; empty if there are none. Fails only if the loader itself does.
 std::vector<DeviceInfo> list_devices();
 
 /// The version of the Vulkan loader, such as 1.3.239.
 std::string loader_version();
-/// The variables of the environment by which the loader and drivers choose devices and threads.
+/// The environment variables by which the loader and drivers choose devices and threads.
 std::vector<std::string> driver_variables();
 
-/// How long one submission may keep the device from others. A display that shares it stutters from some 0.1 s on, and
-/// systems reset a device that does not answer for 2 s (Windows' default).
+/// The longest time in ms that a submission may keep the device from others. A display on the same device stutters from
+/// some 0.1 s on, and systems reset a device that does not answer for 2 s (Windows' default).
 constexpr double kSubmissionMs = 250;
 
 struct DeviceOptions {
@@ -40,12 +41,19 @@ struct DeviceOptions {
   bool require_gpu = false;     // a CPU device is an error
   bool validate = false;        // load the validation layer; its messages are counted and printed to stderr
   bool pipeline_cache = true;   // keep compiled pipelines in the XDG cache folder
-  // false: always copy through staging buffers, as on a device whose memory the host cannot map
+  // false: always copy through staging buffers, as with a device whose memory the host cannot map
   bool map_memory = true;
-  // For tests, a multiple of 256. So many bytes lie before and behind every buffer and are NaN, as its own bytes are
-  // until they are written. A run that writes there fails.
+  // Guards for tests, a multiple of 256: so many bytes before and behind every buffer are NaN, and so are its own bytes
+  // until they are written. A run that writes into a guard fails.
   std::size_t guard_bytes = 0;
-  double submission_ms = kSubmissionMs;  // see there; a CPU device has no limit unless this is changed
+  double submission_ms = kSubmissionMs;  // see kSubmissionMs; a CPU device has no limit unless this is changed
+};
+
+/// The time of one pass on the device, and the least bytes that it must move: each bound buffer once.
+struct PassTime {
+  std::string name;
+  double ms = 0;
+  std::uint64_t bytes_read = 0, bytes_written = 0;
 };
 
 }  // namespace alcove::gpu

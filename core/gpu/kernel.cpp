@@ -1,10 +1,156 @@
-// Pipeline creation.
+// Reads and edits SPIR-V, and creates pipelines from it. Numbers and layout: the SPIR-V specification, section 2.3.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/gpu/kernel.h"
+
+#include <spirv/unified1/spirv.hpp>
+
+#include <algorithm>
+#include <map>
+#include <string_view>
 
 #include "core/base/error.h"
 
 namespace alcove::gpu {
+
+namespace {
+
+/// The index of a module's first instruction.
+std::size_t first_instruction(std::span<const std::uint32_t> code) {
+  constexpr std::size_t kHeaderWords = 5;
+  if (code.size() < kHeaderWords || code[0] != spv::MagicNumber)
+    fail(ErrorKind::device, "a kernel's code is no SPIR-V");
+  return kHeaderWords;
+}
+
+/// The length of an instruction in words.
+std::size_t words_at(std::span<const std::uint32_t> code, std::size_t at) {
+  const std::size_t count = code[at] >> spv::WordCountShift;
+  if (count == 0 || at + count > code.size()) fail(ErrorKind::device, "a kernel's SPIR-V is cut short");
+  return count;
+}
+
+/// The parts of a SPIR-V module that `reflect` needs, by result id.
+struct Module {
+  std::map<std::uint32_t, std::string> names;
+  std::map<std::uint32_t, std::uint32_t> binding, set;
+  std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> member_offsets;
+  std::map<std::uint32_t, std::uint32_t> array_stride, constants;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> types;  // opcode, then operands
+  std::map<std::uint32_t, std::uint32_t> block_of;            // variable -> struct type
+  std::set<std::uint32_t> not_writable, not_readable;         // struct types with such a member, and variables
+  std::uint32_t push_constant_type = 0;
+
+  /// The bytes of a type in scalar layout.
+  std::uint32_t size_of(std::uint32_t type) const {
+    const auto& words = types.at(type);
+    switch (words[0]) {
+      case spv::OpTypeInt:
+      case spv::OpTypeFloat: return words[1] / 8;
+      case spv::OpTypeVector: return size_of(words[1]) * words[2];
+      case spv::OpTypeArray: return array_stride.at(type) * constants.at(words[2]);
+      case spv::OpTypeStruct: {
+        std::uint32_t size = 0;
+        for (std::size_t member = 1; member < words.size(); member++)
+          size = std::max(size, member_offsets.at(type).at(std::uint32_t(member - 1)) + size_of(words[member]));
+        return size;
+      }
+      default:
+        fail(ErrorKind::device, "a kernel's parameters hold a type that reflection does not know (opcode {})",
+             words[0]);
+    }
+  }
+};
+
+void read_decoration(Module& module, Reflection& reflection, std::span<const std::uint32_t> words) {
+  if (words[2] == spv::DecorationNonWritable) module.not_writable.insert(words[1]);
+  if (words[2] == spv::DecorationNonReadable) module.not_readable.insert(words[1]);
+  if (words.size() < 4) return;
+  if (words[2] == spv::DecorationBinding) module.binding[words[1]] = words[3];
+  if (words[2] == spv::DecorationDescriptorSet) module.set[words[1]] = words[3];
+  if (words[2] == spv::DecorationArrayStride) module.array_stride[words[1]] = words[3];
+  if (words[2] == spv::DecorationSpecId) reflection.constant_ids.insert(words[3]);
+}
+
+std::string name_of(std::span<const std::uint32_t> words) {
+  const std::string_view text(reinterpret_cast<const char*>(words.data() + 2), 4 * (words.size() - 2));
+  return std::string(text.substr(0, text.find('\0')));
+}
+
+void read_variable(Module& module, std::span<const std::uint32_t> words) {
+  if (words[3] == spv::StorageClassPushConstant) module.push_constant_type = module.types.at(words[1])[2];
+  if (words[3] == spv::StorageClassStorageBuffer) module.block_of[words[2]] = module.types.at(words[1])[2];
+}
+
+void read_instruction(Module& module, Reflection& reflection, std::span<const std::uint32_t> words) {
+  const auto opcode = words[0] & spv::OpCodeMask;
+  switch (opcode) {
+    case spv::OpName: module.names[words[1]] = name_of(words); break;
+    case spv::OpDecorate: read_decoration(module, reflection, words); break;
+    case spv::OpMemberDecorate:
+      if (words[3] == spv::DecorationOffset) module.member_offsets[words[1]][words[2]] = words[4];
+      if (words[3] == spv::DecorationNonWritable) module.not_writable.insert(words[1]);
+      if (words[3] == spv::DecorationNonReadable) module.not_readable.insert(words[1]);
+      break;
+    case spv::OpExecutionMode:
+      if (words[2] == spv::ExecutionModeLocalSize) std::copy_n(words.begin() + 3, 3, reflection.group);
+      break;
+    case spv::OpConstant: module.constants[words[2]] = words[3]; break;
+    case spv::OpVariable: read_variable(module, words); break;
+    case spv::OpTypeInt:
+    case spv::OpTypeFloat:
+    case spv::OpTypeVector:
+    case spv::OpTypeArray:
+    case spv::OpTypeStruct:
+    case spv::OpTypePointer: {
+      auto& type = module.types[words[1]];
+      type.push_back(opcode);
+      type.insert(type.end(), words.begin() + 2, words.end());
+      break;
+    }
+    default: break;
+  }
+}
+
+/// The first word of an instruction.
+std::uint32_t opening(spv::Op opcode, std::uint32_t words) {
+  return words << spv::WordCountShift | std::uint32_t(opcode);
+}
+
+}  // namespace
+
+Reflection reflect(std::span<const std::uint32_t> code) {
+  Module module;
+  Reflection reflection;
+  for (std::size_t at = first_instruction(code); at < code.size(); at += words_at(code, at))
+    read_instruction(module, reflection, code.subspan(at, words_at(code, at)));
+  for (const auto& [id, binding] : module.binding) {
+    if (module.set[id] != 0) fail(ErrorKind::device, "a kernel binds outside descriptor set 0");
+    const auto type = module.block_of[id];
+    const bool is_read = !module.not_readable.contains(id) && !module.not_readable.contains(type);
+    const bool is_written = !module.not_writable.contains(id) && !module.not_writable.contains(type);
+    reflection.blocks.push_back({module.names[type], binding, is_read, is_written});
+  }
+  if (module.push_constant_type) reflection.parameter_bytes = module.size_of(module.push_constant_type);
+  return reflection;
+}
+
+std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> code) {
+  const std::uint32_t capability[] = {opening(spv::OpCapability, 2), spv::CapabilitySignedZeroInfNanPreserve};
+  std::vector<std::uint32_t> result(code.begin(), code.end());
+  // Capabilities come first in a module, and execution modes directly behind the entry points.
+  std::size_t at = first_instruction(code);
+  result.insert(result.begin() + std::ptrdiff_t(at), std::begin(capability), std::end(capability));
+  for (at += std::size(capability); at < result.size(); at += words_at(result, at)) {
+    if ((result[at] & spv::OpCodeMask) != spv::OpEntryPoint) continue;
+    const std::uint32_t float_bits = 32;
+    const std::uint32_t mode[] = {opening(spv::OpExecutionMode, 4), result[at + 2],
+                                  spv::ExecutionModeSignedZeroInfNanPreserve, float_bits};
+    const std::size_t behind = at + words_at(result, at);
+    result.insert(result.begin() + std::ptrdiff_t(behind), std::begin(mode), std::end(mode));
+    return result;
+  }
+  fail(ErrorKind::device, "a kernel's SPIR-V has no entry point");
+}
 
 Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization)
     : stem_(stem) {

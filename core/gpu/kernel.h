@@ -3,22 +3,45 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/gpu/device.h"
-#include "core/gpu/spirv.h"
 
 namespace alcove::gpu {
 
-/// The SPIR-V of kernels/STEM.comp, embedded at build time; empty when there is none of that stem.
+/// A storage buffer of a kernel, in descriptor set 0.
+struct Block {
+  std::string name;  // in GLSL
+  std::uint32_t binding;
+  bool is_read, is_written;  // not declared writeonly, not declared readonly
+};
+
+/// The declarations of a kernel, read from its SPIR-V.
+struct Reflection {
+  std::vector<Block> blocks;
+  std::uint32_t parameter_bytes = 0;     // of the push constant block
+  std::uint32_t group[3] = {1, 1, 1};    // invocations of a workgroup
+  std::set<std::uint32_t> constant_ids;  // specialization constants
+};
+/// Reads the declarations. Fails with ErrorKind::device on code that is not SPIR-V of the kind that our kernels compile
+/// to.
+Reflection reflect(std::span<const std::uint32_t> code);
+
+/// The code with the mode SignedZeroInfNanPreserve for 32-bit floats. Without it, a driver may assume that no value is
+/// NaN or infinite, but kernels compare with infinity (kSkyDepth squared, an endless thickness). The code must be
+/// SPIR-V 1.4 or later with one entry point, and the device must have shaderSignedZeroInfNanPreserveFloat32.
+std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> code);
+
+/// The SPIR-V of kernels/STEM.comp, embedded at build time; empty if no kernel has that stem.
 std::span<const std::uint32_t> kernel_code(std::string_view stem);
 
 class Kernel {
  public:
-  /// Fails with ErrorKind::device when there is no such kernel, or its specialization constants are not 0 .. n-1.
+  /// Fails with ErrorKind::device if there is no such kernel, or if its specialization constants are not 0 .. n-1.
   Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization);
 
   const std::string& stem() const { return stem_; }

@@ -34,7 +34,7 @@ T beginning_of(std::span<const char> bytes) {
   return value;
 }
 
-/// Whether data begin with the header that Vulkan demands, and it names the owner.
+/// Whether data begin with the header that Vulkan demands, and that header names the owner.
 bool is_owned(std::span<const char> data, const CacheOwner& owner) {
   if (data.size() < sizeof(VkPipelineCacheHeaderVersionOne)) return false;
   const auto header = beginning_of<VkPipelineCacheHeaderVersionOne>(data);
@@ -88,7 +88,7 @@ void write_cache(const std::string& path, std::span<const char> data) noexcept {
     fs::create_directories(fs::path(path).parent_path());
     write_whole(path, packed_cache(data));
   } catch (const std::exception&) {
-    // See the header.
+    // write_cache() ignores failures: see the header.
   }
 }
 

@@ -11,20 +11,20 @@
 namespace alcove::gpu {
 namespace {
 
-/// The most dispatches of one submission. A frame of an exact search with 64 slices and eight radii has 4096. Whoever
-/// waits is told how far they are by submissions, so that long frames need some, and a submission costs little.
+/// The most dispatches of one submission. A frame of an exact search with 64 slices and eight radii has 4096. Progress
+/// is reported per submission, so long frames need several; a submission costs little.
 constexpr std::uint32_t kMostDispatches = 16;
 
-/// The most workgroups of a slice of a pass that has not been measured. They are half a million pixels: with 8192
-/// samples per pixel (64 slices with 64 steps to each side) they take an integrated GPU some 0.4 s, at the 10^10
+/// The most workgroups of a slice of a pass that has not been measured. They are half a million pixels. With 8192
+/// samples per pixel (64 slices with 64 steps to each side), an integrated GPU takes some 0.4 s for them, at the 10^10
 /// samples per second that such GPUs reach.
 constexpr double kUnmeasuredGroups = 8192;
 
-/// A pass is never cut into more slices than this: each costs a barrier.
+/// The most slices of a pass: each slice costs a barrier.
 constexpr double kMostSlices = 256;
 
-/// How many times more slices a list gets than its time asks for. A list that is a quarter full has all its work in the
-/// first quarter of its workgroups.
+/// The factor on the slices of a list. A list that is a quarter full has all its work in the first quarter of its
+/// workgroups.
 constexpr double kListSlices = 4;
 
 /// The workgroups of a pass, and of each of its slices, in x and y.
@@ -34,7 +34,7 @@ struct Cut {
   double slices() const { return std::ceil(double(x) / slice_x) * std::ceil(double(y) / slice_y); }
 };
 
-/// Cuts a pass into about so many slices, of whole rows where there are enough of them.
+/// Cuts a pass into about so many slices, of whole rows if there are enough of them.
 Cut cut_into(double slices, std::uint32_t x, std::uint32_t y) {
   const double wanted = std::clamp(std::ceil(slices), 1.0, kMostSlices);
   const double slices_per_row = std::max(1.0, std::min(std::ceil(wanted / y), double(x)));
@@ -42,7 +42,7 @@ Cut cut_into(double slices, std::uint32_t x, std::uint32_t y) {
   return {x, y, std::uint32_t(std::ceil(x / slices_per_row)), std::uint32_t(rows)};
 }
 
-/// The buffers for the kernel's blocks, in their order; `absent` for those that the host has none for.
+/// The buffers for the kernel's blocks, in their order; `absent` stands in for null bindings.
 std::vector<const Buffer*> buffers_of(const Kernel& kernel, std::span<const Binding> bindings, const Buffer& absent) {
   const auto& blocks = kernel.reflection().blocks;
   std::vector<const Buffer*> buffers;
@@ -53,7 +53,7 @@ std::vector<const Buffer*> buffers_of(const Kernel& kernel, std::span<const Bind
   if (buffers.size() != blocks.size() || buffers.size() != bindings.size()) {
     const auto names = [](const auto& list, auto name) {
       std::set<std::string_view> sorted;
-      for (const auto& one : list) sorted.insert(one.*name);
+      for (const auto& entry : list) sorted.insert(entry.*name);
       return fmt::format("{}", fmt::join(sorted, ", "));
     };
     fail(ErrorKind::device, "kernel {} has the blocks {}, and the host binds {}", kernel.stem(),
@@ -72,7 +72,7 @@ PassTime pass_of(const Kernel& kernel, std::span<const Buffer* const> buffers) {
   return pass;
 }
 
-/// A measure of a pass's work that is known before it runs and grows with the frame.
+/// A measure of a pass's work that is known before it runs, and grows with the frame.
 double work_of(const PassTime& pass) {
   return double(std::max<std::uint64_t>(pass.bytes_read + pass.bytes_written, 1));
 }
@@ -115,7 +115,7 @@ Buffer& Recorder::buffer(std::string_view name, std::size_t bytes, Use use) {
   auto found = buffers_.find(name);
   if (found != buffers_.end()) {
     auto& [pooled, recording] = found->second;
-    // Nothing that waits to be run has it at its present size, and memory is not short.
+    // No recorded command has it at its present size, and memory is not short.
     const bool may_resize = recording != recordings_ && !is_short_;
     if (pooled.use() == use && (pooled.bytes() == bytes || (may_resize && pooled.suits(bytes)))) {
       pooled.resize(bytes);
@@ -174,9 +174,9 @@ void Recorder::next_submission() {
 void Recorder::end_submission() { check(vkEndCommandBuffer(commands()), "vkEndCommandBuffer"); }
 
 void Recorder::make_room_for(double ms) {
-  const Submission& now = submissions_[used_ - 1];
-  const bool is_full = now.timed.size() == kMostDispatches;
-  const bool is_too_long = !now.timed.empty() && now.ms + ms > device_->submission_ms();
+  const Submission& current = submissions_[used_ - 1];
+  const bool is_full = current.timed.size() == kMostDispatches;
+  const bool is_too_long = !current.timed.empty() && current.ms + ms > device_->submission_ms();
   if (is_full || is_too_long) {
     end_submission();
     next_submission();
@@ -196,8 +196,8 @@ void Recorder::barrier() {
   touched_.clear();
 }
 
-/// Fills and copies of buffers that nothing has touched since the last barrier need none, so all clears before a pass
-/// share one with it, and so do all downloads behind the last one.
+/// Waits for earlier commands on a buffer. Buffers that nothing has touched since the last barrier need no barrier, so
+/// all clears before a pass share one with it, and so do all downloads behind the last pass.
 void Recorder::wait_for(VkBuffer buffer) {
   if (std::ranges::find(touched_, buffer) != touched_.end()) barrier();
   touched_.push_back(buffer);
@@ -239,14 +239,14 @@ void Recorder::download(const Buffer& buffer) {
   vkCmdCopyBuffer(commands(), buffer.handle(), buffer.staging(), 1, &region);
 }
 
-/// The longest that the pass has taken, scaled to its present work; nullopt when it was never measured.
+/// The longest time of the pass so far, scaled to its present work; nullopt if it was never measured.
 std::optional<double> Recorder::measured_ms(const RecordedPass& pass) const {
-  const auto known = ms_per_byte_.find(pass.kernel);
-  if (known == ms_per_byte_.end()) return std::nullopt;
-  return known->second * work_of(pass.time);
+  const auto measured = ms_per_byte_.find(pass.kernel);
+  if (measured == ms_per_byte_.end()) return std::nullopt;
+  return measured->second * work_of(pass.time);
 }
 
-/// The number of slices that a pass of so many workgroups needs for each slice to be short.
+/// The number of slices that make each slice of a pass short.
 double Recorder::slices_of(std::optional<double> ms, double groups, bool is_list) const {
   const double most_ms = device_->submission_ms();
   if (std::isinf(most_ms)) return 1;
@@ -276,7 +276,7 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
   const std::uint32_t y = extent.group_count ? extent.y : groups(extent.y, group[1]);
   const std::optional<double> ms = measured_ms(recorded_.back());
   const double slices = slices_of(ms, double(x) * y, extent.group_count);
-  // As much as any submission may take, so that the pass gets one of its own.
+  // An unmeasured pass counts as a full submission, so that it gets one of its own.
   const double unmeasured_ms = device_->submission_ms();
   if (extent.group_count && (slices <= 1 || x == 0)) {
     make_room_for(ms.value_or(unmeasured_ms));
@@ -334,15 +334,15 @@ void Recorder::record_slice(const Kernel& kernel, std::span<const std::byte> par
   submission.timed.push_back(recorded_.size() - 1);
 }
 
-/// Waits for the submissions one by one, in the order in which they end.
+/// Waits for the submissions one by one, in the order of their ends.
 void Recorder::wait(const std::function<void(double)>& watch) const {
-  std::size_t all = 0, done = 0;
-  for (std::size_t i = 0; i < used_; i++) all += submissions_[i].timed.size();
+  std::size_t total = 0, done = 0;
+  for (std::size_t i = 0; i < used_; i++) total += submissions_[i].timed.size();
   for (std::size_t i = 0; i < used_; i++) {
     const VkFence fence = submissions_[i].done;
     check(vkWaitForFences(device_->handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
     done += submissions_[i].timed.size();
-    if (watch && all > 0) watch(double(done) / double(all));
+    if (watch && total > 0) watch(double(done) / double(total));
   }
 }
 
@@ -384,7 +384,7 @@ void Recorder::abandon() {
   replaced_.clear();
 }
 
-/// A pass takes what its slices take together: what other recorders run between them is not its own.
+/// Reads the time of each pass, the sum over its slices. Work of other recorders between slices does not count.
 void Recorder::read_times() {
   for (std::size_t i = 0; i < used_; i++) {
     const auto& [commands, queries, fence, timed, ms] = submissions_[i];
@@ -400,7 +400,8 @@ void Recorder::read_times() {
   }
 }
 
-/// Without timestamps nothing is learned, and every pass stays a submission of its own.
+/// Keeps the largest measured time per byte. Without timestamps it keeps none, and every pass stays a submission of its
+/// own.
 void Recorder::learn() {
   if (!device_->has_timestamps()) return;
   for (const auto& [time, kernel] : recorded_) {

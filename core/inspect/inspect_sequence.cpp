@@ -43,27 +43,27 @@ std::string plane_text(const std::optional<double>& distance) {
 
 /// What the headers of a frame say.
 Values values_of(const FrameSource& source, bool has_camera) {
-  Values values{{"data window", to_string(source.file_data)},
-                {"display window", to_string(source.display)},
-                {"pixel aspect", fmt::format("{:.4g}", source.pixel_aspect)},
+  Values values{{"data window", to_string(source.reading.data)},
+                {"display window", to_string(source.reading.display)},
+                {"pixel aspect", fmt::format("{:.4g}", source.reading.pixel_aspect)},
                 {"channels", channels_of(source)},
-                {"depth", names_of(source[RawPlane::depth])},
-                {"normals", names_of(source[RawPlane::normal])},
-                {"source", source.rules->name}};
+                {"depth", names_of(source.channels[RawPlane::depth])},
+                {"normals", names_of(source.channels[RawPlane::normal])},
+                {"source", source.program.rules->name}};
   if (!has_camera) return values;
   values["camera by"] = source.camera_from.empty() ? "options" : source.camera_from;
-  values["near plane"] = plane_text(source.camera.near);
-  values["far plane"] = plane_text(source.camera.far);
+  values["near plane"] = plane_text(source.reading.camera.near);
+  values["far plane"] = plane_text(source.reading.camera.far);
   return values;
 }
 
 /// How a frame would be read by itself.
 std::string reading_of(const FrameSource& source) {
-  std::string text = word_of(source.depth_kind) + " depth";
-  if (source[RawPlane::normal].empty()) return text;
-  text += fmt::format(", {} normals, {}", word_of(source.normal_space),
-                      encoding_name(source.normal_encoding, source.normal_unorm));
-  if (to_string(source.flip_normal) != "none") text += ", flips " + to_string(source.flip_normal);
+  std::string text = word_of(source.reading.depth_kind) + " depth";
+  if (source.channels[RawPlane::normal].empty()) return text;
+  text += fmt::format(", {} normals, {}", word_of(source.reading.normal_space),
+                      encoding_name(source.reading.normal_encoding, source.reading.normal_unorm));
+  if (to_string(source.reading.flip_normal) != "none") text += ", flips " + to_string(source.reading.flip_normal);
   return text;
 }
 
@@ -127,7 +127,7 @@ class SequenceInspector {
   FrameSource open(int frame) const {
     const InputSettings settings = names_.of(frame);
     FrameSource source = find_frame(has_camera_ ? settings : with_some_camera(settings), false, frame);
-    source.camera_is_assumed = !has_camera_;
+    source.open.camera = !has_camera_;
     return source;
   }
 
@@ -135,7 +135,7 @@ class SequenceInspector {
     try {
       const FrameSource source = open(frame);
       for (const auto& [what, value] : values_of(source, has_camera_)) take(what, value, frame);
-      if (has_camera_) follow(source.camera, frame);
+      if (has_camera_) follow(source.reading.camera, frame);
     } catch (const Error& error) {
       refuse(error, frame);
     }
@@ -186,11 +186,11 @@ class SequenceInspector {
   void look_at_pixels(int frame) {
     try {
       FrameSource source = open(frame);
-      require_host_room(source.depth_path(), source.data);
-      const RawFrame raw = read_raw_frame(source);
+      require_host_room(source.depth_path(), source.reading.data);
+      const RawFrame raw = read_raw_frame(source, source.reading.data);
       const InputSettings settings = names_.of(frame);
-      settle(source, has_camera_ ? settings : with_some_camera(settings), raw.depth, raw.normal);
-      if (has_camera_ && source.has_evidence) take("reading", reading_of(source), frame);
+      settle(source, has_camera_ ? settings : with_some_camera(settings), {source.reading.data, raw.depth, raw.normal});
+      if (has_camera_ && source.evidence.tells) take("reading", reading_of(source), frame);
       for (const auto& note : source.suspicious) suspicious_[facts_of(note.code).meaning].insert(frame);
       shown_.depth.push_back({frame, distances_of(source, raw.depth)});
     } catch (const Error& error) {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "core/base/json_text.h"
 #include "core/base/option_words.h"
+#include "core/base/text.h"
 #include "core/formats/sequence.h"
 #include "core/inspect/inspect.h"
 

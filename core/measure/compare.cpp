@@ -8,29 +8,29 @@
 #include <functional>
 #include <utility>
 
+#include "core/base/image.h"
 #include "core/base/text.h"
-#include "core/base/windows.h"
 #include "core/formats/picture.h"
 #include "core/formats/sequence.h"
 #include "core/frame/gbuffer.h"
-#include "core/measure/flip.h"
+#include "core/measure/metrics.h"
 #include "core/measure/report.h"
 
 namespace alcove {
 namespace {
 
-/// Whether there is a file of that name that can be reached.
+/// Whether a file of that name exists and can be reached.
 bool is_there(const std::string& path) {
   std::error_code error;
   return std::filesystem::exists(path, error);
 }
 
-/// Gives the path's pattern; a file of that very name is none.
+/// Gives the path's pattern; none if a file of that very name exists.
 std::optional<FramePattern> pattern_of(const std::string& path) {
   return is_there(path) ? std::nullopt : frame_pattern(path);
 }
 
-/// Pointers to all files of the settings, each of which may be empty.
+/// Pointers to all file names of the settings, which may be empty.
 template <class Settings>
 auto files_of(Settings& settings) {
   return std::array{&settings.result, &settings.reference, &settings.reference_b,
@@ -47,7 +47,7 @@ CompareSettings settings_of_frame(CompareSettings settings, int frame) {
   return settings;
 }
 
-/// Gives the frames of the comparison, all of whose files are there.
+/// Gives the frames of the comparison. Fails if a file of one is missing.
 std::vector<int> frames_of(const CompareSettings& settings) {
   const auto result = pattern_of(settings.result);
   if (!result)
@@ -80,8 +80,8 @@ std::string message_name(const CompareSettings& settings) {
 /// The pixels that all files of a comparison have.
 class CommonWindow {
  public:
-  /// Leaves out what this file lacks. Fails where nothing is left, and where nothing tells which pixels of two files
-  /// belong together, since both their windows differ.
+  /// Leaves out pixels that this file lacks. Fails if none is left, and if both windows of two files differ, so that
+  /// nothing tells which of their pixels belong together.
   void take(const std::string& path, const Window& data, const Window& display) {
     if (first_.empty()) {
       first_ = path;
@@ -99,7 +99,7 @@ class CommonWindow {
   }
 
   const Window& data() const { return data_; }
-  /// Whether some file has more than this window.
+  /// Whether some file has pixels outside of this window.
   bool is_part() const { return is_part_; }
 
  private:
@@ -108,20 +108,20 @@ class CommonWindow {
   bool is_part_ = false;
 };
 
-/// What a file holds.
+/// The planes of a file.
 struct FilePlanes {
   Window data;
-  std::vector<float> values;  // empty: there is no such file
+  std::vector<float> values;  // empty: no such file
 
   void cut(const Window& part) {
     if (!values.empty() && data != part) values = cropped(values, data, part);
   }
 };
 
-/// A frame's planes, and what they mean.
+/// The planes of a frame, by their roles.
 struct Planes {
   Window data;
-  bool is_part = false;               // some file has more than this window
+  bool is_part = false;               // some file has pixels outside of this window
   std::vector<std::string> channels;  // names in the result
   Comparable values;
   std::vector<float> depth;  // empty: none
@@ -139,12 +139,12 @@ FilePlanes read_depth(const CompareSettings& settings, CommonWindow& common) {
   input.depth_channel = settings.depth_channel;
   input.sky = settings.sky;
   input.depth_kind = DepthKind::planar;
-  input.fov = 90;  // the search for channels asks for a camera, which depth alone has no use for
+  input.fov = 90;  // the search for channels needs a camera, though depth alone does not use one
   input.normal_space = NormalSpace::view;
   FrameSource source = find_frame(input, false, 0);
-  common.take(settings.depth, source.data, source.display);
-  FilePlanes depth{source.data, std::vector<float>(source.data.pixels())};
-  read_planes(source, {{&source[RawPlane::depth], depth.values.data()}});
+  common.take(settings.depth, source.reading.data, source.reading.display);
+  FilePlanes depth{source.reading.data, std::vector<float>(source.reading.data.pixels())};
+  read_planes(source, source.reading.data, {{&source.channels[RawPlane::depth], depth.values.data()}});
   return depth;
 }
 
@@ -172,7 +172,7 @@ FilePlanes read_mask(const CompareSettings& settings, CommonWindow& common) {
   return read_channels(picture, std::array{mask_channel_of(picture, settings.mask_channel)}, common);
 }
 
-/// Marks the pixels to be compared, by the mask's values and the depth's sky; empty if all are.
+/// Marks the pixels to compare, by the mask's values and the depth's sky; empty: all.
 std::vector<std::uint8_t> mask_of(const CompareSettings& settings, const std::vector<float>& values, Values depth) {
   std::vector<std::uint8_t> mask = surfaces(depth, settings.sky);
   if (values.empty()) return mask;
@@ -246,7 +246,7 @@ std::vector<Color> color_layers(const std::vector<std::string>& names) {
   return colors;
 }
 
-/// FLIP of the colours of every layer, averaged; without colours, of every channel as grey.
+/// The mean FLIP of the colours of every layer; without colours, of every channel as grey.
 double mean_flip(const Planes& planes, const std::vector<float>& reference, bool hdr) {
   double sum = 0;
   std::size_t count = 0;
@@ -271,8 +271,8 @@ double mean_flip(const Planes& planes, const std::vector<float>& reference, bool
 
 double srgb_from_linear(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
 
-/// The first layer's colours where there are any; else the first channel as grey. Scene-linear values are shown as a
-/// display would.
+/// Makes the pictures: the first layer's colours, or without colours the first channel as grey. Scene-linear values are
+/// shown as a display would.
 ComparePictures pictures_of(const Planes& planes, const std::vector<float>& reference, bool hdr) {
   const int width = planes.data.width, height = planes.data.height;
   const auto colors = color_layers(planes.channels);
@@ -294,7 +294,7 @@ ComparePictures pictures_of(const Planes& planes, const std::vector<float>& refe
           error_picture(width, height, mean(planes.values.result), mean(reference))};
 }
 
-/// What only depth can tell: edges and plain surfaces.
+/// Adds the measures that need depth: edges and plain surfaces.
 void measure_by_depth(FrameComparison& c, const Planes& planes, double sky) {
   const auto& values = planes.values;
   const int width = planes.data.width, height = planes.data.height;
@@ -304,11 +304,11 @@ void measure_by_depth(FrameComparison& c, const Planes& planes, double sky) {
                   values.reference, values.reference_b);
 }
 
-/// Pixels that are 0 in one and 1 in the other count as sky from this share of all on, and where they make this share
-/// of the squared error. Of AO that is no sky, next to nothing is exactly 0 in one and exactly 1 in the other.
+/// The share of all pixels from which pixels of 0 and 1 count as sky, and the share of the squared error that they must
+/// make. In AO without sky, next to nothing is exactly 0 in one picture and exactly 1 in the other.
 constexpr double kSkyShare = 0.001, kSkyErrorShare = 0.1;
 
-/// The pixels all of whose values are `low` in one and 1 - `low` in the other.
+/// The pixels whose values are all `low` in the result and all 1 - `low` in the reference.
 std::vector<std::uint8_t> opposite_pixels(const Planes& planes, float low) {
   const auto& values = planes.values;
   const std::size_t pixels = planes.data.pixels();

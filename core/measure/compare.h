@@ -1,4 +1,4 @@
-// Compares pictures and sequences of pictures: what `alcove compare` measures, and what it is written as.
+// Compares pictures and sequences of pictures: the measures of `alcove compare`, its JSON and its page.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,13 +13,13 @@
 
 namespace alcove {
 
-/// Every file may be of any format that open_image() reads, and a pattern of core/formats/sequence.h. A file that is no
-/// pattern serves all frames.
+/// Files and options of a comparison. Every file may have any format that open_image() reads, and may be a pattern of
+/// core/formats/sequence.h. A file without a pattern serves all frames.
 struct CompareSettings {
   std::string result, reference;
   std::string reference_b;  // a second render of the reference with independent noise; empty: none
-  std::string channels;     // see match_channels(); empty: those that both have
-  // Pixels where the mask is above 0 are compared. Without a name, its only channel is taken, or its alpha.
+  std::string channels;     // see match_channels(); empty: those of both
+  // a mask: pixels where it is above 0 are compared. Its channel; empty: its only channel, or its alpha
   std::string mask, mask_channel;
   std::string depth, depth_channel;     // sky is not compared; edges and plain surfaces are found
   double sky = 1e9;                     // depth at or beyond it is sky, as are 0, infinity and NaN; > 0
@@ -35,12 +35,12 @@ struct ComparePictures {
   std::string result, reference, error;
 };
 
-/// Pixels that are exactly 0 in one of the two and 1 in the other, where they make much of the error: sky, which
+/// Pixels that are exactly 0 in one of the two and 1 in the other, if they make much of the error. They are sky, which
 /// renderers' AO passes fill with 0, and others with 1.
 struct SkyDifference {
   std::size_t count = 0;  // pixels
   bool zero_in_result = false;
-  double rmse_without = 0;  // of the others
+  double rmse_without = 0;  // of the other pixels
 };
 
 struct FrameComparison {
@@ -48,15 +48,15 @@ struct FrameComparison {
   std::string result, reference;  // files
   std::vector<std::string> channels;
   int width = 0, height = 0;
-  std::optional<Window> common;                     // what was compared, where the files have different windows
+  std::optional<Window> common;                     // the compared pixels, if the files have different windows
   std::size_t count = 0, excluded = 0, masked = 0;  // pixels; see Comparable
   PlaneErrors errors;
   double psnr = 0;             // infinite for equal pictures
-  std::optional<double> ssim;  // nothing where no compared pixel is 5 pixels from all borders
+  std::optional<double> ssim;  // none if no compared pixel is 5 pixels from all borders
   double flip = 0;
   std::array<BandErrors, 4> bands;
   std::optional<EdgeErrors> edges;  // with depth
-  std::optional<double> grain;      // with depth; nothing where no pixel is plain
+  std::optional<double> grain;      // with depth; none if no pixel is plain
   std::optional<SkyDifference> sky_differs;
   std::optional<ComparePictures> pictures;
 };
@@ -64,25 +64,25 @@ struct FrameComparison {
 struct CompareReport {
   std::string result, reference;  // as given
   bool is_sequence = false;
-  std::vector<FrameComparison> frames;  // one, if it is no sequence
-  std::optional<double> flicker;        // where two frames follow each other
+  std::vector<FrameComparison> frames;  // a single one unless it is a sequence
+  std::optional<double> flicker;        // none unless two frames follow each other
 };
 
-/// How many frames of a sequence keep their pictures: those with the largest rmse.
+/// The most frames of a sequence that keep their pictures: those with the largest rmse.
 inline constexpr std::size_t kMostPicturedFrames = 12;
 
-/// Reads and measures the frames. Fails with ErrorKind::usage on settings that contradict each other, and with
+/// Reads and measures the frames. Fails with ErrorKind::usage on settings that contradict each other. Fails with
 /// ErrorKind::input on missing and unreadable files, on pictures that share no pixel or no channel, on pictures of
-/// different windows whose display windows differ too, and when no pixel is left to compare.
+/// different data windows with different display windows, and if no pixel is left to compare.
 CompareReport compare_pictures(const CompareSettings& settings);
 
 /// The frame with the largest rmse.
 const FrameComparison& worst_frame(const CompareReport& report);
 
-/// What the user should know although it broke no limit; sentences that end without a full stop.
+/// Warnings to the user beside broken limits; sentences that end without a full stop.
 std::vector<std::string> warnings_of(const CompareReport& report, const CompareSettings& settings);
 
-/// Limits, each of which holds for every frame of a sequence.
+/// Limits. Each holds for every frame of a sequence.
 struct CompareLimits {
   std::optional<double> max_rmse, max_p99, min_ssim, max_flip;
   std::optional<double> max_bias;   // of its size
@@ -90,18 +90,18 @@ struct CompareLimits {
 };
 
 struct BrokenLimits {
-  std::vector<std::string> sentences;  // one for each: what was measured, where, and what was allowed
-  // ErrorKind::input where grain has a limit and a frame has no plain pixel: there was nothing to check
+  std::vector<std::string> sentences;  // one per limit: the measure, its frame, and the limit
+  // ErrorKind::input if grain has a limit and a frame has no plain pixel, so that nothing could be checked
   ErrorKind kind = ErrorKind::comparison;
 };
 
-/// Checks each limit on the frame where its measure is worst.
+/// Checks each limit on the frame with the worst value of its measure.
 BrokenLimits broken_limits(const CompareReport& report, const CompareLimits& limits);
 
-/// See docs/compare-and-bench.md for the fields.
+/// The JSON of a comparison; docs/compare-and-bench.md lists the fields.
 std::string compare_json(const CompareReport& report, const std::vector<std::string>& broken);
 
-/// The page of core/measure/report.h.
+/// The page of a comparison, as core/measure/report.h makes it.
 std::string compare_page(const CompareReport& report);
 
 }  // namespace alcove

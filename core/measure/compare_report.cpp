@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/base/json_text.h"
+#include "core/base/text.h"
 #include "core/measure/compare.h"
 #include "core/measure/report.h"
 
@@ -20,13 +20,13 @@ using Json = nlohmann::ordered_json;
 /// JSON has no infinity and no NaN.
 Json number(std::optional<double> value) { return value && std::isfinite(*value) ? Json(*value) : Json(nullptr); }
 
-/// Takes one measure of a frame; NaN if it could not be taken.
+/// A measure of a frame; NaN if it could not be measured.
 struct Measure {
   const char* name;
   double (*of)(const FrameComparison&);
   double (*badness)(double);                       // larger is worse
-  const char* why_not = "";                        // it could not be taken
-  ErrorKind kind_without = ErrorKind::comparison;  // of a limit on what could not be taken
+  const char* why_not = "";                        // the reason if it could not be measured
+  ErrorKind kind_without = ErrorKind::comparison;  // the error if a limit cannot be checked
 };
 
 double as_it_is(double x) { return x; }
@@ -48,7 +48,7 @@ constexpr std::array kMeasures = {
             "--depth shows no 15 x 15 compared pixels of one plane", ErrorKind::input},
 };
 
-/// The frame where a measure is worst; one where it could not be taken is worse than any other.
+/// The frame with the worst value of a measure; a value that could not be measured is the worst.
 const FrameComparison& worst_in(const CompareReport& report, const Measure& measure) {
   return *std::ranges::max_element(report.frames, {}, [&](const auto& frame) {
     const double value = measure.of(frame);
@@ -120,7 +120,7 @@ Json mean_json(const CompareReport& report) {
   return json;
 }
 
-/// The names of both files without their folders; where these are the same, as they were given.
+/// The names of both files without their folders; with them if the names are equal.
 std::pair<std::string, std::string> names_of(const CompareReport& report) {
   const auto file = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
   if (file(report.result) == file(report.reference)) return {report.result, report.reference};

@@ -1,13 +1,11 @@
 // FLIP, term by term: contrast sensitivity, colour distance, edges and points, and the exposures of the HDR variant.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/measure/flip.h"
+#include "core/measure/metrics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
-
-#include "core/measure/metrics.h"
 
 namespace alcove {
 namespace {
@@ -40,13 +38,13 @@ Matrix inverse(const Matrix& m) {
   return result;
 }
 
-/// XYZ of a chromaticity, with Y = 1.
+/// The XYZ of a chromaticity, with Y = 1.
 Triple xyz_of(double x, double y) { return {x / y, 1, (1 - x - y) / y}; }
 
-/// D65, rounded as in the FLIP papers' conversion of sRGB.
+/// The white point D65, rounded as in the FLIP papers' conversion of sRGB.
 const Triple kWhite = xyz_of(0.31271, 0.32902);
 
-/// Converts linear Rec.709 to XYZ. The primaries are as bright as makes their sum white.
+/// Makes the matrix from linear Rec.709 to XYZ. The primaries are scaled so that their sum is white.
 Matrix make_xyz_from_rgb() {
   const std::array<Triple, 3> primaries{xyz_of(0.64, 0.33), xyz_of(0.30, 0.60), xyz_of(0.15, 0.06)};
   Matrix columns{};
@@ -62,7 +60,8 @@ const Matrix kRgbFromXyz = inverse(kXyzFromRgb);
 
 double linear_from_srgb(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
 
-/// FLIP 2020, section 4.1: L*a*b* without its cube root, so that filtering it is linear in light.
+/// The opponent colour of FLIP 2020, section 4.1: L*a*b* without its cube root, so that filtering it is linear in
+/// light.
 Triple opponent_from_rgb(const Triple& rgb) {
   const Triple xyz = kXyzFromRgb * rgb;
   const double x = xyz[0] / kWhite[0], y = xyz[1] / kWhite[1], z = xyz[2] / kWhite[2];
@@ -74,7 +73,7 @@ Triple rgb_from_opponent(const Triple& opponent) {
   return kRgbFromXyz * Triple{kWhite[0] * (y + opponent[1] / 500), kWhite[1] * y, kWhite[2] * (y - opponent[2] / 200)};
 }
 
-/// L*a*b* with the Hunt effect: colour counts less where it is dark.
+/// The L*a*b* colour with the Hunt effect: colour counts less in the dark.
 Triple hunt_lab_from_rgb(const Triple& rgb) {
   const Triple xyz = kXyzFromRgb * rgb;
   const auto f = [](double t) {
@@ -98,7 +97,7 @@ constexpr Sensitivity kAchromatic{1, 0.0047, 0, 1e-5}, kRedGreen{1, 0.0053, 0, 1
     kBlueYellow{34.1, 0.04, 13.5, 0.025};
 constexpr double kWidestSensitivity = 0.04;
 
-/// Both Gaussians are separable; their sum, normalised as a whole, is taken apart for that.
+/// Filters a plane by a sensitivity. Both Gaussians are separable; their normalised sum is not, so it is split.
 Plane filter(int width, int height, const Plane& plane, const Sensitivity& s, double pixels_per_degree) {
   const auto sigma_px = [&](double b) { return std::sqrt(b / 2) / std::numbers::pi * pixels_per_degree; };
   const int radius = int(std::ceil(3 * sigma_px(kWidestSensitivity)));
@@ -108,16 +107,16 @@ Plane filter(int width, int height, const Plane& plane, const Sensitivity& s, do
     return a * std::sqrt(std::numbers::pi / b) * row * row;
   };
   const double w1 = weight(s.a1, s.b1), w2 = weight(s.a2, s.b2);
-  const auto one = gaussian_kernel(sigma_px(s.b1), radius);
-  Plane filtered = convolve(width, height, plane, one, one);
+  const auto first_kernel = gaussian_kernel(sigma_px(s.b1), radius);
+  Plane filtered = convolve(width, height, plane, first_kernel, first_kernel);
   if (s.a2 == 0) return filtered;
-  const auto two = gaussian_kernel(sigma_px(s.b2), radius);
-  const Plane second = convolve(width, height, plane, two, two);
+  const auto second_kernel = gaussian_kernel(sigma_px(s.b2), radius);
+  const Plane second = convolve(width, height, plane, second_kernel, second_kernel);
   for (std::size_t i = 0; i < filtered.size(); i++) filtered[i] = (w1 * filtered[i] + w2 * second[i]) / (w1 + w2);
   return filtered;
 }
 
-/// Opponent colours to Hunt-adjusted L*a*b* as the eye resolves it.
+/// Turns opponent colours into Hunt-adjusted L*a*b* as the eye resolves it.
 Planes seen_colors(int width, int height, const Planes& opponent, double pixels_per_degree) {
   Planes seen{filter(width, height, opponent[0], kAchromatic, pixels_per_degree),
               filter(width, height, opponent[1], kRedGreen, pixels_per_degree),
@@ -131,7 +130,7 @@ Planes seen_colors(int width, int height, const Planes& opponent, double pixels_
   return seen;
 }
 
-/// FLIP 2020, equations 5 and 6: compresses large differences into the last 5 % of [0, 1].
+/// The colour error of FLIP 2020, equations 5 and 6: compresses large differences into the last 5 % of [0, 1].
 double color_error(const Triple& a, const Triple& b) {
   constexpr double kExponent = 0.7, kKneeOfMaximum = 0.4, kErrorAtKnee = 0.95;
   static const double most = std::pow(hyab(hunt_lab_from_rgb({0, 1, 0}), hunt_lab_from_rgb({0, 0, 1})), kExponent);
@@ -147,7 +146,7 @@ struct Features {
   Plane edge, point;
 };
 
-/// Positive weights made to sum to 1, negative to -1.
+/// Scales positive weights to a sum of 1, and negative ones to -1.
 std::vector<double> balanced(std::vector<double> weights) {
   double positive = 0, negative = 0;
   for (const double w : weights) (w > 0 ? positive : negative) += std::abs(w);
@@ -175,7 +174,7 @@ Features features_of(int width, int height, const Plane& lightness, double pixel
   return {length(balanced(first)), length(balanced(second))};
 }
 
-// Both.
+// Both terms.
 
 /// An image as FLIP sees it.
 struct Seen {
@@ -183,7 +182,7 @@ struct Seen {
   Features features;
 };
 
-/// `rgb`: linear, in [0, 1], pixel by pixel.
+/// Makes the image that FLIP sees. `rgb` gives linear values in [0, 1], pixel by pixel.
 Seen see(int width, int height, const std::function<Triple(std::size_t)>& rgb, double pixels_per_degree) {
   const std::size_t pixels = std::size_t(width) * std::size_t(height);
   Planes opponent{Plane(pixels), Plane(pixels), Plane(pixels)};
@@ -197,7 +196,7 @@ Seen see(int width, int height, const std::function<Triple(std::size_t)>& rgb, d
   return seen;
 }
 
-/// FLIP 2020, equations 9 and 10: where features differ, a colour difference counts more.
+/// The error of a pixel by FLIP 2020, equations 9 and 10: a colour difference counts more if features differ.
 double flip_at(const Seen& a, const Seen& b, std::size_t i) {
   const double color =
       color_error({a.colors[0][i], a.colors[1][i], a.colors[2][i]}, {b.colors[0][i], b.colors[1][i], b.colors[2][i]});
@@ -214,16 +213,16 @@ constexpr double k0 = 0.36 * 2.51, k1 = 0.6 * 0.03, k3 = 0.36 * 2.43, k4 = 0.6 *
 
 double tone_mapped(double x) { return std::clamp((k0 * x * x + k1 * x) / (k3 * x * x + k4 * x + k5), 0.0, 1.0); }
 
-/// The x that the curve maps to t.
+/// The x that the tone curve maps to t.
 double untone_mapped(double t) {
   const double a = k0 - k3 * t, b = k1 - k4 * t, c = -k5 * t;
   return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
 }
 
-/// Clamps to the range that HDR-FLIP takes: light cannot be negative, and half floats end there.
+/// Clamps to the range of HDR-FLIP: light is not negative, and half floats end at 65536.
 double light(float value) { return std::clamp(double(value), 0.0, 65536.0); }
 
-/// The least luminance that the exposures are fitted to, so that a black reference or a black half of it has a finite
+/// The least luminance that exposures are fitted to, so that a black reference, or one with a black half, has a finite
 /// exposure.
 constexpr double kLeastLuminance = 1e-5;
 

@@ -13,7 +13,7 @@ namespace {
 
 bool counts(Mask mask, std::size_t i) { return mask.empty() || mask[i % mask.size()]; }
 
-/// One value's error, and its share in the mean square: free of the references' noise where there are two.
+/// The error of a value, and its share in the mean square, which is free of the references' noise if there are two.
 struct ValueError {
   double reference, error, square;
 
@@ -48,7 +48,7 @@ struct Sums {
   PartErrors part() const { return {count, rmse(), mean(error)}; }
 };
 
-/// numpy.percentile's default: linear between the two nearest ranks. Reorders the values.
+/// A percentile as numpy.percentile's default: linear between the two nearest ranks. Reorders the values.
 double percentile(std::vector<double>& values, double part) {
   const double rank = part * double(values.size() - 1);
   const auto low = values.begin() + std::ptrdiff_t(rank);
@@ -58,7 +58,7 @@ double percentile(std::vector<double>& values, double part) {
   return *low + (rank - std::floor(rank)) * (next - *low);
 }
 
-/// The mean of one plane's SSIM map over the pixels that count, as a sum and a count.
+/// Adds one plane's SSIM map over the pixels that count, as a sum and a count.
 void add_ssim(int width, int height, Values result, Values reference, Mask mask, double peak, double& sum,
               std::size_t& count) {
   constexpr int kRadius = 5;
@@ -90,20 +90,20 @@ bool is_step(float a, float b, double sky) {
   return is_surface(a, sky) && std::abs(double(a) - b) > kDepthStep * std::min(a, b);
 }
 
-/// to += weight * from.
+/// Computes to += weight * from.
 void add_scaled(double weight, std::span<const double> from, std::span<double> to) {
   for (std::size_t i = 0; i < to.size(); i++) to[i] += weight * from[i];
 }
 
 constexpr std::size_t kPlainSide_px = 2 * kPlainReach_px + 1;
 
-/// Whether 1/z at a pixel and at its two neighbours in a line is that of a straight surface. Sky is NaN: with it as one
-/// of the three nothing is straight.
-bool is_straight(double before, double here, double after) {
-  return std::abs(before + after - 2 * here) < kPlainBend * here;
+/// Whether 1/z at a pixel and at its two neighbours on a line is that of a straight surface. Sky is NaN, so a line with
+/// sky is never straight.
+bool is_straight(double before, double center, double after) {
+  return std::abs(before + after - 2 * center) < kPlainBend * center;
 }
 
-/// Gives 1 at the surfaces that count and do not bend.
+/// Marks surfaces that count and do not bend with 1.
 std::vector<double> straight_pixels(int width, int height, Values depth, double sky, Mask mask) {
   std::vector<double> inverse(depth.size());
   std::vector<double> straight(depth.size());
@@ -121,7 +121,7 @@ std::vector<double> straight_pixels(int width, int height, Values depth, double 
   return straight;
 }
 
-/// The error less its mean over the square about each pixel.
+/// The error minus its mean over the square about each pixel.
 std::vector<double> residual(int width, int height, Values result, Values reference) {
   static const std::vector<double> mean(kPlainSide_px, 1.0 / kPlainSide_px);
   std::vector<double> error(result.size());
@@ -224,7 +224,7 @@ std::vector<std::uint8_t> surfaces(Values depth, double sky) {
 std::vector<std::uint8_t> depth_edges(int width, int height, Values depth, double sky) {
   std::vector<std::uint8_t> edges(depth.size());
   const auto at = [&](int x, int y) { return std::size_t(y) * std::size_t(width) + std::size_t(x); };
-  const auto mark = [&](int left, int top, int right, int bottom) {  // what is in reach of the step between two pixels
+  const auto mark = [&](int left, int top, int right, int bottom) {  // marks the reach of a step between two pixels
     for (int y = std::max(top - kEdgeReach_px, 0); y <= std::min(bottom + kEdgeReach_px, height - 1); y++)
       for (int x = std::max(left - kEdgeReach_px, 0); x <= std::min(right + kEdgeReach_px, width - 1); x++)
         edges[at(x, y)] = 1;
@@ -250,7 +250,7 @@ EdgeErrors edge_errors(Mask edges, Values result, Values reference, Mask mask, V
 std::vector<std::uint8_t> plain_pixels(int width, int height, Values depth, double sky, Mask mask) {
   static const std::vector<double> ones(kPlainSide_px, 1);
   const auto straight = straight_pixels(width, height, depth, sky, mask);
-  // Beyond the picture the border's pixels are repeated, and none of them is straight.
+  // Beyond the picture, the border's pixels are repeated, and none of them is straight.
   const auto straight_in_square = convolve(width, height, straight, ones, ones);
   std::vector<std::uint8_t> plain(depth.size());
   std::ranges::transform(straight_in_square, plain.begin(),
@@ -313,7 +313,7 @@ std::vector<double> gaussian_kernel(double sigma, int radius) {
 
 namespace {
 
-/// The pixel of the previous frame that shows what pixel (x, y) shows.
+/// The pixel of the previous frame that shows the surface at (x, y); none if it does not count.
 std::optional<std::size_t> earlier_place(const ErrorFrame& previous, const ErrorFrame& here, int x, int y) {
   const std::size_t i = std::size_t(y) * std::size_t(here.width) + std::size_t(x);
   double earlier_x = x, earlier_y = y;

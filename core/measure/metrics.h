@@ -1,4 +1,4 @@
-// How far a result is from a reference, in numbers: pure functions on planes.
+// The difference between a result and a reference, in numbers: pure functions on planes.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,79 +12,80 @@
 
 namespace alcove {
 
-/// Values of one plane, row by row; or of several planes, one behind the other.
+/// The values of one plane, row by row, or of several planes, one behind the other.
 using Values = std::span<const float>;
-/// Not 0 where a pixel counts; if it is empty, all do. It is of one plane; where the values are several planes, it
-/// holds for each of them.
+/// A mask: one value per pixel of a plane, not 0 if the pixel counts; empty: all count. It holds for each of several
+/// planes.
 using Mask = std::span<const std::uint8_t>;
 
-/// All sums are in double. The error of a value is result - reference.
+/// The errors of a plane. The error of a value is result - reference. All sums are in double.
 struct PlaneErrors {
   std::size_t count = 0;  // values that were compared
-  // values left out because one of the two is NaN or infinite; what the mask leaves out is not among them
+  // values left out because one of the two is NaN or infinite; values that the mask leaves out do not count here
   std::size_t excluded = 0;
   double rmse = 0, mae = 0;
-  double bias = 0;          // the mean error: positive where the result is too bright
+  double bias = 0;          // the mean error: positive if the result is too bright
   double max = 0;           // of the error's size, as are the percentiles
   double p95 = 0, p99 = 0;  // interpolated linearly between the two nearest ranks
 };
 
-/// Measures the errors. Fails with ErrorKind::input if no value is left to compare. With a `reference_b`, whose noise
-/// is independent of the reference's, the reference is the mean of the two and rmse is free of their noise:
-/// sqrt(max(0, mean((t - a)(t - b)))) is, with noise in a and b of mean 0, the RMSE of t against what both estimate.
+/// Measures the errors. With a `reference_b`, whose noise is independent of the reference's, the reference is the mean
+/// of the two, and rmse is free of their noise: if noise in a and b has the mean 0, sqrt(max(0, mean((t - a)(t - b))))
+/// is the RMSE of t against the value that both estimate. Fails with ErrorKind::input if no value is left to compare.
 PlaneErrors compare_planes(Values result, Values reference, Mask mask = {}, Values reference_b = {});
 
 /// 20 log10(peak / rmse), in dB; infinite for an rmse of 0.
 double psnr(double rmse, double peak = 1);
 
-/// Planes made ready for measures that look at neighbourhoods too (ssim, FLIP): they are finite, and equal where a
-/// pixel does not count, so that such a pixel adds no error to its neighbours.
+/// Planes for measures that look at neighbourhoods too (ssim, FLIP). They are finite, and equal at pixels that do not
+/// count, so that such a pixel adds no error to its neighbours.
 struct Comparable {
-  std::vector<float> result, reference, reference_b;  // reference_b: empty where there is none
-  std::vector<std::uint8_t> mask;                     // one per pixel; 1 where all its values are compared
-  std::size_t count = 0;                              // pixels that are compared
-  std::size_t excluded = 0;  // pixels that the mask leaves in and a NaN or an infinity leaves out
-  std::size_t masked = 0;    // pixels that the mask leaves out
+  std::vector<float> result, reference, reference_b;  // reference_b: empty without a second reference
+  std::vector<std::uint8_t> mask;                     // one per pixel; 1: all its values are compared
+  std::size_t count = 0;                              // compared pixels
+  std::size_t excluded = 0;                           // pixels within the mask that a NaN or an infinity leaves out
+  std::size_t masked = 0;                             // pixels that the mask leaves out
 
-  /// The reference, or the mean of the two.
+  /// The reference, or the mean of both references.
   std::vector<float> mean_reference() const;
 };
 
-/// `pixels` is the size of one plane. Fails with ErrorKind::input when no pixel is left; `what` begins the message.
+/// Prepares planes. `pixels` is the size of one plane; `what` begins the message. Fails with ErrorKind::input if no
+/// pixel is left.
 Comparable make_comparable(const std::string& what, std::size_t pixels, Values result, Values reference,
                            Values reference_b, Mask mask);
 
-/// Structural similarity (Wang et al. 2004): Gaussian window of 11 x 11, sigma 1.5, K1 .01, K2 .03, dynamic range
-/// `peak`; the mean over the pixels that count and are at least 5 from every border, and over the planes. All values
-/// must be finite. Nothing where no such pixel is. The same as
+/// The structural similarity (Wang et al. 2004): Gaussian window of 11 x 11, sigma 1.5, K1 .01, K2 .03, dynamic range
+/// `peak`. It is the mean over the planes, and over the pixels that count and are at least 5 from every border; nothing
+/// if there is no such pixel. All values must be finite. It equals
 /// skimage.metrics.structural_similarity(gaussian_weights=True, sigma=1.5, use_sample_covariance=False,
 /// data_range=peak).
 std::optional<double> ssim(int width, int height, Values result, Values reference, Mask mask = {}, double peak = 1);
 
-/// The errors of some of the values; rmse and bias are 0 where there are none.
+/// The errors of some of the values; rmse and bias are 0 if there are none.
 struct PartErrors {
   std::size_t count = 0;
   double rmse = 0, bias = 0;
 };
 
 struct BandErrors {
-  double from = 0, to = 0;  // from <= reference < to; the outermost bands take what is beyond them
+  double from = 0, to = 0;  // from <= reference < to; the outermost bands take values beyond them too
   PartErrors errors;
 };
 
-/// Measures the errors by darkness of the reference: [0, .25), [.25, .5), [.5, .75), [.75, 1]. It is like
-/// compare_planes(), but bands may be empty.
+/// Measures the errors by darkness of the reference: [0, .25), [.25, .5), [.5, .75), [.75, 1]. Like compare_planes(),
+/// but bands may be empty.
 std::array<BandErrors, 4> darkness_bands(Values result, Values reference, Mask mask = {}, Values reference_b = {});
 
-/// A step between neighbours of more than this part of the nearer depth is an edge.
+/// The step between neighbours that is an edge, as a part of the nearer depth.
 inline constexpr double kDepthStep = 0.1;
-/// A pixel is at an edge when one of the step's two pixels is at most this far from it in x and in y.
+/// The distance in px, in x and in y, up to which a pixel is at the edge of a step between two pixels.
 inline constexpr int kEdgeReach_px = 2;
 
-/// Gives 1 at depth edges. Depth is planar and positive; at or beyond `sky`, and where it is not finite or not
-/// positive, it is sky: a step to any surface.
+/// Marks depth edges with 1. Depth is planar and positive. Values that are not finite, not positive, or at least `sky`
+/// are sky, which makes a step to any surface.
 std::vector<std::uint8_t> depth_edges(int width, int height, Values depth, double sky);
-/// Gives 1 where there is a surface.
+/// Marks surfaces with 1.
 std::vector<std::uint8_t> surfaces(Values depth, double sky);
 
 /// Errors at depth edges and away from them; either part may be empty.
@@ -117,45 +118,69 @@ std::optional<double> grain(int width, int height, Mask plain, Values result, Va
 // Separable filters, in double precision.
 
 /// Correlates the plane (width x height, row by row) with `along_x` in its rows, then with `along_y` in its columns.
-/// The kernels have an odd number of weights, the middle one for the pixel itself. Outside, the border's pixels are
+/// Kernels have an odd number of weights; the middle one is for the pixel itself. Outside, the border's pixels are
 /// repeated.
 std::vector<double> convolve(int width, int height, std::span<const double> plane, std::span<const double> along_x,
                              std::span<const double> along_y);
 
-/// exp(-x^2 / (2 sigma^2)) for x from -radius to radius, sum 1. Units: pixels, both above 0.
+/// The weights exp(-x^2 / (2 sigma^2)) for x from -radius to radius, with sum 1. Both are in pixels and above 0.
 std::vector<double> gaussian_kernel(double sigma, int radius);
 
-// Flicker: how much the error of a sequence changes from frame to frame.
+// Flicker: the change of a sequence's error from frame to frame.
 
 /// The errors of one frame of a sequence. All planes are of one size, row by row.
 struct ErrorFrame {
   int width = 0, height = 0;
   std::vector<float> error;        // result - reference; one or several planes
-  std::vector<float> error_b;      // result - a second, independently noisy reference; empty where there is none
-  std::vector<std::uint8_t> mask;  // one per pixel; 0 where it does not count
-  std::vector<float> depth;        // empty: not known
+  std::vector<float> error_b;      // result - a second, independently noisy reference; empty without one
+  std::vector<std::uint8_t> mask;  // one per pixel; 0: does not count
+  std::vector<float> depth;        // empty: unknown
   // The place in the previous frame minus the place here, in pixels, y up (as Blender's Vector); empty: nothing moves.
   std::vector<float> motion_x, motion_y;
 };
 
-/// The root mean square of error(here) - error(previous frame, same surface): 0 for an error that stays where it is on
-/// a surface, and for any movement that the reference makes too. With two references it is free of their noise, as
-/// that of compare_planes() is.
+/// The root mean square of error(here) - error(previous frame, same surface). It is 0 for an error that stays on its
+/// surface, and for any movement that the reference makes too. With two references, it is free of their noise, as in
+/// compare_planes().
 ///
-/// With motion, the same surface is at the pixel that is nearest to the motion's place. That pixel is taken as it is,
-/// since interpolation would hide noise. A pixel is left out where it or its earlier place does not count or is
-/// outside, where the motion is not finite, and where the two depths differ by more than kDepthStep.
+/// With motion, the same surface is at the pixel nearest to the motion's place. Its value is not interpolated, since
+/// that would hide noise. A pixel is left out if it or its earlier place does not count or lies outside, if the motion
+/// is not finite, and if the two depths differ by more than kDepthStep.
 class Flicker {
  public:
   /// Adds two consecutive frames, of one size and with the same planes.
   void add(const ErrorFrame& previous, const ErrorFrame& here);
   std::size_t count() const { return count_; }
-  /// 0 where nothing was added.
+  /// The flicker; 0 if nothing was added.
   double rms() const;
 
  private:
   double square_ = 0;
   std::size_t count_ = 0;
 };
+
+/// The pixels per degree of the viewer's sight: the papers' default, a 0.7 m wide 4K monitor seen from 0.7 m.
+inline constexpr double kFlipPixelsPerDegree = 67;
+
+/// Planes of red, green and blue, of one size, row by row, all finite. For grey, use the same plane three times.
+using ColorPlanes = std::array<std::span<const float>, 3>;
+
+/// The FLIP error of every pixel, in [0, 1], of display values (sRGB-encoded, clamped to [0, 1]). Symmetric in the two
+/// images.
+std::vector<float> ldr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference,
+                            double pixels_per_degree = kFlipPixelsPerDegree);
+
+/// The exposures of HDR-FLIP, in stops: from that where the brightest reference pixel is just below white to that where
+/// the median is.
+struct ExposureRange {
+  double start = 0, stop = 0;
+  int count = 2;  // the larger of 2 and the number of stops
+};
+ExposureRange hdr_flip_exposures(const ColorPlanes& reference);
+
+/// The HDR-FLIP error of every pixel, in [0, 1], of scene-linear Rec.709 values (clamped to [0, 65536]): the largest
+/// LDR-FLIP over the exposures, each after the ACES tone curve. Not symmetric: the exposures are the reference's.
+std::vector<float> hdr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference,
+                            double pixels_per_degree = kFlipPixelsPerDegree);
 
 }  // namespace alcove

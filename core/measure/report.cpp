@@ -66,10 +66,10 @@ std::string error_picture(int width, int height, std::span<const float> result, 
     const float error = (result[i] - reference[i]) / kFullColorError;
     const float size = std::min(1.0f, std::abs(error));
     if (!std::isfinite(error)) rgb.insert(rgb.end(), {0.5f, 0.5f, 0.5f});
-    // towards a blue of (0.13, 0.4, 0.67)
+    // a blue of (0.13, 0.4, 0.67) at full size
     else if (error < 0)
       rgb.insert(rgb.end(), {1 - 0.87f * size, 1 - 0.6f * size, 1 - 0.33f * size});
-    // towards a red of (0.7, 0.09, 0.17)
+    // a red of (0.7, 0.09, 0.17) at full size
     else
       rgb.insert(rgb.end(), {1 - 0.3f * size, 1 - 0.91f * size, 1 - 0.83f * size});
   }

@@ -8,7 +8,7 @@
 
 namespace alcove {
 
-/// One HTML file that fetches nothing: styles, scripts and libraries (report/) are inside, and so is `json`.
+/// Makes one HTML file that fetches nothing: styles, scripts and libraries (report/) are inside, and so is `json`.
 ///
 /// `json` is valid JSON in UTF-8, as json_text() makes it.
 /// Every string may be hostile: the page shows strings as text only. Members, all needed unless said otherwise:
@@ -16,7 +16,7 @@ namespace alcove {
 ///   "title"         string
 ///   "kind"          "compare" or "bench"
 ///   "device"        string or null
-///   "yardstick_ms"  number or null: what a yardstick takes; times can then also be read in yardsticks
+///   "yardstick_ms"  number or null: the time of a yardstick; times can then also be read in yardsticks
 ///   "candidates"    list of {"name": string, unique, "settings": string, "ms": number or null,
 ///                   "ms_min": number or null, "rmse": number, and any more numbers such as "p99", "bias"}: means over
 ///                   the frames. With a time and an RMSE a candidate is a point of the chart; without such a candidate
@@ -31,7 +31,7 @@ namespace alcove {
 ///                   another image of the same frame has it, so that a frame's truth is stored once. "error" is
 ///                   result - truth in the colours of error_picture(), which the page's legend explains.
 ///   "sequence"      optional, or null: {"worst_frame": string, "worst_rmse": number, "mean_rmse": number, "flicker":
-///                   number or null}: what is known of a sequence as a whole, shown above the table
+///                   number or null}: measures of a sequence as a whole, shown above the table
 ///   "frames"        optional list of {"name": string, "yardstick_ms": number or null}: a frame's own yardstick, where
 ///                   frames differ in size; "yardstick_ms" above is then their mean
 ///
@@ -40,18 +40,17 @@ std::string report_page(const std::string& json);
 
 // Pictures for the page: planes as "data:image/png;base64,..." URLs.
 
-/// The size of an error that has full colour: blue where the result is too dark, red where it is too bright. An error
-/// of 0 is white.
+/// The error with full colour: blue if the result is too dark, red if it is too bright. An error of 0 is white.
 inline constexpr float kFullColorError = 0.25f;
 
-/// Width x height values in [0, 1] as grey, as they are: AO is data.
+/// Shows width x height values in [0, 1] as grey, unconverted, since AO is data.
 std::string grey_picture(int width, int height, std::span<const float> values);
-/// Interleaved r, g, b display values.
+/// Shows interleaved r, g, b display values.
 std::string color_picture(int width, int height, std::span<const float> rgb);
-/// result - reference in colours; grey where the difference is not finite.
+/// Shows result - reference in colours; grey if the difference is not finite.
 std::string error_picture(int width, int height, std::span<const float> result, std::span<const float> reference);
 
-/// The page with the mark "{{report.json}}" where the JSON goes; cmake/embed_report.cmake checks that it is there.
+/// The page with the mark "{{report.json}}" in place of the JSON; cmake/embed_report.cmake checks it.
 std::string_view report_template();
 
 }  // namespace alcove

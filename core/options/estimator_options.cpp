@@ -13,14 +13,17 @@
 namespace alcove {
 namespace {
 
-void read_radii(const Words& words, const Range& reach, EstimatorSettings& settings) {
+/// The range of a radius.
+Range reach() { return above_to(0, 1e18); }
+
+void read_radii(const Words& words, EstimatorSettings& settings) {
   settings.radius_auto = words.size() == 1 && lower_case(words.front()) == "auto";
   settings.radius.reset();
   settings.further_radii.clear();
   if (settings.radius_auto) return;
   std::vector<double> radii;
   for (const auto& word : words)
-    for (const auto& text : split(word)) radii.push_back(number_in(reach, "--radius", text));
+    for (const auto& text : split(word)) radii.push_back(number_in(reach(), text));
   settings.radius = radii.front();
   settings.further_radii.assign(radii.begin() + 1, radii.end());
 }
@@ -57,12 +60,12 @@ void read_kernel(const std::string& text, std::vector<double>& kernel) {
   for (const auto& word : split(text)) {
     const auto weight = number_of(word);
     if (!weight || !(*weight >= 0) || std::isinf(*weight))
-      fail(ErrorKind::usage, "--set denoise-kernel: {} is no weight of 0 or more", said(word));
+      fail(ErrorKind::usage, "{} is no weight of 0 or more", visible(word));
     weights.push_back(*weight);
   }
   if (weights.size() < 2 || weights.size() > 9)
-    fail(ErrorKind::usage, "--set denoise-kernel: {} has {} weights, not 2 to 9", text, weights.size());
-  if (weights.front() == 0) fail(ErrorKind::usage, "--set denoise-kernel: {} has no weight at the centre", text);
+    fail(ErrorKind::usage, "{} has {} weights, not 2 to 9", text, weights.size());
+  if (weights.front() == 0) fail(ErrorKind::usage, "{} has no weight at the centre", text);
   kernel = weights;
 }
 
@@ -75,104 +78,90 @@ std::string if_exact_alone(const Settings& all) { return asks_for_confidence(all
 std::string if_by_error_alone(const Settings& all) { return asks_for_confidence(all) ? "" : if_by_error(all); }
 std::string unless_slices_anywhere(const Settings& all) { return asks_for_confidence(all) ? "" : unless_slices(all); }
 
-void add_radius_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
-  OptionGroup pixels(rows, "Estimator", Effect::pixels, true);
-  pixels.choice("--estimator", s.estimator, "gtao, bitmask: horizons, or sectors; hbao, crytek: as older renderers");
-  const Range reach = above_to(0, 1e18);
-  OptionRow& radius = pixels.add(
-      {"--radius", "auto|NUMBER[,NUMBER...]", "scene units", reach.text,
+void add_radius_rows(std::vector<SettingRow>& rows) {
+  using S = EstimatorSettings;
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
+  pixels.choice("--estimator", &S::estimator, "gtao, bitmask: horizons, or sectors; hbao, crytek: as older renderers");
+  SettingRow& radius = pixels.add(
+      {"--radius", "auto|NUMBER[,NUMBER...]", "scene units", reach().text,
        "how far occluders reach; auto: what inspect proposes; of several the AO is the mean"},
-      [&s] { return words_of_radii(s); }, [&s, reach](const Words& words) { read_radii(words, reach, s); });
+      [](const S& s) { return words_of_radii(s); }, [](S& s, const Words& words) { read_radii(words, s); });
   radius.repeats = radius.is_common = true;
-  pixels.choice("--falloff", s.falloff, "how a hit's weight fades towards the radius").why_without_effect =
-      [](const Settings& all) { return all.estimator.falloff == Falloff::none ? "" : unless_fading(all); };
-  pixels.number("falloff-start", s.falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins")
-      .why_without_effect = [](const Settings& all) -> std::string {
-    if (all.estimator.falloff_start == 0) return "";
-    return first_of({unless_fading(all), all.estimator.falloff == Falloff::none ? "--falloff is none" : ""});
-  };
+  pixels.choice("--falloff", &S::falloff, "how a hit's weight fades towards the radius").others_idle(unless_fading);
   pixels
-      .number("falloff-end", s.falloff_end, "of the radius", above_to(0, 1),
+      .number("falloff-start", &S::falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins")
+      .others_idle([](const Settings& all) {
+        return first_of({unless_fading(all), all.estimator.falloff == Falloff::none ? "--falloff is none" : ""});
+      });
+  pixels
+      .number("falloff-end", &S::falloff_end, "of the radius", above_to(0, 1),
               "where the falloff ends: nothing beyond blocks")
-      .why_without_effect = [](const Settings& all) {
-    return all.estimator.falloff_end == 1 ? "" : unless_slices_anywhere(all);
-  };
+      .others_idle(unless_slices_anywhere);
 }
 
-void add_search_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
-  OptionGroup pixels(rows, "Estimator", Effect::pixels, true);
+void add_search_rows(std::vector<SettingRow>& rows) {
+  using S = EstimatorSettings;
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
   const auto unless_crytek = [](const Settings& all) { return unless_estimator(all, {Estimator::crytek}); };
-  pixels.number("--slices", s.slices, "per pixel", between(1, 64), "directions that are searched").why_without_effect =
-      [](const Settings& all) {
+  pixels.number("--slices", &S::slices, "per pixel", between(1, 64), "directions that are searched")
+      .idle([](const Settings& all) {
         return first_of({unless_slices_anywhere(all), if_by_error_alone(all)});
-      };
-  pixels.number("--steps", s.steps, "per side", between(1, 4096), "samples to each side of a slice")
-      .why_without_effect = [](const Settings& all) {
-    return first_of({unless_slices_anywhere(all), if_exact_alone(all)});
-  };
+      });
+  pixels.number("--steps", &S::steps, "per side", between(1, 4096), "samples to each side of a slice")
+      .idle([](const Settings& all) {
+        return first_of({unless_slices_anywhere(all), if_exact_alone(all)});
+      });
   pixels
-      .choice("--search", s.search,
+      .choice("--search", &S::search,
               "along a slice; steps: so many samples; exact: all pixels, by outlines; every-pixel: one by one")
-      .why_without_effect = [](const Settings& all) {
-    return all.estimator.search == SliceSearch::steps ? if_by_error(all) : unless_estimator(all, {Estimator::gtao});
-  };
-  pixels.number("--tolerance", s.tolerance, "", between(0, 1), "RMS error of an exact search; 0: as --slices gives")
-      .why_without_effect = [](const Settings& all) -> std::string {
-    if (all.estimator.tolerance == 0) return "";
-    return first_of({unless_estimator(all, {Estimator::gtao}),
-                     if_given(all.estimator.resolution != Resolution::full, "--resolution",
-                              "the error is that of every pixel at --resolution full"),
-                     if_given(all.input.accumulate > 0, "--accumulate", "each says how exact the AO gets")});
-  };
-  pixels.number("--samples", s.samples, "per pixel", between(4, 64), "samples in the hemisphere").why_without_effect =
-      unless_crytek;
-  pixels.number("bias", s.bias, "", between(0, 1e18),
+      .idle([](const Settings& all) {
+        return all.estimator.search == SliceSearch::steps ? if_by_error(all) : unless_estimator(all, {Estimator::gtao});
+      });
+  pixels.number("--tolerance", &S::tolerance, "", between(0, 1), "RMS error of an exact search; 0: as --slices gives")
+      .others_idle([](const Settings& all) { return unless_estimator(all, {Estimator::gtao}); });
+  pixels.number("--samples", &S::samples, "per pixel", between(4, 64), "samples in the hemisphere").idle(unless_crytek);
+  pixels.number("bias", &S::bias, "", between(0, 1e18),
                 "sine of an elevation that blocks nothing, below 1; crytek: scene units of depth");
   pixels
-      .choice("elevation", s.elevation,
+      .choice("elevation", &S::elevation,
               "of a horizon; view: above the plane across the view ray; surface: above the surface")
-      .why_without_effect = [](const Settings& all) { return unless_estimator(all, {Estimator::hbao}); };
-  pixels.choice("sample-kernel", s.sample_kernel, "clustered: more samples near the receiver; uniform: even in volume")
-      .why_without_effect = unless_crytek;
-  pixels.choice("range-check", s.range_check, "how a hit's weight goes by its depth; docs/settings.md has the formulas")
-      .why_without_effect = unless_crytek;
+      .idle([](const Settings& all) { return unless_estimator(all, {Estimator::hbao}); });
+  pixels
+      .choice("sample-kernel", &S::sample_kernel, "clustered: more samples near the receiver; uniform: even in volume")
+      .idle(unless_crytek);
+  pixels
+      .choice("range-check", &S::range_check, "how a hit's weight goes by its depth; docs/settings.md has the formulas")
+      .idle(unless_crytek);
   pixels
       .own(
           {"--thickness", "auto|infinite|NUMBER", "scene units", "",
            "how far occluders go on behind what is seen of them; auto: as far as they are wide"},
-          [&s] { return text_of_thickness(s); }, [&s](const std::string& text) { return read_thickness(text, s); },
+          [](const S& s) { return text_of_thickness(s); },
+          [](S& s, const std::string& text) { return read_thickness(text, s); },
           "is neither auto nor infinite nor a length above 0")
-      .why_without_effect = [](const Settings& all) {
-    return all.estimator.thickness == ThicknessKind::automatic ? "" : unless_ranges(all);
-  };
+      .others_idle(unless_ranges);
   pixels
-      .choice("complete", s.complete,
+      .choice("complete", &S::complete,
               "where surfaces go on unseen; border: beyond the picture; all: behind nearer ones too")
-      .why_without_effect = [](const Settings& all) {
-    return all.estimator.complete == Completion::none ? "" : unless_ranges(all);
-  };
+      .idle([](const Settings& all) { return all.estimator.complete == Completion::none ? "" : unless_ranges(all); });
 }
 
-void add_filter_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
-  OptionGroup pixels(rows, "Estimator", Effect::pixels, true);
-  pixels.choice("--resolution", s.resolution, "of the estimate, by the nearest surface of 2 x 2 or 4 x 4 pixels")
-      .why_without_effect = [](const Settings& all) {
-    return all.estimator.resolution == Resolution::full
-               ? ""
-               : if_given(all.estimator.tolerance > 0, "--tolerance", "the error is that of every pixel");
-  };
+void add_filter_rows(std::vector<SettingRow>& rows) {
+  using S = EstimatorSettings;
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
+  pixels.choice("--resolution", &S::resolution, "of the estimate, by the nearest surface of 2 x 2 or 4 x 4 pixels");
   pixels
-      .choice("density", s.density,
+      .choice("density", &S::density,
               "uniform: an estimate for every so many pixels; adaptive: more where a surface shows few pixels")
-      .why_without_effect = [](const Settings& all) {
-    return first_of(
-        {asks_for_confidence(all) ? "" : unless_ranges(all), if_exact_alone(all), unless_shared_estimates(all)});
-  };
+      .idle([](const Settings& all) {
+        return first_of(
+            {asks_for_confidence(all) ? "" : unless_ranges(all), if_exact_alone(all), unless_shared_estimates(all)});
+      });
   pixels
       .own(
           {"stride", "auto|1|2|4|8|16", "", "", "pixels to an estimate; the denoiser gives the others theirs"},
-          [&s] { return s.stride == 0 ? std::string("auto") : fmt::format("{}", s.stride); },
-          [&s](const std::string& text) {
+          [](const S& s) { return s.stride == 0 ? std::string("auto") : fmt::format("{}", s.stride); },
+          [](S& s, const std::string& text) {
             const std::vector<std::string> strides = {"1", "2", "4", "8", "16"};
             const bool is_auto = lower_case(text) == "auto";
             const auto found = std::ranges::find(strides, text);
@@ -181,81 +170,72 @@ void add_filter_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
             return true;
           },
           "is none of auto, 1, 2, 4, 8, 16")
-      .why_without_effect = [](const Settings& all) {
-    return all.estimator.stride <= 1 ? "" : first_of({if_exact_alone(all), unless_denoised(all, {Denoise::bilateral})});
-  };
+      .idle([](const Settings& all) {
+        return all.estimator.stride <= 1 ? ""
+                                         : first_of({if_exact_alone(all), unless_denoised(all, {Denoise::bilateral})});
+      });
 }
 
-void add_denoise_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
-  OptionGroup pixels(rows, "Estimator", Effect::pixels, true);
+void add_denoise_rows(std::vector<SettingRow>& rows) {
+  using S = EstimatorSettings;
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
   const auto unless_bilateral = [](const Settings& all) {
     return first_of({unless_denoised(all, {Denoise::bilateral}), if_by_error_alone(all)});
   };
-  pixels.choice("--denoise", s.denoise, "smooths each surface; bilateral: by distance and plane; box: evenly, 4 x 4")
-      .why_without_effect = [](const Settings& all) {
-    return all.estimator.denoise == Denoise::none ? "" : if_by_error_alone(all);
-  };
+  pixels.choice("--denoise", &S::denoise, "smooths each surface; bilateral: by distance and plane; box: evenly, 4 x 4")
+      .idle([](const Settings& all) { return all.estimator.denoise == Denoise::none ? "" : if_by_error_alone(all); });
   pixels
       .own(
           {"denoise-radius", "auto|NUMBER", "pixels of the estimate", "1 to 8",
            "how far the bilateral denoiser reaches to each side"},
-          [&s] { return s.denoise_radius == 0 ? std::string("auto") : fmt::format("{}", s.denoise_radius); },
-          [&s](const std::string& text) {
+          [](const S& s) { return s.denoise_radius == 0 ? std::string("auto") : fmt::format("{}", s.denoise_radius); },
+          [](S& s, const std::string& text) {
             const bool is_digit = text.size() == 1 && text >= "1" && text <= "8";
             if (lower_case(text) != "auto" && !is_digit) return false;
             s.denoise_radius = is_digit ? text.front() - '0' : 0;
             return true;
           },
           "is neither auto nor a whole number from 1 to 8")
-      .why_without_effect = [unless_bilateral](const Settings& all) {
-    if (all.estimator.denoise_radius == 0) return std::string();
-    return first_of({unless_bilateral(all), if_given(!all.estimator.denoise_kernel.empty(), "--set denoise-kernel",
-                                                     "as many weights as it has make the radius")});
-  };
+      .others_idle(unless_bilateral);
   pixels
       .add(
           {"denoise-kernel", "W0,W1,...", "", "2 to 9 weights",
            "from the centre outwards, of any sum; they set the denoiser's radius"},
-          [&s] {
+          [](const S& s) {
             return s.denoise_kernel.empty() ? Words{} : Words{fmt::format("{}", fmt::join(s.denoise_kernel, ","))};
           },
-          [&s](const Words& words) { read_kernel(words.front(), s.denoise_kernel); })
-      .why_without_effect = [unless_bilateral](const Settings& all) {
-    return first_of({unless_bilateral(all), if_given(all.estimator.denoise_radius > 0, "--set denoise-radius",
-                                                     "as many weights as there are make the radius")});
-  };
+          [](S& s, const Words& words) { read_kernel(words.front(), s.denoise_kernel); })
+      .idle(unless_bilateral);
   pixels
-      .number("denoise-depth-sigma", s.denoise_depth_sigma, "of the depth", between(0, 100),
+      .number("denoise-depth-sigma", &S::denoise_depth_sigma, "of the depth", between(0, 100),
               "depths that far apart weigh 1/e; 0: weighs by the distance from each other's plane")
-      .why_without_effect = [](const Settings& all) -> std::string {
-    if (all.estimator.denoise_depth_sigma == 0) return "";
-    return first_of({unless_denoised(all, {Denoise::bilateral, Denoise::box}), if_by_error_alone(all)});
-  };
+      .others_idle([](const Settings& all) {
+        return first_of({unless_denoised(all, {Denoise::bilateral, Denoise::box}), if_by_error_alone(all)});
+      });
 }
 
-void add_shape_rows(std::vector<OptionRow>& rows, EstimatorSettings& s) {
-  OptionGroup pixels(rows, "Estimator", Effect::pixels, true);
-  pixels.number("--intensity", s.intensity, "", between(0, 100), "factor on the occlusion");
-  pixels.number("power", s.power, "", above_to(0, 100), "exponent of the visibility");
-  pixels.number("fade-start", s.fade_start, "scene units", between(0, 1e30), "depth where the AO begins to fade to 1")
-      .why_without_effect = [](const Settings& all) {
-    return unless_given(all.estimator.fade_end.has_value(), "--set fade-end");
-  };
-  pixels.number("fade-end", s.fade_end, "scene units", above_to(0, 1e30), "depth from which the AO is 1")
-      .why_without_effect = [](const Settings& all) {
-    return unless_given(all.estimator.fade_start.has_value(), "--set fade-start");
-  };
-  pixels.number("--roughness", s.roughness, "", between(0, 1), "of all surfaces").why_without_effect =
-      [](const Settings& all) { return unless_aov(all, {"specular-occlusion"}); };
-  pixels.choice("--noise", s.noise, "fixed: every frame has the same pattern of samples; animated: each its own")
-      .why_without_effect = [](const Settings& all) {
-    const bool is_fixed = all.estimator.noise == Noise::fixed;
-    return is_fixed ? if_given(all.input.accumulate > 0, "--accumulate", "it animates the noise") : if_exact_alone(all);
-  };
-  pixels.number("--seed", s.seed, "", between(0, 4294967295.0), "shifts the pattern of samples").why_without_effect =
-      [](const Settings& all) { return all.estimator.seed == 0 ? "" : if_exact_alone(all); };
-  OptionGroup(rows, "Estimator", Effect::none, true)
-      .flag("--no-skip", s.no_skip, "estimate sky too, and what is as in the frame before; slower, the same bits");
+void add_shape_rows(std::vector<SettingRow>& rows) {
+  using S = EstimatorSettings;
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
+  pixels.number("--intensity", &S::intensity, "", between(0, 100), "factor on the occlusion");
+  pixels.number("power", &S::power, "", above_to(0, 100), "exponent of the visibility");
+  pixels.number("fade-start", &S::fade_start, "scene units", between(0, 1e30), "depth where the AO begins to fade to 1")
+      .idle([](const Settings& all) { return unless_given(all.estimator.fade_end.has_value(), "--set fade-end"); });
+  pixels.number("fade-end", &S::fade_end, "scene units", above_to(0, 1e30), "depth from which the AO is 1")
+      .idle([](const Settings& all) { return unless_given(all.estimator.fade_start.has_value(), "--set fade-start"); });
+  pixels.number("--roughness", &S::roughness, "", between(0, 1), "of all surfaces").idle([](const Settings& all) {
+    return unless_aov(all, {"specular-occlusion"});
+  });
+  pixels.choice("--noise", &S::noise, "fixed: every frame has the same pattern of samples; animated: each its own")
+      .idle([](const Settings& all) {
+        const bool is_fixed = all.estimator.noise == Noise::fixed;
+        return is_fixed ? if_given(all.input.accumulate > 0, "--accumulate", "it animates the noise")
+                        : if_exact_alone(all);
+      });
+  pixels.number("--seed", &S::seed, "", between(0, 4294967295.0), "shifts the pattern of samples")
+      .others_idle(if_exact_alone);
+  OptionGroup(rows, "Estimator", Effect::none, &Settings::estimator, true)
+      .flag("--no-skip", &S::no_skip, "estimate sky too, and what is as in the frame before; slower, the same bits");
 }
 
 /// Of frames to each side: more are too far away to show the same.
@@ -263,54 +243,43 @@ constexpr int kMostAccumulated = 16;
 
 bool read_accumulate(const std::string& text, int& frames) {
   if (lower_case(text) == "all")
-    fail(ErrorKind::usage,
-         "--accumulate all: a mean of the whole shot would make every frame wait for all others, and far ones show "
-         "little "
-         "of it: give a number of frames to each side, up to {}",
-         kMostAccumulated);
+    fail(
+        ErrorKind::usage,
+        "all would be a mean of the whole shot: every frame would wait for all others, and far ones show little of it: "
+        "give a number of frames to each side, up to {}",
+        kMostAccumulated);
   const auto number = whole_number_of(text);
   if (!number || *number < 0 || *number > kMostAccumulated) return false;
   frames = *number;
   return true;
 }
 
-void add_time_rows(std::vector<OptionRow>& rows, InputSettings& s) {
-  OptionGroup(rows, "Estimator", Effect::pixels)
+void add_time_rows(std::vector<SettingRow>& rows) {
+  OptionGroup(rows, "Estimator", Effect::pixels, &Settings::input)
       .own(
           {"--accumulate", "NUMBER", "frames to each side", fmt::format("0 to {}", kMostAccumulated),
            "the AO is the mean over these frames, of what stands still; needs each camera"},
-          [&s] { return fmt::format("{}", s.accumulate); },
-          [&s](const std::string& text) { return read_accumulate(text, s.accumulate); },
-          fmt::format("is no whole number from 0 to {}", kMostAccumulated))
-      .why_without_effect = [](const Settings& all) {
-    const bool is_by_error = all.input.accumulate > 0 && all.estimator.tolerance > 0;
-    return if_given(is_by_error, "--tolerance", "an estimate by its error is as exact as was asked for");
-  };
+          [](const InputSettings& s) { return fmt::format("{}", s.accumulate); },
+          [](InputSettings& s, const std::string& text) { return read_accumulate(text, s.accumulate); },
+          fmt::format("is no whole number from 0 to {}", kMostAccumulated));
 }
 
 }  // namespace
 
-void add_estimator_rows(std::vector<OptionRow>& rows, RunOptions& options) {
-  OptionRow& preset =
-      OptionGroup(rows, "Estimator", Effect::none)
-          .add(
-              {"--preset", "NAME|FILE[,...]", "", "", "settings from presets; later ones win"},
-              [&options] { return options.presets; }, [&options](const Words& words) { options.presets = words; });
-  preset.repeats = preset.is_common = true;
-  preset.is_key = false;
-  OptionRow& set = OptionGroup(rows, "Estimator", Effect::none)
-                       .add(
-                           {"--set", "KEY=VALUE", "", "", "any setting; alcove run --help-markdown lists the keys"},
-                           [&options] { return options.set; }, [&options](const Words& words) { options.set = words; });
-  set.repeats = set.is_common = true;
-  set.is_key = false;
-  EstimatorSettings& settings = options.settings.estimator;
-  add_radius_rows(rows, settings);
-  add_search_rows(rows, settings);
-  add_filter_rows(rows, settings);
-  add_denoise_rows(rows, settings);
-  add_shape_rows(rows, settings);
-  add_time_rows(rows, options.settings.input);
+void add_estimator_rows(std::vector<SettingRow>& rows) {
+  OptionGroup command_line(rows, "Estimator", Effect::none, &Settings::estimator);
+  for (const auto& [name, value, sentence] :
+       {std::tuple("--preset", "NAME|FILE[,...]", "settings from presets; later ones win"),
+        {"--set", "KEY=VALUE", "any setting; alcove run --help-markdown lists the keys"}}) {
+    SettingRow& row = command_line.show({name, value, "", "", sentence});
+    row.repeats = row.is_common = true;
+  }
+  add_radius_rows(rows);
+  add_search_rows(rows);
+  add_filter_rows(rows);
+  add_denoise_rows(rows);
+  add_shape_rows(rows);
+  add_time_rows(rows);
 }
 
 }  // namespace alcove

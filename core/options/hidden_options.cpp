@@ -14,12 +14,14 @@
 namespace alcove {
 namespace {
 
+using InputGroup = OptionGroup<Settings, InputSettings Settings::*>;
+
 constexpr int kMostAround = 32;  // frames to each side: more than any surface stays near
 constexpr int kMostKept = 3;     // surfaces behind the first
 
-void read_files(const char* option, const Words& words, FileList& files) {
+void read_files(const Words& words, FileList& files) {
   if (words.size() > files.size())
-    fail(ErrorKind::usage, "{}: there are {} files; a run takes at most {}", option, words.size(), files.size());
+    fail(ErrorKind::usage, "there are {} files; a run takes at most {}", words.size(), files.size());
   files = {};
   std::ranges::copy(words, files.begin());
 }
@@ -45,7 +47,7 @@ void read_kinds(const Words& words, std::vector<BehindKind>& kinds) {
   for (const auto& text : split_all(words)) {
     const auto* kind = std::ranges::find(kKinds, lower_case(text), &Word<BehindKind>::first);
     if (kind == std::end(kKinds))
-      fail(ErrorKind::usage, "--behind-kind: {} is none of {}{}", said(text), list_of(known), suggestion(text, known));
+      fail(ErrorKind::usage, "{} is none of {}{}", visible(text), list_of(known), suggestion(text, known));
     read.push_back(kind->second);
   }
   kinds = read;
@@ -85,107 +87,89 @@ std::string unless_hidden_sources(const Settings& all) {
   return unless_given(has_hidden_sources(all.input), "--behind, --deep, --around or --set other-views");
 }
 
-/// Which occluders an object is behind is not told by other frames and views.
-std::string if_occluders_are_chosen(const InputSettings& input) {
-  const char* const why = "what others show behind an object may be the object itself";
-  return first_of({if_given(!(input.occluders + input.occluder_objects).empty(), "--set occluders", why),
-                   if_given(!(input.ignore + input.ignored_objects).empty(), "--set ignore", why)});
-}
-
 std::string unless_motion(const Settings& all) { return unless_given(!all.input.motion.empty(), "--motion"); }
 
-void add_behind_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
-  OptionRow& behind = files.add(
+void add_behind_rows(InputGroup& files, InputGroup& pixels) {
+  using S = InputSettings;
+  SettingRow& behind = files.add(
       {"--behind", "FILE", "", "up to 8 times", "depth behind the first surface: peels, back faces, other elements"},
-      [&s] { return words_of(s.behind); }, [&s](const Words& words) { read_files("--behind", words, s.behind); });
+      [](const S& s) { return words_of(s.behind); }, [](S& s, const Words& words) { read_files(words, s.behind); });
   behind.repeats = true;
-  behind.why_without_effect = unless_ranges;
-  OptionRow& channels = pixels.add(
+  behind.idle(unless_ranges);
+  SettingRow& channels = pixels.add(
       {"behind-channel", "NAME[,NAME...]", "", "", "the depth channel of --behind, once or for each"},
-      [&s] { return s.behind_channels; }, [&s](const Words& words) { s.behind_channels = split_all(words); });
+      [](const S& s) { return s.behind_channels; },
+      [](S& s, const Words& words) { s.behind_channels = split_all(words); });
   channels.repeats = true;
-  channels.why_without_effect = [](const Settings& all) {
-    return unless_for_each_file(all.input, all.input.behind_channels.size());
-  };
-  OptionRow& kinds = pixels.add(
+  channels.idle([](const Settings& all) { return unless_for_each_file(all.input, all.input.behind_channels.size()); });
+  SettingRow& kinds = pixels.add(
       {"--behind-kind", "surfaces|fronts|backs|thickness[,...]", "", "",
        "of --behind, once or for each; backs: back faces; thickness: how deep things go on"},
-      [&s] { return words_of(s.behind_kinds); }, [&s](const Words& words) { read_kinds(words, s.behind_kinds); });
+      [](const S& s) { return words_of(s.behind_kinds); },
+      [](S& s, const Words& words) { read_kinds(words, s.behind_kinds); });
   kinds.repeats = kinds.in_library = true;
   kinds.default_text = "surfaces";
-  kinds.why_without_effect = [](const Settings& all) {
-    return unless_for_each_file(all.input, all.input.behind_kinds.size());
-  };
+  kinds.idle([](const Settings& all) { return unless_for_each_file(all.input, all.input.behind_kinds.size()); });
 }
 
-void add_deep_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
+void add_deep_rows(InputGroup& files, InputGroup& pixels) {
+  using S = InputSettings;
   files
       .add(
           {"--deep", "FILE", "", "up to 8 times", "a deep EXR, for what its samples show behind the first surface"},
-          [&s] { return words_of(s.deep); }, [&s](const Words& words) { read_files("--deep", words, s.deep); })
+          [](const S& s) { return words_of(s.deep); }, [](S& s, const Words& words) { read_files(words, s.deep); })
       .repeats = true;
-  pixels.number("deep-opacity", s.deep_opacity, "", between(0, 1), "of a deep sample, from which it is a surface")
-      .why_without_effect = [](const Settings& all) { return unless_given(has_deep(all.input), "--deep"); };
+  pixels.number("deep-opacity", &S::deep_opacity, "", between(0, 1), "of a deep sample, from which it is a surface")
+      .idle([](const Settings& all) { return unless_given(has_deep(all.input), "--deep"); });
 }
 
-void add_view_rows(OptionGroup& files, OptionGroup& pixels, InputSettings& s) {
-  pixels.flag("other-views", s.other_views, "of a stereo file: what its other views see of the same instant")
-      .why_without_effect = [](const Settings& all) {
-    return first_of({unless_ranges(all), if_occluders_are_chosen(all.input)});
-  };
+void add_view_rows(InputGroup& files, InputGroup& pixels) {
+  using S = InputSettings;
+  pixels.flag("other-views", &S::other_views, "of a stereo file: what its other views see of the same instant")
+      .idle(unless_ranges);
   pixels
       .own(
           {"--around", "NUMBER|all", "frames to each side", fmt::format("0 to {}", kMostAround),
            "what other frames see of what stands still; needs the camera of each"},
-          [&s] { return s.around_all ? std::string("all") : fmt::format("{}", s.around); },
-          [&s](const std::string& text) { return read_around(text, s); },
+          [](const S& s) { return s.around_all ? std::string("all") : fmt::format("{}", s.around); },
+          [](S& s, const std::string& text) { return read_around(text, s); },
           fmt::format("is neither all nor a whole number from 0 to {}", kMostAround))
-      .why_without_effect = [](const Settings& all) -> std::string {
-    if (all.input.around == 0 && !all.input.around_all) return "";
-    return first_of({unless_ranges(all), if_occluders_are_chosen(all.input)});
-  };
-  files.text("--motion", s.motion, "FILE", "an EXR of motion vectors, in pixels, which tell what moves")
-      .why_without_effect = [](const Settings& all) {
-    const InputSettings& input = all.input;
-    const bool takes_frames = input.around > 0 || input.around_all || input.accumulate > 0;
-    return unless_given(takes_frames, "--around and no --accumulate");
-  };
-  pixels.text("motion-channels", s.motion_channels, "LAYER|X,Y", "of the motion vectors; else by their usual names")
-      .why_without_effect = unless_motion;
+      .others_idle(unless_ranges);
+  files.text("--motion", &S::motion, "FILE", "an EXR of motion vectors, in pixels, which tell what moves")
+      .idle([](const Settings& all) {
+        const InputSettings& input = all.input;
+        const bool takes_frames = input.around > 0 || input.around_all || input.accumulate > 0;
+        return unless_given(takes_frames, "--around and no --accumulate");
+      });
+  pixels.text("motion-channels", &S::motion_channels, "LAYER|X,Y", "of the motion vectors; else by their usual names")
+      .idle(unless_motion);
   pixels
-      .choice("motion-kind", s.motion_kind,
+      .choice("motion-kind", &S::motion_kind,
               "where vectors point: into the previous frame or the next; auto: as most pixels move by the cameras")
-      .why_without_effect = [](const Settings& all) {
-    return all.input.motion_kind == MotionKind::automatic ? "" : unless_motion(all);
-  };
+      .others_idle(unless_motion);
 }
 
 }  // namespace
 
-void add_hidden_rows(std::vector<OptionRow>& rows, Settings& settings) {
-  OptionGroup files(rows, "Hidden surfaces", Effect::input), pixels(rows, "Hidden surfaces", Effect::pixels);
-  InputSettings& input = settings.input;
-  EstimatorSettings& estimator = settings.estimator;
-  add_behind_rows(files, pixels, input);
-  add_deep_rows(files, pixels, input);
-  add_view_rows(files, pixels, input);
-  OptionGroup kept(rows, "Hidden surfaces", Effect::pixels, true);
-  kept.number("hidden", estimator.hidden, "surfaces of a pixel", between(0, kMostKept),
+void add_hidden_rows(std::vector<SettingRow>& rows) {
+  OptionGroup files(rows, "Hidden surfaces", Effect::input, &Settings::input),
+      pixels(rows, "Hidden surfaces", Effect::pixels, &Settings::input);
+  add_behind_rows(files, pixels);
+  add_deep_rows(files, pixels);
+  add_view_rows(files, pixels);
+  OptionGroup kept(rows, "Hidden surfaces", Effect::pixels, &Settings::estimator, true);
+  kept.number("hidden", &EstimatorSettings::hidden, "surfaces of a pixel", between(0, kMostKept),
               "kept behind the first, the nearest ones; 0: none")
-      .why_without_effect = [](const Settings& all) {
-    return all.estimator.hidden == 0 ? "" : unless_hidden_sources(all);
-  };
+      .idle([](const Settings& all) { return all.estimator.hidden == 0 ? "" : unless_hidden_sources(all); });
   kept.own(
           {"separation", "auto|NUMBER", "scene units", "0 or more",
            "surfaces closer to each other are one; auto: by the depth's precision and slope"},
-          [&estimator] {
-            return estimator.separation ? fmt::format("{}", *estimator.separation) : std::string("auto");
+          [](const EstimatorSettings& s) {
+            return s.separation ? fmt::format("{}", *s.separation) : std::string("auto");
           },
-          [&estimator](const std::string& text) { return read_separation(text, estimator.separation); },
+          [](EstimatorSettings& s, const std::string& text) { return read_separation(text, s.separation); },
           "is neither auto nor a length of 0 or more")
-      .why_without_effect = [](const Settings& all) {
-    return all.estimator.separation ? unless_hidden_sources(all) : "";
-  };
+      .others_idle(unless_hidden_sources);
 }
 
 }  // namespace alcove

@@ -55,61 +55,61 @@ std::string text_of_memory(std::uint64_t bytes) {
   return power ? fmt::format("{}{}", bytes, char(kUnits[power - 1] - 'a' + 'A')) : fmt::format("{}", bytes);
 }
 
-void add_frame_rows(std::vector<OptionRow>& rows, RunOptions& options) {
-  FrameSettings& s = options.settings.frames;
-  OptionGroup frames(rows, "Frames", Effect::none);
-  frames.text("--frames", s.frames, "LIST", "such as 1001-1100x2,1200; else those of INPUT on the disk").is_common =
+void add_frame_rows(std::vector<SettingRow>& rows) {
+  using S = FrameSettings;
+  OptionGroup frames(rows, "Frames", Effect::none, &Settings::frames);
+  frames.text("--frames", &S::frames, "LIST", "such as 1001-1100x2,1200; else those of INPUT on the disk").is_common =
       true;
-  frames.number("output-offset", s.output_offset, "frames", between(-1e9, 1e9),
+  frames.number("output-offset", &S::output_offset, "frames", between(-1e9, 1e9),
                 "from the numbers of the inputs to those of the outputs");
   frames.own(
       {"--chunk", "I/N", "", "I from 1 to N", "compute only this part of the frames"},
-      [&s] { return s.chunks > 1 ? fmt::format("{}/{}", s.chunk, s.chunks) : std::string(); },
-      [&s](const std::string& text) { return read_chunk(text, s); }, "is not I/N, with I from 1 to N");
-  frames.choice("missing", s.missing, "what a frame without its input is: an error before any work, or left out");
-  frames.flag("--keep-going", s.keep_going, "a frame that fails does not end the run");
-  frames.flag("warnings-as-errors", s.warnings_as_errors, "a frame with a warning fails, and nothing of it is written");
-  frames.flag("--resume", s.resume, "compute only frames whose outputs are missing, broken or out of date").is_common =
-      true;
-  frames.flag("overwrite", s.overwrite, "compute all frames, whatever --resume says");
-  frames.flag("--dry-run", options.dry_run, "print frames, files and memory, and stop").is_key = false;
+      [](const S& s) { return s.chunks > 1 ? fmt::format("{}/{}", s.chunk, s.chunks) : std::string(); },
+      [](S& s, const std::string& text) { return read_chunk(text, s); }, "is not I/N, with I from 1 to N");
+  frames.choice("missing", &S::missing, "what a frame without its input is: an error before any work, or left out");
+  frames.flag("--keep-going", &S::keep_going, "a frame that fails does not end the run");
+  frames.flag("warnings-as-errors", &S::warnings_as_errors,
+              "a frame with a warning fails, and nothing of it is written");
+  frames.flag("--resume", &S::resume, "compute only frames whose outputs are missing, broken or out of date")
+      .is_common = true;
+  frames.flag("overwrite", &S::overwrite, "compute all frames, whatever --resume says");
+  frames.show({"--dry-run", "", "", "", "print frames, files and memory, and stop"});
 }
 
-void add_device_rows(std::vector<OptionRow>& rows, DeviceSettings& s) {
-  OptionGroup device(rows, "Device", Effect::none, true), process(rows, "Device", Effect::none);
-  device.text("--device", s.device, "auto|cpu|INDEX|NAME|UUID", "where to compute; auto: the first GPU, else the CPU");
-  device.flag("require-gpu", s.require_gpu, "computing on the CPU is an error");
-  device.flag("--validate", s.validate, "load the Vulkan validation layer; any message is an error");
-  device.flag("no-pipeline-cache", s.no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
+void add_device_rows(std::vector<SettingRow>& rows) {
+  using S = DeviceSettings;
+  OptionGroup device(rows, "Device", Effect::none, &Settings::device, true);
+  OptionGroup process(rows, "Device", Effect::none, &Settings::device);
+  device.text("--device", &S::device, "auto|cpu|INDEX|NAME|UUID",
+              "where to compute; auto: the first GPU, else the CPU");
+  device.flag("require-gpu", &S::require_gpu, "computing on the CPU is an error");
+  device.flag("--validate", &S::validate, "load the Vulkan validation layer; any message is an error");
+  device.flag("no-pipeline-cache", &S::no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
   process.own(
       {"--memory", "SIZE", "bytes, or with K, M, G", "", "of the whole process; else half of what is free"},
-      [&s] { return text_of_memory(s.memory); }, [&s](const std::string& text) { return read_memory(text, s.memory); },
-      "is no size such as 512M or 4G");
-  process.number("--threads", s.threads, "", between(0, 1024), "of the CPU device and of codecs; 0: one per core");
+      [](const S& s) { return text_of_memory(s.memory); },
+      [](S& s, const std::string& text) { return read_memory(text, s.memory); }, "is no size such as 512M or 4G");
+  process.number("--threads", &S::threads, "", between(0, 1024), "of the CPU device and of codecs; 0: one per core");
 }
 
-void add_report_rows(std::vector<OptionRow>& rows, RunOptions& options) {
-  ProgressOptions& progress = options.progress;
-  OptionGroup reports(rows, "Reports", Effect::none);
-  reports.text("--stats", options.settings.output.stats, "FILE.json", "times of every pass, counts and totals");
-  const auto if_quiet = [&progress](const Settings&) {
-    return if_given(progress.quiet, "--quiet", "one asks for lines, the other for none");
+void add_report_rows(std::vector<SettingRow>& rows) {
+  OptionGroup files(rows, "Reports", Effect::none, &Settings::output);
+  OptionGroup progress(rows, "Reports", Effect::none, &Settings::progress);
+  static const char* const kWhy = "one asks for lines, the other for none";
+  const auto shows_lines = [](const Settings& all) {
+    return all.progress.kind == "bar" || all.progress.kind == "plain";
   };
-  reports
-      .word("--progress", progress.kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
+  files.text("--stats", &OutputSettings::stats, "FILE.json", "times of every pass, counts and totals");
+  progress
+      .word("--progress", &ProgressSettings::kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
             "plain: one line per frame; percent, openjd: on standard output, as farms read it")
-      .why_without_effect = [&progress, if_quiet](const Settings& all) {
-    return progress.kind == "bar" || progress.kind == "plain" ? if_quiet(all) : "";
-  };
-  reports.text("--log-json", options.settings.output.log_json, "FILE|-", "one JSON object per line for every event");
-  reports.flag("-v,--verbose", progress.verbose, "say more: the time of every pass").why_without_effect = if_quiet;
-  reports.flag("-q,--quiet", progress.quiet, "say nothing but errors").why_without_effect =
-      [&progress](const Settings&) {
-        const char* const why = "one asks for lines, the other for none";
-        const bool shows = progress.kind == "bar" || progress.kind == "plain";
-        return first_of({if_given(progress.verbose, "--verbose", why), if_given(shows, "--progress", why)});
-      };
-  reports.flag("--print-config", options.print_config, "print the settings as a preset and stop").is_key = false;
+      .idle([=](const Settings& all) { return if_given(shows_lines(all) && all.progress.quiet, "--quiet", kWhy); });
+  files.text("--log-json", &OutputSettings::log_json, "FILE|-", "one JSON object per line for every event");
+  progress.flag("-v,--verbose", &ProgressSettings::verbose, "say more: the time of every pass");
+  progress.flag("-q,--quiet", &ProgressSettings::quiet, "say nothing but errors").idle([=](const Settings& all) {
+    return if_given(shows_lines(all), "--progress", kWhy);
+  });
+  progress.show({"--print-config", "", "", "", "print the settings as a preset and stop"});
 }
 
 /// Text as a cell of a table in Markdown, where a bar would end it.
@@ -142,28 +142,67 @@ std::string toml_of(const std::string& word) {
 
 }  // namespace
 
-std::vector<OptionRow> option_table(RunOptions& options) {
-  std::vector<OptionRow> rows;
-  add_input_rows(rows, options.settings.input);
-  add_hidden_rows(rows, options.settings);
-  add_frame_rows(rows, options);
-  add_estimator_rows(rows, options);
-  add_output_rows(rows, options.settings.output);
-  add_device_rows(rows, options.settings.device);
-  add_report_rows(rows, options);
-  return rows;
+const std::vector<SettingRow>& option_table() {
+  static const std::vector<SettingRow> kTable = [] {
+    std::vector<SettingRow> rows;
+    add_input_rows(rows);
+    add_hidden_rows(rows);
+    add_frame_rows(rows);
+    add_estimator_rows(rows);
+    add_output_rows(rows);
+    add_device_rows(rows);
+    add_report_rows(rows);
+    return rows;
+  }();
+  return kTable;
 }
 
-const OptionRow& row_of_key(const std::vector<OptionRow>& table, const std::string& key) {
-  const auto row = std::ranges::find(table, key, &OptionRow::key);
-  if (row == table.end()) {
+const SettingRow& row_of_key(const std::string& key) {
+  const auto row = std::ranges::find(option_table(), key, &SettingRow::key);
+  if (row == option_table().end()) {
     std::vector<std::string> keys;
-    for (const auto& known : table)
-      if (known.is_key) keys.push_back(known.key());
+    for (const auto& other : option_table())
+      if (other.is_key()) keys.push_back(other.key());
     fail(ErrorKind::usage, "there is no setting {}{}", key, suggestion(key, keys));
   }
-  if (!row->is_key) fail(ErrorKind::usage, "{} is an option of the command line only", key);
+  if (!row->is_key()) fail(ErrorKind::usage, "{} is an option of the command line only", key);
   return *row;
+}
+
+const std::vector<Rivals>& rivals() {
+  static const char* const kCamera = "each of them says what the camera sees";
+  static const std::vector<Rivals> kRivals{
+      {{"depth"}, {"position"}, "both say how far away surfaces are"},
+      {{"depth-channel"}, {"position", "position-channels"}, "depth is read from one of them"},
+      {{"camera"}, {"fov", "focal", "aperture", "ortho-width"}, kCamera},
+      {{"fov"}, {"focal", "aperture", "ortho-width"}, kCamera},
+      {{"focal", "aperture"}, {"ortho-width"}, kCamera},
+      {{"occluders"}, {"ignore"}, "each says what blocks"},
+      {{"occluders", "ignore"},
+       {"around", "other-views"},
+       "what other frames and views show behind an object may be the object itself"},
+      {{"tolerance"}, {"resolution"}, "the error is that of every pixel at --resolution full"},
+      {{"tolerance"}, {"accumulate"}, "each says how exact the AO gets"},
+      {{"denoise-kernel"}, {"denoise-radius"}, "as many weights as there are make the radius"},
+      {{"quiet"}, {"verbose"}, "one asks for lines, the other for none"}};
+  return kRivals;
+}
+
+std::string objection(const SettingRow& row, const Settings& settings) {
+  const bool is_given = row.is_given(settings);
+  if (row.words(settings).empty() || (row.usual_asks_nothing && !is_given)) return "";
+  std::string why = row.why_without_effect ? row.why_without_effect(settings) : "";
+  const auto look_for = [&](const Words& own, const Words& others, const char* reason) {
+    if (!why.empty() || !is_given || std::ranges::find(own, row.key()) == own.end()) return;
+    for (const auto& key : others)
+      if (const SettingRow& other = row_of_key(key); why.empty() && other.is_given(settings))
+        why = if_given(true, other.long_name(), reason);
+  };
+  for (const auto& [one, other, reason] : rivals()) {
+    look_for(one, other, reason);
+    look_for(other, one, reason);
+  }
+  return why.empty() ? "" : fmt::format("{} has no effect: {}", row.long_name(), why);
 }
 
 std::string range_text(const OptionRow& row) {
@@ -171,13 +210,11 @@ std::string range_text(const OptionRow& row) {
 }
 
 std::string option_table_markdown() {
-  RunOptions options;
-  const auto rows = option_table(options);
   std::string text;
   for (const bool shows_keys : {false, true}) {
     text += shows_keys ? "\n## Other settings\n\nOf presets, and of `--set KEY=VALUE`.\n" : "";
     std::string group;
-    for (const auto& row : rows) {
+    for (const auto& row : option_table()) {
       if (row.is_only_key() != shows_keys) continue;
       if (row.group != group) text += fmt::format("\n| {} | unit, range | default | |\n|---|---|---|---|\n", row.group);
       group = row.group;
@@ -189,11 +226,12 @@ std::string option_table_markdown() {
   return text.substr(1);
 }
 
-std::string preset_text(const std::vector<OptionRow>& rows, const Settings& settings) {
+std::string preset_text(const Settings& settings) {
   std::string text;
-  for (const auto& row : rows) {
-    Words words = row.words();
-    if (!row.is_key || words.empty() || !row.objection(settings).empty()) continue;
+  for (const auto& row : option_table()) {
+    if (!row.is_key()) continue;
+    Words words = row.words(settings);
+    if (words.empty() || !objection(row, settings).empty()) continue;
     for (auto& word : words) word = toml_of(word);
     const std::string list = fmt::format("{}", fmt::join(words, ", "));
     text += fmt::format("{}={}\n", row.key(), words.size() > 1 ? "[" + list + "]" : list);

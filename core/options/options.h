@@ -1,5 +1,5 @@
 // ONE table of options: it serves the command line, --help, the keys of presets, --print-config, docs/options.md,
-// and the digest by which --resume knows its files. What presets and the command line say becomes settings here.
+// and the digest by which --resume knows its files. Values from presets and the command line become settings here.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,27 +12,22 @@
 
 namespace alcove {
 
-/// How a run reports its progress.
-struct ProgressOptions {
-  std::string kind = "auto";  // auto, bar, plain, percent, openjd or none; auto: a bar on a terminal, else plain
-  bool verbose = false, quiet = false;
-};
-
-/// What the command line of `alcove run` says: the settings, and what only the command line itself needs.
-struct RunOptions {
-  Settings settings;
-  Words presets;
-  Words set;  // KEY=VALUE, as typed
-  bool print_config = false;
-  bool dry_run = false;
-  ProgressOptions progress;
-};
-
-/// Gives the table, bound to `options`, whose present values are the defaults. `options` must outlive it.
-std::vector<OptionRow> option_table(RunOptions& options);
+/// The table of all options of `alcove run` but INPUT; it is made once.
+const std::vector<SettingRow>& option_table();
 
 /// Gives the row of a key of presets. Fails with ErrorKind::usage, naming the nearest, where there is none.
-const OptionRow& row_of_key(const std::vector<OptionRow>& table, const std::string& key);
+const SettingRow& row_of_key(const std::string& key);
+
+/// Settings of which each of `one` and each of `other` take each other's effect, by their keys.
+struct Rivals {
+  Words one, other;
+  const char* why;
+};
+const std::vector<Rivals>& rivals();
+
+/// Names the option and says why its value, where it is set at all, has no effect beside the others; "" where it has
+/// one.
+std::string objection(const SettingRow& row, const Settings& settings);
 
 /// Gives unit and range of a number, as help shows them; "" where there is neither.
 std::string range_text(const OptionRow& row);
@@ -40,37 +35,38 @@ std::string range_text(const OptionRow& row);
 /// Gives the table as docs/options.md shows it.
 std::string option_table_markdown();
 
-/// Gives the present values as a preset in TOML, one line per setting that has an effect.
-std::string preset_text(const std::vector<OptionRow>& rows, const Settings& settings);
+/// Gives the settings as a preset in TOML, one line for each that has an effect.
+std::string preset_text(const Settings& settings);
 
 // The groups of the table, each in its own file.
-void add_input_rows(std::vector<OptionRow>& rows, InputSettings& settings);
-void add_hidden_rows(std::vector<OptionRow>& rows, Settings& settings);
-void add_estimator_rows(std::vector<OptionRow>& rows, RunOptions& options);
-void add_output_rows(std::vector<OptionRow>& rows, OutputSettings& settings);
+void add_input_rows(std::vector<SettingRow>& rows);
+void add_hidden_rows(std::vector<SettingRow>& rows);
+void add_estimator_rows(std::vector<SettingRow>& rows);
+void add_output_rows(std::vector<SettingRow>& rows);
 
-// What was said: what beats what, what is refused.
+// Values from presets and the command line: which of them count, and which are refused.
 
-/// What was said of one option, and where.
-struct Said {
-  std::string option;  // its long name
+/// A value that a preset or the command line gives to a setting.
+struct OptionValue {
+  const SettingRow* row;
   Words words;
-  std::string preset = {};  // the preset that said it; "": the command line
+  std::string preset = {};  // the preset that gives it; "": the command line
 
   bool is_typed() const { return preset.empty(); }
 };
 
-/// For whom options are read. `alcove inspect` writes no outputs: there, no setting lacks one.
+/// The command that options are read for. `alcove inspect` writes no outputs: there, no setting lacks one.
 enum class Reader { run, inspect };
 
-/// Reads into `options` what was said, presets in their order and then the command line; later wins. What has no effect
-/// beside the rest is left out of presets, the earliest first. Fails with ErrorKind::usage on a value that is none, on
-/// what is typed and has no effect, and on settings of one preset that take each other's effect.
-void read_said(RunOptions& options, std::vector<Said> said, Reader reader = Reader::run);
+/// Gives the settings with these values, those of presets in their order and then those that were typed; later ones
+/// win. Values without effect beside the rest are left out of presets, the earliest first. Fails with ErrorKind::usage
+/// on a text that is no value, on a typed value without effect, and on values of one preset that take each other's
+/// effect.
+Settings with_values(const Settings& settings, std::vector<OptionValue> values, Reader reader = Reader::run);
 
-/// Gives what the text of a preset says, in its order; `preset` is for messages. Fails with ErrorKind::usage, naming
+/// Gives the values in the text of a preset, in its order; `preset` is for messages. Fails with ErrorKind::usage, naming
 /// preset and key, on keys that are no options.
-std::vector<Said> said_by_text(const std::string& preset, const std::string& text, const std::vector<OptionRow>& table);
+std::vector<OptionValue> preset_values(const std::string& preset, const std::string& text);
 
 /// Names and texts of presets/ without input/, sorted by name; generated by the build.
 const std::vector<std::pair<std::string, std::string>>& preset_texts();

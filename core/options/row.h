@@ -1,13 +1,18 @@
-// A row of the table of settings: what stands in help and docs/options.md, and how its value is read and said.
+// Rows of the tables of options: what help and docs/options.md show of an option, and how its value is read and written.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+
+#include <fmt/format.h>
 
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/base/settings.h"
 
@@ -26,40 +31,61 @@ enum class Effect {
 
 using Words = std::vector<std::string>;
 
-/// A row of the table. Only OptionGroup makes them, so that none is without its effect.
+/// An option as help shows it.
 struct OptionRow {
-  std::string group;
+  std::string group = {};
   // As typed, "--radius" or "-o,--output"; "filter-width" of a key, which is no option but set by --set and presets.
   std::string name;
-  std::string value;         // what stands behind it in help: FILE, NUMBER, the words to choose from; "" for a flag
-  std::string unit, range;   // of a number; "" where there is none
-  std::string sentence;      // ends without a full stop
-  std::string default_text;  // "" where there is none
-  Effect effect;
-  // Gives the present value as it would be typed, exactly, or nothing where it is not set. Only an option that
-  // repeats may have several words.
-  std::function<Words()> words;
-  // Takes a value. Fails with ErrorKind::usage, naming the option, what is wrong, and the nearest words.
-  std::function<void(const Words&)> read;
+  std::string value = {};     // what stands behind it in help: FILE, NUMBER, the words to choose from; "" for a flag
+  std::string unit = {};      // of a number; "" where there is none
+  std::string range = {};     // the same
+  std::string sentence = {};  // ends without a full stop
+  std::string default_text = {};  // "" where there is none
+  Effect effect = Effect::none;
   bool repeats = false;      // each value is one more
   bool is_required = false;  // of arguments without a name
-  bool is_key = true;        // whether presets may hold it
   bool is_common = false;    // among the few that --help shows; --help-all shows all
   bool in_library = false;   // libalcove takes it: not what names files, frames or reports, or how files are written
-  // Tells why the present value has no effect beside the other settings, in a sentence; "" where it has one, or asks
-  // for nothing. What is typed and has none is refused; of a preset it is left out. Null: it always has one.
-  std::function<std::string(const Settings&)> why_without_effect = nullptr;
 
-  /// The same, of what was set at all.
-  std::string objection(const Settings& settings) const;
   /// Whether it is set by --set and presets alone.
   bool is_only_key() const;
-
   bool is_flag() const { return value.empty() && (name.starts_with('-') || is_only_key()); }
-  /// What is typed: "--output" of "-o,--output", "--set filter-width" of a key.
+  /// The name in messages: "--output" of "-o,--output", "--set filter-width" of a key.
   std::string long_name() const;
   /// The key in presets and of --set: "output".
   std::string key() const;
+};
+
+/// An option whose value is a part of an `Options`.
+template <class Options>
+struct RowOf : OptionRow {
+  // Gives the value as it would be typed, exactly, or nothing where it is not set. Only an option that repeats may have
+  // several words.
+  std::function<Words(const Options&)> words = nullptr;
+  // Takes a value. Fails with ErrorKind::usage, naming the option, its mistake, and the nearest words. Null: the
+  // option is of the command line alone, and no part of `Options`.
+  std::function<void(Options&, const Words&)> read = nullptr;
+  // Tells why the value has no effect beside the others, in a sentence; "" where it has one, or asks for nothing. What
+  // is typed and has none is refused; of a preset it is left out. Null: it always has one.
+  std::function<std::string(const Options&)> why_without_effect = nullptr;
+  Words usual = {};                 // the words of the default
+  bool usual_asks_nothing = false;  // the default is no mistake, whatever is beside it
+
+  /// Sets the reason by which a value may have no effect. Reads as "idle unless denoised".
+  RowOf& idle(std::function<std::string(const Options&)> why) {
+    why_without_effect = std::move(why);
+    return *this;
+  }
+  /// The same of a row whose default asks for nothing.
+  RowOf& others_idle(std::function<std::string(const Options&)> why) {
+    usual_asks_nothing = true;
+    return idle(std::move(why));
+  }
+
+  /// Whether presets and --set may hold it.
+  bool is_key() const { return read != nullptr; }
+  /// Whether the value is another than the default.
+  bool is_given(const Options& options) const { return words(options) != usual; }
 };
 
 /// A number's allowed range, as text and as a check.
@@ -77,70 +103,156 @@ Range below_and_at_least(double low, double high);
 Range strictly_between(double low, double high);
 Range above_to(double low, double high);
 
-/// A given text as messages quote it: an empty one by its quotation marks.
-std::string said(const std::string& text);
+/// A text as messages quote it: an empty one by its quotation marks.
+std::string visible(const std::string& text);
 
-/// Reads a finite number of the range. Fails with ErrorKind::usage, naming the option.
-double number_in(const Range& range, const std::string& name, const std::string& text);
 /// Reads a text that is a whole number which an int can hold, and nothing else.
 std::optional<int> whole_number_of(const std::string& text);
 
-/// Appends rows of one group and one effect to a table. What they bind must outlive the rows; its present values are
-/// the defaults.
+// How values are read. All fail with ErrorKind::usage; the row names its option before the sentence.
+
+/// Reads a finite number of the range.
+double number_in(const Range& range, const std::string& text);
+/// Reads a whole number of the range.
+double whole_number_in(const Range& range, const std::string& text);
+/// Reads the state of a switch, as it stands in a preset or behind an equals sign.
+bool read_switch(const std::string& text);
+/// Gives the one of the words that the text is, in any case.
+std::string one_of(const Words& words, const std::string& text);
+/// Reads by `read`, and puts the name of the option before the sentence of an Error.
+void read_named(const std::string& option, const std::function<void()>& read);
+
+/// Leads from a struct to a member of one of its members.
+template <class Outer, class Inner>
+auto within(Outer outer, Inner inner) {
+  return [=](auto& object) -> auto& { return object.*outer.*inner; };
+}
+
+/// Appends rows of one group and one effect to a table. `part` leads from `Options` to the struct that has the values;
+/// `member` leads from there to a value. Both are pointers to members, or functions. The defaults are those of Options{}.
+template <class Options, class Part = std::identity>
 class OptionGroup {
  public:
-  OptionGroup(std::vector<OptionRow>& rows, std::string group, Effect effect, bool in_library = false)
-      : rows_(rows), group_(std::move(group)), effect_(effect), in_library_(in_library) {}
+  using Struct = std::remove_reference_t<std::invoke_result_t<Part, Options&>>;
+  using Row = RowOf<Options>;
 
-  OptionRow& text(const std::string& name, std::string& value, const char* what, const std::string& sentence);
-  OptionRow& flag(const std::string& name, bool& value, const std::string& sentence);
+  OptionGroup(std::vector<Row>& rows, std::string group, Effect effect, Part part = {}, bool in_library = false)
+      : rows_(rows), group_(std::move(group)), effect_(effect), part_(part), in_library_(in_library) {}
+
+  template <class Member>
+  Row& text(const char* name, Member member, const char* value, const std::string& sentence) {
+    return own(
+        {name, value, "", "", sentence}, [=](const Struct& s) -> std::string { return std::invoke(member, s); },
+        [=](Struct& s, const std::string& text) {
+          std::invoke(member, s) = text;
+          return true;
+        });
+  }
+
+  template <class Member>
+  Row& flag(const char* name, Member member, const std::string& sentence) {
+    Row& row = add(
+        {name, "", "", "", sentence}, [=](const Struct& s) { return std::invoke(member, s) ? Words{"true"} : Words{}; },
+        [=](Struct& s, const Words& words) { std::invoke(member, s) = read_switch(words.front()); });
+    row.default_text.clear();
+    return row;
+  }
+
   /// One of a few words.
-  OptionRow& word(const std::string& name, std::string& value, const Words& words, const std::string& sentence);
-  /// One of the words of an enumeration.
-  template <class T>
-  OptionRow& choice(const std::string& name, T& value, const std::string& sentence);
-  /// A finite number.
-  OptionRow& number(const std::string& name, double& value, const char* unit, const Range& range,
-                    const std::string& sentence);
-  OptionRow& number(const std::string& name, std::optional<double>& value, const char* unit, const Range& range,
-                    const std::string& sentence);
-  OptionRow& number(const std::string& name, int& value, const char* unit, const Range& range,
-                    const std::string& sentence);
-  OptionRow& number(const std::string& name, std::uint32_t& value, const char* unit, const Range& range,
-                    const std::string& sentence);
+  template <class Member>
+  Row& word(const char* name, Member member, const Words& words, const std::string& sentence) {
+    return add(
+        {name, fmt::format("{}", fmt::join(words, "|")), "", "", sentence},
+        [=](const Struct& s) { return Words{std::invoke(member, s)}; },
+        [=](Struct& s, const Words& given) { std::invoke(member, s) = one_of(words, given.front()); });
+  }
 
-  /// What an option of its own kind shows in help.
+  /// One of the words of an enumeration.
+  template <class Member>
+  Row& choice(const char* name, Member member, const std::string& sentence) {
+    using Value = std::remove_cvref_t<std::invoke_result_t<Member, Struct&>>;
+    Words words;
+    for (const auto& [word, meaning] : kWordsOf<Value>) words.push_back(word);
+    return add(
+        {name, fmt::format("{}", fmt::join(words, "|")), "", "", sentence},
+        [=](const Struct& s) { return Words{word_of(std::invoke(member, s))}; },
+        [=](Struct& s, const Words& given) {
+          const std::string text = one_of(words, given.front());
+          for (const auto& [word, meaning] : kWordsOf<Value>)
+            if (word == text) std::invoke(member, s) = meaning;
+        });
+  }
+
+  /// A finite number, which may be none where the member is an optional one.
+  template <class Member>
+  Row& number(const char* name, Member member, const char* unit, const Range& range, const std::string& sentence) {
+    using Value = std::remove_cvref_t<std::invoke_result_t<Member, Struct&>>;
+    return add(
+        {name, "NUMBER", unit, range.text, sentence},
+        [=](const Struct& s) {
+          const std::optional number = std::invoke(member, s);
+          return number ? Words{fmt::format("{}", *number)} : Words{};
+        },
+        [=](Struct& s, const Words& words) {
+          const auto read = std::is_integral_v<Value> ? whole_number_in : number_in;
+          std::invoke(member, s) = Value(read(range, words.front()));
+        });
+  }
+
+  /// What help shows of an option of its own kind.
   struct Shown {
     std::string name, value, unit, range, sentence;
   };
+
   /// `say` gives the present value, or "" where it is not set. `take` reads a text, and tells whether it is a value;
   /// where it is none, `complaint` follows the text in the message.
-  OptionRow& own(const Shown& shown, const std::function<std::string()>& say,
-                 const std::function<bool(const std::string&)>& take, const std::string& complaint);
-  OptionRow& add(const Shown& shown, std::function<Words()> words, std::function<void(const Words&)> read);
+  Row& own(const Shown& shown, std::function<std::string(const Struct&)> say,
+           std::function<bool(Struct&, const std::string&)> take, const std::string& complaint = "") {
+    return add(
+        shown,
+        [=](const Struct& s) {
+          const std::string text = say(s);
+          return text.empty() ? Words{} : Words{text};
+        },
+        [=](Struct& s, const Words& words) {
+          if (!take(s, words.front())) fail(ErrorKind::usage, "{} {}", visible(words.front()), complaint);
+        });
+  }
+
+  Row& add(const Shown& shown, std::function<Words(const Struct&)> words,
+           std::function<void(Struct&, const Words&)> read) {
+    Row& row = show(shown);
+    row.words = [=, part = part_](const Options& options) { return words(std::invoke(part, options)); };
+    row.read = [=, part = part_, option = row.long_name()](Options& options, const Words& given) {
+      read_named(option, [&] { read(std::invoke(part, options), given); });
+    };
+    row.usual = row.words(Options{});
+    if (!row.usual.empty()) row.default_text = row.usual.front();
+    return row;
+  }
+
+  /// An option of the command line alone.
+  Row& show(const Shown& shown) {
+    const auto& [name, value, unit, range, sentence] = shown;
+    return rows_.emplace_back(Row{{.group = group_,
+                                   .name = name,
+                                   .value = value,
+                                   .unit = unit,
+                                   .range = range,
+                                   .sentence = sentence,
+                                   .effect = effect_,
+                                   .in_library = in_library_}});
+  }
 
  private:
-  OptionRow& choice_row(const std::string& name, const Words& words, const std::string& sentence,
-                        const std::function<std::string()>& say, const std::function<void(const std::string&)>& take);
-  template <class T>
-  OptionRow& number_row(const std::string& name, T& value, const char* unit, const Range& range,
-                        const std::string& sentence);
-
-  std::vector<OptionRow>& rows_;
+  std::vector<Row>& rows_;
   const std::string group_;
   const Effect effect_;
+  const Part part_;
   const bool in_library_;
 };
 
-template <class T>
-OptionRow& OptionGroup::choice(const std::string& name, T& value, const std::string& sentence) {
-  Words words;
-  for (const auto& [word, meaning] : kWordsOf<T>) words.push_back(word);
-  const auto say = [&value] { return word_of(value); };
-  return choice_row(name, words, sentence, say, [&value](const std::string& text) {
-    for (const auto& [word, meaning] : kWordsOf<T>)
-      if (word == text) value = meaning;
-  });
-}
+/// The options that are settings.
+using SettingRow = RowOf<Settings>;
 
 }  // namespace alcove

@@ -11,7 +11,6 @@
 #include <numbers>
 #include <thread>
 
-#include "core/reference/reference_completion.h"
 #include "core/reference/reference_scene.h"
 #include "core/reference/reference_slice.h"
 
@@ -19,7 +18,7 @@ namespace alcove {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// Into so many parts a completed segment is cut where what is blocked weighs by its distance.
+/// The parts of a completed segment if blocked directions weigh by distance.
 constexpr int kPartsWithFalloff = 32;
 
 using Scene = ReferenceScene;
@@ -27,18 +26,18 @@ using Sample = ReferenceSample;
 using Receiver = ReferenceReceiver;
 using Side = ReferenceSide;
 
-/// Integral of cos(theta - gamma) |sin(theta)| from 0 to h (Jimenez et al. 2016, equation 7).
+/// The integral of cos(theta - gamma) |sin(theta)| from 0 to h (Jimenez et al. 2016, equation 7).
 double arc(double h, double gamma) {
   return 0.25 * (std::cos(gamma) + 2 * h * std::sin(gamma) - std::cos(2 * h - gamma));
 }
 
-/// The weight of Simpson's rule at the i-th of so many parts' ends.
+/// The weight of Simpson's rule at the i-th end of `parts` parts.
 double simpson_weight(int i, int parts) {
   if (i == 0 || i == parts) return 1;
   return i % 2 ? 4 : 2;
 }
 
-/// Integral of cos(theta - gamma) sin(theta) (sin(theta), cos(theta)) by Simpson's rule.
+/// The integral of cos(theta - gamma) sin(theta) (sin(theta), cos(theta)), by Simpson's rule.
 Vector bent_between(double from, double to, double gamma) {
   const int parts = 2 * (1 + int(8 * (to - from)));
   const double width = (to - from) / parts;
@@ -56,8 +55,8 @@ class Blocked {
  public:
   Blocked(double gamma, bool with_bent) : gamma_(gamma), with_bent_(with_bent) {}
 
-  /// Blocks [from, to] and returns the integrals over what was open of it: the arc's, and the bent normal's along T and
-  /// V.
+  /// Blocks [from, to] and returns the integrals over the part of it that was open: the arc's, and the bent normal's
+  /// along T and V.
   Vector add(double from, double to) {
     if (!(to > from)) return {};
     Vector fresh = integrals(from, to);
@@ -96,7 +95,7 @@ double weight_of(const ReferenceSettings& settings, double distance) {
   return 1 - x * x * (3 - 2 * x);
 }
 
-/// Where the line between two offsets, one within the radius and one beyond, leaves the sphere.
+/// The point where the line between two offsets, one within the radius and one beyond, leaves the sphere.
 Vector crossing(Vector within, Vector beyond, double radius) {
   const Vector step = beyond - within;
   const double a = dot(step, step);
@@ -105,8 +104,8 @@ Vector crossing(Vector within, Vector beyond, double radius) {
   return within + ((std::sqrt(std::max(0.0, b * b - a * c)) - b) / a) * step;
 }
 
-/// The angles that the surface between two neighbouring samples spans, as far as it lies within the radius; empty
-/// (first > second) where it does not.
+/// The angles that the surface between two neighbouring samples spans within the radius; empty (first > second) if it
+/// lies outside.
 std::pair<double, double> span_between(const Scene& scene, const Receiver& receiver, const Side& side, const Sample& a,
                                        const Sample& b, double radius) {
   Vector from = a.position - receiver.position;
@@ -119,13 +118,13 @@ std::pair<double, double> span_between(const Scene& scene, const Receiver& recei
   return std::minmax({angle_of(side, from), angle_of(side, to)});
 }
 
-/// What a slice's side blocks.
+/// The integrals over the blocked angles of a slice's side.
 struct Arcs {
-  Vector seen;       // by what the picture shows
-  Vector completed;  // by completed surfaces besides
+  Vector seen;       // blocked by visible surfaces
+  Vector completed;  // blocked by completed surfaces alone
 };
 
-/// The blocked angles of one side, and what may block them.
+/// Computes the blocked angles of one side of a slice.
 class Blocking {
  public:
   Blocking(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings,
@@ -169,15 +168,16 @@ class Blocking {
     return sum;
   }
 
-  /// The angle where what is behind a point ends, as seen from the eye, as far as it is thick and within the sphere of
-  /// the radius.
+  /// The angle, as seen from the receiver, of the end of the solid behind a point: it lies on the eye's ray, and within
+  /// the sphere of the radius.
   double back_of(Vector position, Vector offset, double distance, double front, double thickness) const {
     const Vector away = scene_.orthographic() ? Vector{0, 0, -1} : normalized(position);
     const double along = dot(offset, away);
     const double exit =
         -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings_.radius * settings_.radius));
     const double angle = angle_of(side_, offset + std::min(thickness, exit) * away);
-    // An angle that wrapped round is beyond the tangent plane. On the sphere, rounding may leave nothing of it.
+    // An angle that wrapped round lies beyond the tangent plane. On the sphere, rounding may turn the end before the
+    // front.
     return angle < 0 ? limit_ : std::min(std::max(angle, front), limit_);
   }
 
@@ -193,7 +193,7 @@ class Blocking {
     return sum;
   }
 
-  /// The fronts of a straight part are one interval of angles, and the backs follow them.
+  /// Blocks a straight part: its fronts are one interval of angles, and its backs follow them.
   Vector by_part(Vector from, Vector to, double thickness) {
     const auto [low, high] = std::minmax({angle_of(side_, from), angle_of(side_, to)});
     if (low <= 0 || low >= lowest_) return {};
@@ -212,13 +212,13 @@ class Blocking {
   const Side& side_;
   const ReferenceSettings& settings_;
   double limit_;   // the tangent plane
-  double lowest_;  // where blocking begins
+  double lowest_;  // the angle where blocking begins
   Blocked blocked_;
 };
 
 struct Openness {
   double visibility = 1;
-  double completed = 0;  // how much more would be visible without completed surfaces
+  double completed = 0;  // the visibility that completed surfaces take
   Vector bent;           // the mean open direction
 };
 
@@ -246,7 +246,7 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
     const Vector shift = (n_b / (weight * weight)) * across;
     for (const int sign : {-1, 1}) {
       const Vector tangent = double(sign) * t;
-      // The image of the tangent at the receiver, and how far along it the sphere of the radius is seen.
+      // The image of the tangent at the receiver, and the distance along it at which the sphere of the radius ends.
       const double depth = receiver.depth;
       const double du = scene.orthographic() ? tangent.x : tangent.x + receiver.position.x / depth * tangent.z;
       const double dv = scene.orthographic() ? tangent.y : tangent.y + receiver.position.y / depth * tangent.z;
@@ -292,7 +292,7 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings, bool 
   reference.complete = settings.complete;
   reference.hidden = settings.hidden;
   reference.separation = settings.separation.value_or(-1);
-  // Width stands in for what is hidden. Where that is known or guessed, half of it is nearer to ray tracing.
+  // Width stands in for hidden surfaces. If these are known or guessed, half of it is nearer to ray tracing.
   if (settings.complete == Completion::all || (with_hidden && settings.hidden > 0)) {
     reference.width_share = 0.5;
     reference.width_pixels = 1;
@@ -302,7 +302,7 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings, bool 
 
 namespace {
 
-/// Calls `take` with the index and the openness of every pixel that was asked for and is no sky, from several threads.
+/// Calls `take` with the index and the openness of every pixel that was asked for and is not sky, from several threads.
 void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool with_bent,
                 const std::function<void(std::size_t, const Openness&)>& take) {
   const Scene scene(frame, settings.hidden, settings.separation);

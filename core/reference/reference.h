@@ -1,8 +1,10 @@
-// The estimators again, slow, in double precision, on the CPU: the oracle that kernels are tested against.
+// The estimators a second time, slow, in double precision, on the CPU: the oracle that kernels and presets are tested
+// against.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every pixel along each slice is looked at; there is no noise. The distance of a kernel to it is the *estimator
-// error*; its own distance to ray tracing is the *missing-geometry error*, what one depth layer cannot show.
+// The reference looks at every pixel along each slice, and has no noise. The distance of a kernel to it is the
+// *estimator error*; its own distance to ray tracing is the *missing-geometry error*, due to geometry that one depth
+// layer cannot show.
 #pragma once
 
 #include <vector>
@@ -12,13 +14,13 @@
 
 namespace alcove {
 
-/// How far an occluder goes on behind the surface that the depth buffer shows.
+/// The thickness of occluders behind the surface that the depth buffer shows.
 enum class ThicknessRule {
-  infinite,  // for ever, within the sphere of the radius
+  infinite,  // as far as the sphere of the radius
   constant,  // a length along the sample's own view ray
-  // As wide as the run of neighbours along the slice that it belongs to, which is its chord and a pixel, times
-  // width_share, and width_pixels more pixels. The receiver's own run is infinite, and but for Completion::none that
-  // is a run which the picture's border cuts.
+  // the width of the sample's run of neighbours along the slice (its chord and a pixel), times width_share, and
+  // width_pixels more pixels. The receiver's own run is infinite. Except with Completion::none, a run that the
+  // picture's border cuts is at least half a radius thick.
   width,
 };
 
@@ -31,30 +33,38 @@ struct ReferenceSettings {
   double thickness_length = 0;  // scene units, > 0; with ThicknessRule::constant
   double width_share = 1;       // > 0; with ThicknessRule::width
   double width_pixels = 0;      // px, >= 0; with ThicknessRule::width
-  // Where surfaces go on straight although the picture does not show it: docs/completion.md. Behind what is nearer they
-  // do only where occluders have an end.
+  // Places where surfaces go on straight although the picture does not show it: docs/completion.md. Behind nearer
+  // surfaces they go on only if occluders have an end.
   Completion complete = Completion::none;
-  int hidden = 3;                   // surfaces behind the first that count, where the frame has any; 0 to 3
-  double separation = -1;           // scene units: surfaces closer than it are one; below 0: as layers.comp takes it
+  int hidden = 3;                   // the most surfaces behind the first that count; 0 to 3
+  double separation = -1;           // scene units: surfaces closer together are one; below 0: as in layers.comp
   double bias = 0;                  // sine of the elevation above the tangent plane below which nothing blocks
   int threads = 0;                  // 0: one per core
-  std::vector<std::size_t> pixels;  // indices of those to compute; empty: all
+  std::vector<std::size_t> pixels;  // indices of the pixels to compute; empty: all
 };
 
-/// What the estimators gtao and bitmask are meant to compute with these settings, but for intensity and power.
-/// settings.radius must be set. `with_hidden`: for a frame that knows surfaces behind the first.
+/// The settings for the values that the estimators gtao and bitmask aim at with these settings, before intensity and
+/// power. settings.radius must be set. `with_hidden`: for a frame with known surfaces behind the first.
 ReferenceSettings reference_settings_of(const EstimatorSettings& settings, bool with_hidden = false);
 
-/// One visibility in [0, 1] per pixel, 1 on sky and where no pixel was asked for. The frame must have planar depth and
-/// normals. Fails with ErrorKind::input otherwise.
+/// Gives the visibility in [0, 1] of each pixel; 1 on sky and at pixels that were not asked for. The frame must have
+/// planar depth and normals. Fails with ErrorKind::input otherwise.
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings);
 
-/// By how much the visibility would be higher without what completed surfaces block, with the same thickness: in [0, 1]
-/// per pixel, 0 on sky and where no pixel was asked for.
+/// Gives the visibility that completed surfaces take from each pixel, in [0, 1]; 0 on sky and at pixels that were not
+/// asked for. Thickness is the same with and without them.
 std::vector<float> reference_completed(const HostFrame& frame, const ReferenceSettings& settings);
 
-/// The mean open direction in view space, cosine weighted, as planes x, y, z: 2/3 of the normal where nothing is
-/// blocked; 0 on sky and where no pixel was asked for.
+/// Gives the mean open direction in view space, cosine weighted, as planes x, y, z: 2/3 of the normal if nothing is
+/// blocked; 0 on sky and at pixels that were not asked for.
 std::vector<float> reference_bent(const HostFrame& frame, const ReferenceSettings& settings);
+
+/// Gives the visibility in [0, 1] of each pixel by the settings' estimator (gtao, hbao, crytek) with its radius, bias,
+/// falloff and kernel, intensity and power. That is its result at full resolution with so many directions and samples
+/// that nothing is left to smooth; slices, steps, resolution, denoiser and seed are ignored. `pixels` are the indices
+/// to compute; empty: all. The others and sky have 1. The radius must be set. The frame must have planar depth and
+/// normals. Fails with ErrorKind::input otherwise, and with ErrorKind::usage on another estimator.
+std::vector<float> reference_estimate(const HostFrame& frame, const EstimatorSettings& settings,
+                                      const std::vector<std::size_t>& pixels = {});
 
 }  // namespace alcove

@@ -1,9 +1,9 @@
 // Completed surfaces along one side of a slice, as straight segments.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// "Nearness" is 1 / z, and with an orthographic camera -z: a plane's is linear on the image, and what is nearer to the
-// eye has the larger one.
-#include "core/reference/reference_completion.h"
+// "Nearness" is 1 / z, or -z with an orthographic camera. That of a plane is linear on the image, and surfaces nearer
+// to the eye have a larger one.
+#include "core/reference/reference_slice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,21 +12,21 @@
 namespace alcove {
 namespace {
 
-/// A surface goes on from its end only where that stands so high above the receiver's tangent plane, as a part of its
-/// distance. Lower ends would turn the rounding of flat surfaces into occluders.
+/// The least height of a surface's end above the receiver's tangent plane, as a part of its distance, for it to go on.
+/// Lower ends would turn the rounding of flat surfaces into occluders.
 constexpr double kLeastHeight = 1e-3;
-/// The normal's plane says nothing about a surface that is seen more nearly edge on than this: the dot product of the
-/// normal and the view ray, which is 1 long along the optical axis.
+/// The least facing for which the normal's plane counts: the dot product of the normal and the view ray, which is 1
+/// long along the optical axis. Surfaces seen more nearly edge on have no reliable plane.
 constexpr double kLeastFacing = -0.02;
-/// Beyond the border a surface goes on along the line through so many of its last pixels, and at least so many.
+/// The last pixels through which a surface's line beyond the border runs, and the least number of them.
 constexpr int kPixelsOfBorder = 4;
 constexpr int kLeastPixelsOfBorder = 3;
 
 /// The straight line along which a surface goes on from the end of its run.
 struct Course {
   int edge = 0;         // index of the end's sample
-  int step = 0;         // of it
-  double nearness = 0;  // there, on the slice's image line
+  int step = 0;         // of that sample
+  double nearness = 0;  // of the end, on the slice's image line
   double slope = 0;     // of nearness per step away from the receiver
 
   double at(double at_step) const { return nearness + slope * (at_step - step); }
@@ -44,7 +44,7 @@ class Completer {
       for (int first = 0; first < int(line_.samples.size()); first++) {
         if (sample(first).depth == 0 || sample(first).nearer >= 0) continue;
         const int last = last_of_run(line_, first);
-        // The line of a single pixel is not known.
+        // A single pixel shows no line.
         if (last == first) continue;
         const int begin = line_.step_of(first);
         const int end = line_.step_of(last);
@@ -58,16 +58,16 @@ class Completer {
 
  private:
   const ReferenceSample& sample(int i) const { return line_[i]; }
-  /// The surface of a pixel behind which nothing is known: the last, or the first where others than those that are
-  /// listed may be there.
+  /// The index of the surface of a pixel behind which nothing is known: the last one, or the first one if lists may
+  /// lack surfaces.
   int hiding_surface() const { return scene_.lists_all() ? line_.surfaces - 1 : 0; }
   const ReferenceSample& hider(int step) const { return line_.at(step, hiding_surface()); }
-  /// Only what is seen goes on. Hidden surfaces are facts, and to guess further from them was worse: docs/hidden.md.
+  /// Only visible surfaces go on. Hidden surfaces are facts, and guesses from them made errors larger: docs/hidden.md.
   bool is_seen(int i) const { return i % line_.surfaces == 0; }
   bool hides(int step, int what) const { return hider(step).depth > 0 && hider(step).depth < sample(what).depth; }
 
   double nearness_at(double depth) const { return scene_.orthographic() ? -depth : 1 / depth; }
-  /// Sky is infinitely far.
+  /// The nearness of a sample; sky is infinitely far.
   double nearness_of(const ReferenceSample& sample) const {
     return nearness_at(sample.depth > 0 ? sample.depth : INFINITY);
   }
@@ -79,7 +79,7 @@ class Completer {
            scene_.across(side_.step_x * step, side_.step_y * step, depth) - receiver_.position;
   }
 
-  /// The change of nearness on the plane through a sample across the normal there; none where that is seen edge on.
+  /// The change of nearness on the plane through a sample across its normal; none if the plane is seen edge on.
   std::optional<double> change_on_plane(int i, double x_px, double y_px) const {
     const auto [x, y] = pixel_at(receiver_, side_, line_.step_of(i));
     const Vector ray = scene_.position(x, y, 1) - scene_.position(x, y, 0);
@@ -90,8 +90,8 @@ class Completer {
     return dot(normal, scene_.across(x_px, y_px, 1)) / facing * scale;
   }
 
-  /// The nearness of the sample `i`, moved from its pixel's centre to the slice's image line along the plane of the
-  /// sample `edge`.
+  /// The nearness of sample `i`, moved from its pixel's centre to the slice's image line along the plane of sample
+  /// `edge`.
   double on_line(int i, int edge) const {
     const int step = line_.step_of(i);
     const auto [x, y] = pixel_at(receiver_, side_, step);
@@ -100,8 +100,8 @@ class Completer {
     return nearness_of(sample(i)) + change_on_plane(edge, off_x, off_y).value_or(0);
   }
 
-  /// The mean of two: the line from the sample `other` of the same run, and the plane of the end. The line follows
-  /// what curves, and the plane what is only a few pixels wide.
+  /// The course from the end of a run: the mean of the line from sample `other` of the same run, and of the plane at
+  /// the end. The line follows curved surfaces, and the plane serves surfaces a few pixels wide.
   Course course_from(int edge, int other) const {
     Course course;
     course.edge = edge;
@@ -118,7 +118,7 @@ class Completer {
     return dot(receiver_.normal, offset) >= kLeastHeight * length(offset);
   }
 
-  /// Whether what goes on has left the sphere's range of depth for good.
+  /// Whether a surface that goes on has left the sphere's range of depth for good.
   bool has_left(double nearness, double change) const {
     const double nearest = receiver_.depth - settings_.radius;
     if (change < 0) return nearness < nearness_at(receiver_.depth + settings_.radius);
@@ -134,7 +134,7 @@ class Completer {
     return course_from(last, first);
   }
 
-  /// From the end of a run of several pixels: away from the receiver (way 1), or towards it (-1).
+  /// Continues the end of a run of several pixels: away from the receiver (way 1), or towards it (-1).
   void go_on_behind(int edge, int way) {
     if (!stands_above(edge)) return;
     const Course course = course_from(edge, way > 0 ? sample(edge).nearer : sample(edge).farther);
@@ -147,7 +147,8 @@ class Completer {
     }
   }
 
-  /// What goes on behind the last surface before the border may come to lie before it beyond the border.
+  /// Adds a surface that goes on behind the last one before the border: beyond the border it may come to lie in front
+  /// of it.
   void add_beyond_border(const Course& course) {
     const int last = steps_ - 1;
     if (!beyond_border_) return add(course, last);
@@ -157,17 +158,18 @@ class Completer {
     add(course, last + std::max(0.0, behind / closing));
   }
 
-  /// As far as so many steps from the receiver.
+  /// Adds the segment of a course up to `step` steps from the receiver.
   void add(const Course& course, double step) {
     if (step == course.step) return;
     const Vector from = sample(course.edge).position - receiver_.position;
     add_part(course, from, point(step, course.at(step)) - from, 1, step > course.step);
   }
 
-  /// As far as the sphere, or the plane of the eye.
+  /// Adds the segment of a course up to the sphere, or to the plane of the eye.
   void add_ray(const Course& course, int way) {
     const Vector from = sample(course.edge).position - receiver_.position;
-    // The direction is that to a point a step away, or half the way to where the surface is infinitely far.
+    // The direction is that to a point one step away, or half way to the step where the surface would be infinitely
+    // far.
     const double change = course.slope * way;
     const bool vanishes = !scene_.orthographic() && change < 0;
     const double step = course.step + way * (vanishes ? std::min(1.0, 0.5 * course.nearness / -change) : 1);
@@ -176,7 +178,7 @@ class Completer {
     add_part(course, from, along, meets_eye ? sample(course.edge).depth / along.z : INFINITY, way > 0);
   }
 
-  /// The points from + t along, 0 <= t <= most, that are in the sphere.
+  /// Adds the points from + t along, 0 <= t <= most, that lie in the sphere.
   void add_part(const Course& course, Vector from, Vector along, double most, bool away) {
     const double a = dot(along, along);
     const double b = dot(from, along);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Written for reading, not for speed, and apart from the kernels: nothing but the formulas is shared.
-#include "core/reference/reference_estimators.h"
+#include "core/reference/reference.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +10,13 @@
 #include <numeric>
 
 #include "core/base/error.h"
-#include "core/reference/reference.h"
 #include "core/reference/reference_scene.h"
 
 namespace alcove {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kDirections = 64;          // of the image, for hbao
+constexpr int kDirections = 64;          // on the image, for hbao
 constexpr int kDirectionsOfKernel = 64;  // of the hemisphere, for each length of crytek's kernel
 
 struct Receiver {
@@ -40,7 +39,7 @@ double attenuation(const EstimatorSettings& settings, double distance) {
                                                   : 1 - smooth(x);
 }
 
-/// Pixels along a direction of the image within which the sphere of the radius is seen.
+/// The distance in pixels, along a direction of the image, at which the sphere of the radius ends.
 double reach_of(const ReferenceScene& scene, const Receiver& receiver, Vector t, double radius) {
   const double distance = length(receiver.position);
   const double sine = radius / distance;
@@ -52,7 +51,7 @@ double reach_of(const ReferenceScene& scene, const Receiver& receiver, Vector t,
   return std::max(std::abs(x - receiver.x - 0.5), std::abs(y - receiver.y - 0.5));
 }
 
-/// Attenuated sin h - sin t in the slice of the view ray and t, over every pixel of its image.
+/// The attenuated sin h - sin t in the slice of the view ray and t, over every pixel of its image.
 double hbao_side(const ReferenceScene& scene, const Receiver& receiver, Vector t, const EstimatorSettings& settings) {
   const Vector v = receiver.eye;
   const Vector b = cross(t, v);
@@ -77,7 +76,7 @@ double hbao_side(const ReferenceScene& scene, const Receiver& receiver, Vector t
     const double z = scene.depth(px, py);
     if (z == 0) continue;
     const Vector offset = scene.position(px, py, z) - receiver.position;
-    // A pixel's centre lies beside the slice; along the tangent plane it is moved into it.
+    // A pixel's centre lies beside the slice, so it is moved into it along the tangent plane.
     const Vector moved =
         offset + dot(offset, b) * (dot(n, b) / (weight * weight) * (n_t * t + n_v * v)) - dot(offset, b) * b;
     const double along = dot(moved, t);
@@ -144,7 +143,7 @@ double crytek_ao(const ReferenceScene& scene, const Receiver& receiver, const Es
     valid++;
     const Vector hit = scene.position(px, py, hit_z);
     const Vector ray = scene.position(px, py, 1) - scene.position(px, py, 0);
-    // The sample on the ray of the pixel that it falls into, as high above the surface as it is.
+    // The point on the pixel's ray that is as high above the surface as the sample.
     const double slope = -dot(n, ray);
     const double hit_height = dot(n, hit - receiver.position);
     const double on_ray = slope > 1e-4

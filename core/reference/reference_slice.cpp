@@ -9,20 +9,20 @@
 namespace alcove {
 namespace {
 
-/// What the picture's border cuts is taken to be at least so thick, in radii: its width is not known.
+/// The least thickness, in radii, of a run that the picture's border cuts: its width is unknown.
 constexpr double kCutThickness = 0.5;
 
-/// With Completion::all, a surface that begins so many times the reach away may go on towards the receiver into the
-/// sphere. The seven rendered scenes came ever nearer to ray tracing up to 3.
+/// With Completion::all, surfaces that begin within so many reaches of the receiver may go on into the sphere. The
+/// seven rendered scenes came ever nearer to ray tracing up to 3.
 constexpr double kFarReach = 3;
 
 double size_of_pixel(const ReferenceScene& scene, double depth) {
   return scene.orthographic() ? 1 / scene.fx() : depth / scene.fx();
 }
 
-/// Whether the line must go on beyond the reach, to a sample of the run that began at `first` if the run is no wider.
-/// There a sample matters only as the other end of a crossing, as more of a run's width, and as what may go on into the
-/// sphere. A run that is thicker than the sphere is wide enough. A line of sight to the sky ends all that goes on.
+/// Whether the line must go on beyond the reach. Samples there matter only as the other end of a crossing, as more of a
+/// run's width, and as surfaces that may go on into the sphere. A run that is thicker than the sphere is wide enough.
+/// `firsts` holds, for each sample, the first one of its run. Sky ends all continuations.
 bool goes_on(const ReferenceSettings& settings, const ReferenceSide& side, const ReferenceLine& line,
              const std::vector<int>& firsts) {
   const int step = line.steps() - 1;
@@ -38,8 +38,8 @@ bool goes_on(const ReferenceSettings& settings, const ReferenceSide& side, const
   return completes_behind(settings) && line.at(step, 0).depth > 0 && step <= kFarReach * side.reach + 1;
 }
 
-/// Links the samples of the last step to those of the one before that show the same surface: the nearest in depth
-/// first, and each to one at most.
+/// Links the samples of the last step to those of the step before that show the same surface: the nearest in depth
+/// first, each to at most one.
 void link(const ReferenceScene& scene, ReferenceLine& line) {
   const int after = (line.steps() - 1) * line.surfaces;
   const int before = after - line.surfaces;
@@ -75,7 +75,7 @@ ReferenceLine samples_of(const ReferenceScene& scene, const ReferenceReceiver& r
   line.surfaces = scene.surfaces();
   add_step(scene, line, receiver.x, receiver.y);
   line[0].position = receiver.position;
-  std::vector<int> firsts(line.samples.size());  // of each sample the one that its run begins with
+  std::vector<int> firsts(line.samples.size());  // per sample: the first one of its run
   std::iota(firsts.begin(), firsts.end(), 0);
   for (int step = 1;; step++) {
     const auto [x, y] = pixel_at(receiver, side, step);
@@ -95,13 +95,13 @@ ReferenceLine samples_of(const ReferenceScene& scene, const ReferenceReceiver& r
   return line;
 }
 
-/// The thickness of the run between these two samples.
+/// The thickness of the run from the first to the last of two samples.
 double thickness_of_run(const ReferenceScene& scene, const ReferenceLine& line, int first, int last,
                         const ReferenceSettings& settings) {
   const bool cut = line.at_border && line.step_of(last) + 1 == line.steps();
   if (first == 0) return INFINITY;
-  // From outer edge to outer edge: n pixels are n wide, and their centres n - 1 apart. Without it single blades of
-  // grass vanish.
+  // The width counts from outer edge to outer edge: n pixels are n wide, and their centres n - 1 apart. Otherwise
+  // single blades of grass would vanish.
   const double pixel = size_of_pixel(scene, line[first].depth);
   const double chord = length(line[last].position - line[first].position) + pixel;
   const double thickness = settings.width_share * chord + settings.width_pixels * pixel;
@@ -109,8 +109,8 @@ double thickness_of_run(const ReferenceScene& scene, const ReferenceLine& line, 
                                                       : thickness;
 }
 
-/// Between a surface and the one that closes its solid in the same pixel all is solid. Of what is behind that nothing
-/// is known.
+/// Sets the thickness of solids: everything between a surface and the one that closes its solid is solid. Nothing is
+/// known behind the closing one.
 void end_solids(ReferenceLine& line) {
   for (int i = 0; i < int(line.samples.size()); i++) {
     ReferenceSample& sample = line[i];

@@ -1,4 +1,4 @@
-// One side of a slice at a receiver: the samples along its image line, and how thick each is.
+// A side of a slice at a receiver: the samples along its image line, the thickness of each, and completed surfaces.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,13 +10,14 @@
 
 namespace alcove {
 
-/// One surface of a pixel on a slice's image line.
+/// A surface of a pixel on a slice's image line.
 struct ReferenceSample {
   Vector position;
-  double depth = 0;      // 0: there is none; of the first surface: sky
+  double depth = 0;      // 0: no surface; for the first surface: sky
   double thickness = 0;  // scene units, infinite allowed
-  bool closes = false;   // the solid of the surface before it in its pixel
-  // Where the same surface goes on, one step nearer to the receiver and one farther: indices of samples; -1: it ends.
+  bool closes = false;   // it closes the solid of the surface before it in its pixel
+  // Continuations of the same surface, one step nearer to the receiver and one farther: indices of samples; -1: it
+  // ends.
   int nearer = -1, farther = -1;
 };
 
@@ -26,7 +27,7 @@ struct ReferenceReceiver {
   Vector position, eye, normal;
 };
 
-/// One side of a slice at a receiver.
+/// A side of a slice at a receiver.
 struct ReferenceSide {
   Vector along_t, along_v;  // in-slice coordinates of an offset, moved into the slice parallel to the tangent plane
   double gamma;
@@ -34,11 +35,11 @@ struct ReferenceSide {
   double reach;           // steps within the radius; infinite when the sphere of the radius holds the eye
 };
 
-/// The samples of a side, as many for each step as a pixel may have surfaces, nearer to the eye first. The first of
-/// all is the receiver.
+/// The samples of a side: for each step as many as a pixel may have surfaces, nearer to the eye first. Sample 0 is the
+/// receiver.
 struct ReferenceLine {
   std::vector<ReferenceSample> samples;
-  int surfaces = 1;        // of a step
+  int surfaces = 1;        // per step
   bool at_border = false;  // the line ends where the picture does
 
   int steps() const { return int(samples.size()) / surfaces; }
@@ -48,23 +49,34 @@ struct ReferenceLine {
   const ReferenceSample& at(int step, int surface) const { return (*this)[step * surfaces + surface]; }
 };
 
-/// Whether surfaces go on behind what is nearer. Endless occluders block all that is behind them anyway.
+/// Whether surfaces go on behind nearer ones. Behind endless occluders they do not: those block everything there
+/// anyway.
 bool completes_behind(const ReferenceSettings& settings);
 
-/// The pixel that is so many steps away from the receiver.
+/// The pixel at so many steps from the receiver.
 std::pair<int, int> pixel_at(const ReferenceReceiver& receiver, const ReferenceSide& side, int step);
 
 /// Whether two neighbours on a slice show one surface.
 bool same_surface(const ReferenceScene& scene, const ReferenceSample& a, const ReferenceSample& b);
 
-/// The last sample of the run that the sample at index `first` begins.
+/// The index of the last sample of the run that begins with sample `first`.
 int last_of_run(const ReferenceLine& line, int first);
 
-/// The line with the thickness of every sample, as far as the settings need it.
+/// The line with the thickness of every sample, as long as the settings need it.
 ReferenceLine line_of(const ReferenceScene& scene, const ReferenceReceiver& receiver, const ReferenceSide& side,
                       const ReferenceSettings& settings);
 
-/// The angle of an offset from the view ray, in the slice; negative on the other side.
+/// The angle between an offset and the view ray, in the slice; negative on the other side.
 double angle_of(const ReferenceSide& side, Vector offset);
+
+/// The part of a completed surface within the sphere of the radius.
+struct CompletedSegment {
+  Vector nearer, farther;  // its ends as offsets from the receiver; the nearer is fewer steps away on the image
+  double thickness = 0;    // of the run that it continues
+};
+
+std::vector<CompletedSegment> completed_segments(const ReferenceScene& scene, const ReferenceReceiver& receiver,
+                                                 const ReferenceSide& side, const ReferenceLine& line,
+                                                 const ReferenceSettings& settings);
 
 }  // namespace alcove

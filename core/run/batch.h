@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/settings.h"
+#include "core/run/first_look.h"
 #include "core/run/run_report.h"
 
 namespace alcove {
@@ -25,9 +26,9 @@ struct RunWatch {
   std::function<void(std::span<const FrameProgress>)> working = {};
 };
 
-/// Computes the frames that the settings name and writes their outputs. After the loss of its device it goes on with a
+/// Computes the frames of a run and writes their outputs. After the loss of its device it goes on with a
 /// fresh one, once. Fails on what is wrong before the first frame. What is wrong with a frame is in its report, and
 /// ends the run unless the settings say to keep going.
-RunReport run_frames(const Settings& settings, const RunWatch& watch = {});
+RunReport run_frames(FirstLook& look, const RunWatch& watch);
 
 }  // namespace alcove

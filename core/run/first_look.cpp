@@ -1,4 +1,4 @@
-// Looks at names, headers, and the pixels of one frame.
+// Finds a run's frames, opens the first of them where that is needed, and describes the run.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/first_look.h"
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/text.h"
-#include "core/chain/aov.h"
+#include "core/chain/results/aov.h"
 #include "core/formats/sequence.h"
 #include "core/frame/radius.h"
 #include "core/frame/settle.h"
@@ -23,8 +23,8 @@ namespace {
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 /// The note on the numbers between the frames on the disk that have no file.
-Notes notes_on_holes(const FramePlan& plan, const Settings& settings) {
-  if (plan.holes().empty() || settings.frames.missing == Missing::skip) return {};
+Notes notes_on_holes(const FramePlan& plan) {
+  if (plan.holes().empty() || plan.settings().frames.missing == Missing::skip) return {};
   return {{NoteCode::sequence_hole,
            fmt::format("{} between the frames on the disk: {} missing; --frames says which frames there are, --set "
                        "missing=skip that some may be missing",
@@ -43,69 +43,30 @@ Notes notes_on_missing_around(const FramePlan& plan) {
                        frames_text(missing))}};
 }
 
-/// Why the channels of the first frame are not found, whatever its camera; nothing where they are.
-std::optional<Error> unfound_in(const FramePlan& plan) {
-  if (plan.evidence().empty()) return std::nullopt;
-  try {
-    find_frame(with_some_camera(plan.at(plan.evidence().front()).input), false, plan.evidence().front());
-  } catch (const Error& error) {
-    return error;
-  }
-  return std::nullopt;
+/// Names tell these: numbers that are left out, frames that others do without, and the number of a single frame.
+Notes notes_on_names(const FramePlan& plan) {
+  Notes notes = notes_on_holes(plan);
+  refuse_warnings(notes, plan.settings(), main_input(plan.settings().input));
+  // The settings say that frames may be missing, so that this is never an error.
+  add_new(notes, notes_on_missing_around(plan));
+  add_new(notes, notes_on_number(plan));
+  return notes;
 }
 
-/// The radius that is proposed for the first frame that shows a surface, and why others could not be looked at.
-std::optional<double> radius_for(const FramePlan& plan, bool has_camera, std::optional<Error>& error) {
-  for (const int frame : plan.evidence()) {
-    try {
-      const InputSettings given = plan.at(frame).input, settings = has_camera ? given : with_some_camera(given);
-      FrameSource source = find_frame(settings, false, frame);
-      source.camera_is_assumed = !has_camera;
-      settle_by_rows(source, settings);
-      if (const auto radius = proposed_radius(source.camera, source.median_depth)) return radius;
-    } catch (const Error& failure) {
-      if (!error) error = failure;
-    }
-  }
-  return std::nullopt;
-}
-
-/// Whether an option or the header of the first frame gives a camera. A plan without frames, of a chunk of nothing,
-/// needs none.
-bool has_camera(const FramePlan& plan) {
-  if (plan.evidence().empty()) return true;
-  const Settings first = plan.at(plan.evidence().front());
-  return names_a_camera(first.input) || may_tell_camera(first.input);
+/// The frame with a camera that stands in for the one that is missing.
+FrameSource find_without_camera(const FramePlan& plan, int frame) {
+  FrameSource source = find_frame(with_some_camera(plan.at(frame).input), false, frame);
+  source.open.camera = true;
+  return source;
 }
 
 }  // namespace
 
-std::optional<FrameSource> settle_first(const FramePlan& plan, std::uint64_t most_bytes) {
-  std::optional<FrameSource> best;
-  bool is_refused = false;
-  for (const int frame : plan.evidence()) {
-    try {
-      const Settings settings = plan.at(frame);
-      FrameSource source = open_frame(settings, frame);
-      settle_by_rows(source, settings.input, most_bytes);
-      if (!best || source.has_evidence) best = std::move(source);
-      if (best->has_evidence) break;
-    } catch (const Error&) {
-      // The frame is computed like all others, and its report says then what is wrong with it.
-      is_refused = true;
-    }
-  }
-  // A frame that shows nothing, such as one of sky, must not have others read that are refused by themselves.
-  if (is_refused && best && !best->has_evidence) return std::nullopt;
-  if (best)
-    for (auto& file : best->files) file.close();
-  return best;
-}
-
-Notes notes_on_number(const FramePlan& plan, const Settings& settings) {
-  const std::string& camera = settings.input.camera;
+Notes notes_on_number(const FramePlan& plan) {
+  const InputSettings& settings = plan.settings().input;
+  const std::string& camera = settings.camera;
   if (plan.is_sequence() || camera.empty() || !lists_frames(camera)) return {};
-  const std::string& input = main_input(settings.input);
+  const std::string& input = main_input(settings);
   const FrameNumber found = frame_number_in(input);
   if (!found.number)
     fail(ErrorKind::usage,
@@ -123,67 +84,141 @@ Notes notes_on_number(const FramePlan& plan, const Settings& settings) {
                        *found.number, file_name(camera), found.digits)}};
 }
 
-Notes notes_on_names(const FramePlan& plan, const Settings& settings) {
-  Notes notes = notes_on_holes(plan, settings);
-  refuse_warnings(notes, settings, main_input(settings.input));
-  // The settings say that frames may be missing, so that this is never an error.
-  add_new(notes, notes_on_missing_around(plan));
-  add_new(notes, notes_on_number(plan, settings));
-  return notes;
+const FramePlan& FirstLook::plan() {
+  if (!plan_) plan_.emplace(settings_);
+  return *plan_;
 }
 
-Settings with_proposed_radius(const Settings& settings, Notes& notes) {
-  if (!settings.estimator.radius_auto) return settings;
-  const FramePlan plan(settings);
-  notes_on_number(plan, settings);  // which fails before a camera is taken of which nothing tells
-  std::optional<Error> error;
-  const auto radius = radius_for(plan, true, error);
-  if (!radius && error) throw *error;
-  if (!radius)
-    fail(ErrorKind::input, "{}: --radius auto finds no surface in {}: give --radius NUMBER, in scene units",
-         main_input(settings.input), plan.is_sequence() ? "frames " + frames_text(plan.evidence()) : "the frame");
-  Settings known = settings;
-  known.estimator.radius = radius;
-  known.estimator.radius_auto = false;
-  notes.push_back({NoteCode::automatic_radius,
-                   fmt::format("--radius auto takes {}{}", *radius, plan.is_sequence() ? " for all frames" : "")});
-  return known;
+FrameSource& FirstLook::opened(int frame) {
+  const auto found = opened_.find(frame);
+  return found != opened_.end() ? found->second
+                                : opened_.emplace(frame, open_frame(plan().at(frame), frame)).first->second;
 }
 
-Lacking lacking_in(const Settings& settings) {
-  Lacking lacking;
-  lacking.input = main_input(settings.input).empty();
-  lacking.output = settings.output.output.empty();
-  lacking.radius = !settings.estimator.radius && !settings.estimator.radius_auto && needs_ao(settings.output);
-  lacking.camera = lacking.input && !names_a_camera(settings.input);
-  const bool needs_frame = lacking.radius || !names_a_camera(settings.input);
-  if (lacking.input || !(needs_frame || lacking.output)) return lacking;
+FrameSource FirstLook::open(const Settings& settings, int frame) {
+  const auto found = opened_.find(frame);
+  if (found == opened_.end()) return open_frame(settings, frame);
+  FrameSource source = std::move(found->second);
+  opened_.erase(found);
+  return source;
+}
+
+/// Whether an option or the header of the first frame gives a camera. A plan without frames, of a chunk of nothing,
+/// needs none.
+bool FirstLook::has_camera() {
+  if (names_a_camera(settings_.input) || plan().evidence().empty()) return true;
+  const int frame = plan().evidence().front();
   try {
-    const FramePlan plan(settings);
-    notes_on_number(plan, settings);  // or the command that is proposed would be refused
-    if (!needs_frame) return lacking;
-    lacking.camera = !has_camera(plan);
-    if (lacking.camera) lacking.unfound = unfound_in(plan);
-    if (lacking.radius) lacking.proposed_radius = radius_for(plan, !lacking.camera, lacking.unreadable);
+    opened(frame);
+    return true;
+  } catch (const Error&) {
+    return may_tell_camera(plan().at(frame).input);
+  }
+}
+
+/// The radius that is proposed for the first frame that shows a surface, and why others could not be looked at.
+std::optional<double> FirstLook::radius_of_first(const std::function<FrameSource&(int)>& look,
+                                                 std::optional<Error>& error) {
+  for (const int frame : plan().evidence()) {
+    try {
+      FrameSource& source = look(frame);
+      settle_by_rows(source, plan().at(frame).input);
+      if (const auto radius = proposed_radius(source.reading.camera, source.evidence.median_depth)) return radius;
+    } catch (const Error& failure) {
+      opened_.erase(frame);  // which may be settled in part
+      if (!error) error = failure;
+    }
+  }
+  return std::nullopt;
+}
+
+MissingOptions FirstLook::missing_options() {
+  MissingOptions missing;
+  const bool has_option = names_a_camera(settings_.input);
+  missing.input = main_input(settings_.input).empty();
+  missing.output = settings_.output.output.empty();
+  missing.radius = !settings_.estimator.radius && !settings_.estimator.radius_auto && needs_ao(settings_.output);
+  missing.camera = missing.input && !has_option;
+  if (missing.input || !(missing.radius || missing.output || !has_option)) return missing;
+  try {
+    notes_on_number(plan());  // or the command that is proposed would be refused
+    missing.camera = !has_camera();
+    if (missing.camera) {
+      try {
+        find_without_camera(plan(), plan().evidence().front());
+      } catch (const Error& error) {
+        missing.no_channels = error;
+      }
+    }
+    std::optional<FrameSource> source;
+    const auto look = [&](int frame) -> FrameSource& {
+      return source.emplace(missing.camera ? find_without_camera(plan(), frame)
+                                           : find_frame(plan().at(frame).input, false, frame));
+    };
+    if (missing.radius) missing.proposed_radius = radius_of_first(look, missing.unreadable);
   } catch (const Error& error) {
     // A name that no command could have comes first, since it would be a part of the one that is proposed.
     if (error.kind() == ErrorKind::usage) throw;
-    lacking.unreadable = error;
+    missing.unreadable = error;
   }
-  return lacking;
+  return missing;
 }
 
-std::vector<std::string> sentences_on(const Lacking& lacking) {
+std::vector<std::string> MissingOptions::sentences() const {
   std::vector<std::string> sentences;
-  if (lacking.input)
-    sentences.emplace_back("INPUT, an EXR with depth and normals, or --depth FILE, or --position FILE");
-  if (lacking.output) sentences.emplace_back("-o FILE.exr, the AO");
-  if (lacking.camera) sentences.push_back(fmt::format("a camera: {}", kCameraOptions));
-  if (lacking.unfound) sentences.emplace_back(lacking.unfound->what());
-  if (lacking.radius)
-    sentences.emplace_back("--radius NUMBER, how far occluders reach in scene units, or --radius auto");
-  if (lacking.unreadable) sentences.push_back(fmt::format("a frame to look at: {}", lacking.unreadable->what()));
+  if (input) sentences.emplace_back("INPUT, an EXR with depth and normals, or --depth FILE, or --position FILE");
+  if (output) sentences.emplace_back("-o FILE.exr, the AO");
+  if (camera) sentences.push_back(fmt::format("a camera: {}", kCameraOptions));
+  if (no_channels) sentences.emplace_back(no_channels->what());
+  if (radius) sentences.emplace_back("--radius NUMBER, how far occluders reach in scene units, or --radius auto");
+  if (unreadable) sentences.push_back(fmt::format("a frame to look at: {}", unreadable->what()));
   return sentences;
+}
+
+void FirstLook::take_proposed_radius(Notes& notes) {
+  const FramePlan& frames = plan();
+  notes_on_number(frames);  // which fails before a camera is taken of which nothing tells
+  std::optional<Error> error;
+  const auto radius = radius_of_first([&](int frame) -> FrameSource& { return opened(frame); }, error);
+  if (!radius && error) throw *error;
+  if (!radius)
+    fail(ErrorKind::input, "{}: --radius auto finds no surface in {}: give --radius NUMBER, in scene units",
+         main_input(settings_.input), frames.is_sequence() ? "frames " + frames_text(frames.evidence()) : "the frame");
+  plan_->set_radius(*radius);
+  notes.push_back({NoteCode::automatic_radius,
+                   fmt::format("--radius auto takes {}{}", *radius, frames.is_sequence() ? " for all frames" : "")});
+}
+
+Notes FirstLook::prepare() {
+  check_settings(settings_);
+  Notes notes;
+  if (settings_.estimator.radius_auto) take_proposed_radius(notes);
+  add_new(notes, notes_on_names(plan()));
+  return notes;
+}
+
+std::optional<FrameSource> FirstLook::settle(std::uint64_t most_bytes) {
+  std::optional<int> best;
+  bool is_refused = false;
+  for (const int frame : plan().evidence()) {
+    try {
+      FrameSource& source = opened(frame);
+      if (!source.settled) settle_by_rows(source, plan().at(frame).input, most_bytes);
+      if (!best || source.evidence.tells) best = frame;
+      if (source.evidence.tells) break;
+    } catch (const Error&) {
+      // The frame is computed like all others, and its report says then what is wrong with it.
+      opened_.erase(frame);
+      is_refused = true;
+    }
+  }
+  std::optional<FrameSource> settled;
+  // A frame that shows nothing, such as one of sky, must not have others read that are refused by themselves.
+  if (best && (!is_refused || opened(*best).evidence.tells)) settled = std::move(opened(*best));
+  if (settled)
+    for (auto& file : settled->files) file.close();
+  opened_.clear();
+  return settled;
 }
 
 // What a run would do, for people.
@@ -197,12 +232,9 @@ std::string span_text(const std::string& first, const std::string& last) {
 
 }  // namespace
 
-std::string plan_text(const Settings& given) {
-  check_settings(given);
-  Notes notes;
-  const Settings settings = with_proposed_radius(given, notes);
-  const FramePlan plan(settings);
-  add_new(notes, notes_on_names(plan, settings));
+std::string plan_text(FirstLook& look) {
+  const Notes notes = look.prepare();
+  const FramePlan& plan = look.plan();
   std::string text;
   const auto line = [&](const std::string& name, const std::string& value) {
     text += printable(fmt::format("{:<14}{}", name, value)) + "\n";
@@ -218,25 +250,28 @@ std::string plan_text(const Settings& given) {
   for (const auto& path : named_paths())
     if (!path.of(first).empty()) line(path.option, span_text(path.of(first), path.of(last)));
 
-  FrameSource source = open_frame(first, plan.frames().front());
+  FrameSource source = look.open(first, plan.frames().front());
   // Frames of a sequence are read as one of them that shows enough.
-  if (!plan.is_sequence()) settle_by_rows(source, first.input, memory_of_host(first.device).host_bytes);
+  if (!plan.is_sequence() && !source.settled)
+    settle_by_rows(source, first.input, memory_of_host(first.device).host_bytes);
   std::vector<std::string> channels;
-  for (const auto& plane : source.planes.entries)
+  for (const auto& plane : source.channels.planes.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);
   line("channels", fmt::format("{}", fmt::join(channels, ", ")));
   line("camera",
-       fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
-                   source.camera.fx, source.camera.fy, source.camera.orthographic ? "per scene unit" : "focal length"));
+       fmt::format("{}, {:.6g} x {:.6g} px {}", source.reading.camera.orthographic ? "orthographic" : "perspective",
+                   source.reading.camera.fx, source.reading.camera.fy,
+                   source.reading.camera.orthographic ? "per scene unit" : "focal length"));
   const FrameMemory frame = memory_with_others(plan, source, first);
-  const std::uint64_t bytes = frame.of(source.file_data).host;
-  const auto wanted = frames_to_compute(plan, settings);
+  const std::uint64_t bytes = frame.of(source.reading.data).host;
+  InputIdentities identities(plan);
+  const auto wanted = frames_to_compute(plan, options_digest(first), identities);
   require_room_for_others(memory_of_host(first.device), plan, source, first, wanted);
   const RunMemory run = beside_shot(memory_of_host(first.device), plan, source, first, wanted, 1);
   const std::uint64_t memory = run.host_bytes;
   line("size", to_string(written_picture(source)));
   const std::string at_once =
-      bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.file_data));
+      bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.reading.data));
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
   if (around_of(first.input) > 0)
     line("around",

@@ -5,14 +5,15 @@
 #include <functional>
 #include <span>
 
-#include "core/base/stopwatch.h"
+#include "core/base/system.h"
 #include "core/chain/chain.h"
-#include "core/chain/reuse.h"
 #include "core/formats/color.h"
 #include "core/frame/behind.h"
 #include "core/frame/gbuffer.h"
 #include "core/frame/radius.h"
+#include "core/run/first_look.h"
 #include "core/run/frame_files.h"
+#include "core/run/lanes.h"
 #include "core/run/plan.h"
 #include "core/run/resume.h"
 #include "core/run/run_report.h"
@@ -28,8 +29,8 @@ class FrameTally {
 
   /// A window is about to be computed.
   void begin(const Window& computed);
-  /// What was read of that window, source.data; `written` is all that is written of the frame.
-  void add_inputs(const FrameSource& source, const FrameInputs& inputs, const Window& written);
+  /// What was read of that window; `written` is all that is written of the frame.
+  void add_inputs(const FrameSource& source, const Window& computed, const FrameInputs& inputs, const Window& written);
   /// What preparing others took comes before the passes of the frame.
   void add_others(const PreparedOthers& took);
   /// What the frame's own estimate found, where it is a mean of many; `others`: that the frame itself takes beside it.
@@ -39,7 +40,7 @@ class FrameTally {
   void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
 
   /// What the user should know before the frame is computed.
-  static Notes notes_on(const FrameSource& source);
+  static Notes notes_on(const FrameSource& source, const InputSettings& settings);
 
   /// Writes the sums into the report, and what the user should know. Fails with ErrorKind::input where the pixels show
   /// that a layer of hidden surfaces cannot be one.
@@ -64,6 +65,7 @@ class FrameTally {
 
 /// What all frames of a run have in common.
 struct RunContext {
+  FirstLook& look;
   const FramePlan& plan;
   InputIdentities& identities;                  // of the plan
   const FrameSource* settled = nullptr;         // all frames are read as this one; null: each by itself
@@ -74,22 +76,13 @@ struct RunContext {
   std::function<bool()> stop = {};              // asked between steps: true drops the frame
 };
 
-/// Where one frame after the other is computed: its buffers, and what they still hold.
-struct Lane {
-  explicit Lane(gpu::Device& device) : gpu(device) {}
-
-  gpu::Recorder gpu;
-  LastFrame last;
-  EstimateSlots estimates;
-};
-
 /// The report of a frame that nothing was done for yet.
 FrameReport report_of(const FramePlan& plan, int frame);
 
 /// Told which part of how many of a frame is computed, and which share of that part is done, 0 to 1.
 using PartWatch = std::function<void(int part, int parts, double done)>;
 
-/// Reads, computes and writes one frame within the room. Never fails: what went wrong is in the report.
-FrameReport run_frame(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& watch);
+/// Reads, computes and writes one frame on a lane, within the room. Never fails: the report says what went wrong.
+FrameReport run_frame(Lanes& lanes, const RunContext& run, const Room& room, int frame, const PartWatch& watch);
 
 }  // namespace alcove

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <thread>
+#include <vector>
 
 namespace alcove {
 namespace {
@@ -22,18 +23,6 @@ class Pipeline {
   Pipeline(Lanes& lanes, const RunContext& run, const Room& room, std::span<const int> frames,
            const PipelineWatch& watch)
       : lanes_(lanes), run_(run), frames_(frames), watch_(watch), room_(room), most_in_flight_(lanes.count()) {}
-
-  void run() {
-    {
-      std::vector<std::jthread> workers;
-      start(workers);
-      tell();
-    }
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  using Lock = std::unique_lock<std::mutex>;
 
   /// Starts a thread for each lane. Where the system gives no more threads the run ends with its error, once those that
   /// have begun are done.
@@ -49,7 +38,23 @@ class Pipeline {
     }
   }
 
-  // What each worker does.
+  /// Tells of the frames in their order, until all have ended.
+  void tell() {
+    try {
+      while (auto report = next_report()) watch_.tell(std::move(*report));
+    } catch (...) {
+      end_with(std::current_exception());
+    }
+  }
+
+  void rethrow_error() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  using Lock = std::unique_lock<std::mutex>;
+
+  // Each worker does this.
 
   void work() {
     try {
@@ -86,9 +91,11 @@ class Pipeline {
 
   /// Computes a frame, again and again where the device has no memory for it and less at once may find some.
   void compute(Attempt& attempt) {
+    const int frame = frames_[attempt.place];
+    const auto watch = [&](int part, int parts, double done) { note_part(frame, part, parts, done); };
     FrameReport report;
     do {
-      report = run_on_lane(attempt);
+      report = run_frame(lanes_, run_, attempt.room, frame, watch);
       if (report.out_of_memory) attempt.out_of_memory = report.error;
     } while (report.out_of_memory && make_room(report.pixels_at_once, attempt));
 
@@ -109,25 +116,6 @@ class Pipeline {
     work.part = part;
     work.parts = parts;
     work.done = (part - 1 + done) / parts;
-  }
-
-  /// Runs the frame on a lane. Where there is no memory for the lane itself, the report says so as for the frame.
-  FrameReport run_on_lane(const Attempt& attempt) {
-    const int frame = frames_[attempt.place];
-    FrameReport report;
-    try {
-      lanes_.with([&](Lane& lane) {
-        report = run_frame(lane, run_, attempt.room, frame,
-                           [&](int part, int parts, double done) { note_part(frame, part, parts, done); });
-        return !report.out_of_memory;
-      });
-    } catch (const gpu::OutOfMemory& error) {
-      report = report_of(run_.plan, frame);
-      report.state = FrameState::failed;
-      report.error = error;
-      report.out_of_memory = true;
-    }
-    return report;
   }
 
   /// After a frame has found no memory: fewer frames at once, then this one alone, then less of it at once. Waits until
@@ -184,15 +172,7 @@ class Pipeline {
     changed_.notify_all();
   }
 
-  // What the thread does that runs the pipeline.
-
-  void tell() {
-    try {
-      while (auto report = next_report()) watch_.tell(std::move(*report));
-    } catch (...) {
-      end_with(std::current_exception());
-    }
-  }
+  // The thread that runs the pipeline does this.
 
   /// The report of the first frame that was not told of; nothing once there is none any more. Meanwhile it tells how
   /// far the frames are.
@@ -250,59 +230,15 @@ class Pipeline {
 
 }  // namespace
 
-Lanes::Lanes(const gpu::DeviceOptions& options, int count) : options_(options), count_(count) {
-  devices_.push_back(std::make_unique<gpu::Device>(options));
-}
-
-int Lanes::count() const {
-  const std::lock_guard lock(mutex_);
-  return count_;
-}
-
-int Lanes::validation_messages() const {
-  int messages = 0;
-  for (const auto& device : devices_) messages += device->validation_messages();
-  return messages;
-}
-
-void Lanes::set_count(int count) {
-  const std::lock_guard lock(mutex_);
-  count_ = count;
-  for (auto& place : free_) place.lane.reset();
-}
-
-Lanes::Place Lanes::take() {
-  const std::lock_guard lock(mutex_);
-  if (!free_.empty()) {
-    Place place = std::move(free_.back());
-    free_.pop_back();
-    return place;
-  }
-  if (is_first_taken_ && device().info().type == gpu::DeviceType::cpu)
-    devices_.push_back(std::make_unique<gpu::Device>(options_));
-  is_first_taken_ = true;
-  return {devices_.back().get(), nullptr};
-}
-
-void Lanes::with(const std::function<bool(Lane&)>& function) {
-  Place place = take();
-  const auto give_back = [&](bool keeps_lane) {
-    if (!keeps_lane) place.lane.reset();
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(place));
-  };
-  try {
-    if (!place.lane) place.lane = std::make_unique<Lane>(*place.device);
-    give_back(function(*place.lane));
-  } catch (...) {
-    give_back(false);
-    throw;
-  }
-}
-
-void run_pipeline(Lanes& lanes, const RunContext& run, Room room, std::span<const int> frames,
+void run_pipeline(Lanes& lanes, const RunContext& run, const Room& room, std::span<const int> frames,
                   const PipelineWatch& watch) {
-  Pipeline(lanes, run, room, frames, watch).run();
+  Pipeline pipeline(lanes, run, room, frames, watch);
+  {
+    std::vector<std::jthread> workers;
+    pipeline.start(workers);
+    pipeline.tell();
+  }
+  pipeline.rethrow_error();
 }
 
 }  // namespace alcove

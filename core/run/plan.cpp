@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
-#include "core/chain/debug_view.h"
+#include "core/chain/results/debug_view.h"
 #include "core/formats/sequence.h"
 
 namespace alcove {
@@ -60,15 +60,6 @@ void refuse_glob(const std::string& path, const char* option) {
   const std::string pattern = path.substr(0, begin) + std::string(counts ? end - begin : 4, '#') + path.substr(end);
   fail(ErrorKind::usage, "{}: {} takes a sequence as one name with a pattern: write {}", path, option,
        pattern.find_first_of("*?") == pattern.npos ? pattern : "shot.####.exr");
-}
-
-/// The pattern that a single file's name belongs to, or one as an example.
-std::string pattern_for(const std::string& path) {
-  const std::string digits = frame_number_in(path).number ? frame_number_in(path).digits : "";
-  const std::size_t at = digits.empty() ? path.npos : path.rfind(digits);
-  if (at == path.npos) return "shot.####.exr";
-  const std::string place = digits.size() == 1 ? "%d" : std::string(digits.size(), '#');
-  return path.substr(0, at) + place + path.substr(at + digits.size());
 }
 
 /// Whether a name has a place for a frame number that no name has by chance, as one with a lone # may: ## or more, %d
@@ -205,11 +196,13 @@ void FramePlan::find_shot() {
   const char* const option = shot_option(settings_.input);
   if (!option) return;
   const auto input = std::ranges::find_if(patterns_, [](const Pattern& pattern) { return !pattern.path.is_output; });
-  if (input == patterns_.end())
+  if (input == patterns_.end()) {
+    const std::string &file = main_input(settings_.input), pattern = pattern_for(file);
     fail(ErrorKind::usage,
          "{}: {} takes other frames of a sequence, and this names one file: give a pattern such as {}, with "
          "--frames for this frame alone, or leave {} out",
-         main_input(settings_.input), option, pattern_for(main_input(settings_.input)), option);
+         file, option, pattern.empty() ? "shot.####.exr" : pattern, option);
+  }
   shot_ = frames_on_disk(input->name, input->path.option);
   const std::vector<int> holes = holes_in(shot_);
   shot_.insert(shot_.end(), holes.begin(), holes.end());
@@ -297,6 +290,18 @@ Settings FramePlan::at(int frame) const {
     pattern.path.of(settings) =
         pattern.name.path(pattern.path.is_output ? frame + settings_.frames.output_offset : frame);
   return settings;
+}
+
+void FramePlan::set_radius(double radius) {
+  settings_.estimator.radius = radius;
+  settings_.estimator.radius_auto = false;
+}
+
+std::string pattern_for(const std::string& path) {
+  const FrameNumber found = frame_number_in(path);
+  if (!found.number) return "";
+  const std::size_t at = path.rfind(found.digits), digits = found.digits.size();
+  return path.substr(0, at) + (digits == 1 ? "%d" : std::string(digits, '#')) + path.substr(at + digits);
 }
 
 int frame_number_of(const std::string& path) { return frame_number_in(path).number.value_or(0); }

@@ -77,8 +77,12 @@ class FramePlan {
   std::vector<int> missing_around() const;
   /// All of the shot.
   const std::vector<int>& shot() const { return shot_; }
+  /// The settings of all frames.
+  const Settings& settings() const { return settings_; }
   /// The settings with the files of one frame.
   Settings at(int frame) const;
+  /// Gives all frames this radius, in scene units, instead of an automatic one.
+  void set_radius(double radius);
 
  private:
   struct Span {
@@ -106,6 +110,10 @@ class FramePlan {
   std::vector<int> frames_, missing_, evidence_, holes_, shot_;
   std::set<int> absent_;  // of the shot
 };
+
+/// The pattern of the sequence that a single file belongs to by the number in its name, such as shot.####.exr; "" where
+/// it has no clear number.
+std::string pattern_for(const std::string& path);
 
 /// The number of a single file's frame by its name (core/formats/sequence.h); 0 where there is none.
 int frame_number_of(const std::string& path);

@@ -31,9 +31,9 @@ std::string display_text(const std::string& ocio) {
   return read_text(file, "OpenColorIO configuration", ocio.empty() ? "the OCIO variable" : "--set ocio");
 }
 
-/// What of an option's value tells results apart; none: nothing does.
-Words telling_words(const OptionRow& row, const OutputSettings& output) {
-  const Words words = row.words();
+/// The words that tell results of this setting from others; none: its value does not matter.
+Words telling_words(const SettingRow& row, const Settings& settings) {
+  const Words words = row.words(settings);
   switch (row.effect) {
     case Effect::none: return {};
     case Effect::pixels: return words;
@@ -42,7 +42,7 @@ Words telling_words(const OptionRow& row, const OutputSettings& output) {
     case Effect::pixels_or_picture: return words.empty() || !names_picture(words.front()) ? words : Words{"given"};
     case Effect::content:
       return words.empty() ? Words{} : Words{read_text(words.front(), row.key().c_str(), row.long_name().c_str())};
-    case Effect::display: return shows_composite(output) ? Words{display_text(output.ocio)} : Words{};
+    case Effect::display: return shows_composite(settings.output) ? Words{display_text(settings.output.ocio)} : Words{};
   }
   return {};
 }
@@ -53,19 +53,19 @@ bool shows_composite(const OutputSettings& output) {
   return !output.preview.empty() && !output.composite.empty() && output.preview_style != "ao";
 }
 
-std::string options_digest(const Settings& settings) {
-  RunOptions options;
-  options.settings = settings;
+std::string options_digest(const Settings& given) {
+  Settings settings = given;
   // The AO is the mean of all scales, in whatever order they were given.
-  EstimatorSettings& estimator = options.settings.estimator;
+  EstimatorSettings& estimator = settings.estimator;
   for (double& further : estimator.further_radii)
     if (further < *estimator.radius) std::swap(further, *estimator.radius);
   std::ranges::sort(estimator.further_radii);
   // Each word goes with its length, so that no two sets of values make one text.
   std::string text = kVersion;
-  for (const auto& row : option_table(options))
-    for (const auto& word : telling_words(row, settings.output))
-      text += fmt::format("\n{} {} {}", row.key(), word.size(), word);
+  for (const auto& row : option_table())
+    if (row.is_key())
+      for (const auto& word : telling_words(row, settings))
+        text += fmt::format("\n{} {} {}", row.key(), word.size(), word);
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
@@ -107,13 +107,13 @@ std::optional<fs::file_time_type> time_of(const std::string& path) {
 
 }  // namespace
 
-InputIdentities::Known InputIdentities::look_at(const Settings& frame) {
+InputIdentities::Identity InputIdentities::identity_of(const Settings& frame) {
   std::string text;
-  Known known;
+  Identity identity;
   for (const auto& path : inputs_of(frame)) {
     text += '\n';
     if (path.empty()) continue;
-    known.newest = std::max(known.newest, time_of(path).value_or(known.newest));
+    identity.newest = std::max(identity.newest, time_of(path).value_or(identity.newest));
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     const std::streamoff size = file ? std::streamoff(file.tellg()) : 0;
     std::string bytes(std::size_t(std::min(size, 2 * kLooked)), '\0');
@@ -122,35 +122,31 @@ InputIdentities::Known InputIdentities::look_at(const Settings& frame) {
     file.seekg(size - tail).read(bytes.data() + head, tail);
     text += fmt::format("{} {:016x}", size, XXH3_64bits(bytes.data(), bytes.size()));
   }
-  known.identity = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
-  return known;
+  identity.text = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+  return identity;
 }
 
-InputIdentities::Known InputIdentities::own(int frame) {
+InputIdentities::Identity InputIdentities::own(int frame) {
   const std::lock_guard lock(mutex_);
-  const auto [known, is_new] = known_.try_emplace(frame);
-  if (is_new) known->second = look_at(plan_.at(frame));
-  return known->second;
+  const auto [found, is_new] = own_.try_emplace(frame);
+  if (is_new) found->second = identity_of(plan_.at(frame));
+  return found->second;
 }
 
-fs::file_time_type InputIdentities::newest(int frame) {
-  fs::file_time_type newest = own(frame).newest;
-  if (!shot_option(plan_.at(frame).input)) return newest;
-  for (const int other : frames_seen_for(plan_, frame)) newest = std::max(newest, own(other).newest);
-  return newest;
-}
-
-std::string InputIdentities::of(int frame) {
-  const Settings settings = plan_.at(frame);
-  std::string text = own(frame).identity;
-  if (!shot_option(settings.input)) return text;
-  if (settings.input.accumulate > 0) text += fmt::format("\nturn {}", plan_.turn_of(frame));
+InputIdentities::Identity InputIdentities::all_of(int frame) {
+  const InputSettings input = plan_.at(frame).input;
+  Identity all = own(frame);
+  if (!shot_option(input)) return all;
+  if (input.accumulate > 0) all.text += fmt::format("\nturn {}", plan_.turn_of(frame));
   for (const int other : frames_seen_for(plan_, frame)) {
-    text += fmt::format("\n{} {}", other - frame, own(other).identity);
-    if (const std::string camera = plan_.at(other).input.camera; camera != settings.input.camera)
-      text += read_text(camera, "camera", "--camera");
+    const Identity identity = own(other);
+    all.newest = std::max(all.newest, identity.newest);
+    all.text += fmt::format("\n{} {}", other - frame, identity.text);
+    if (const std::string camera = plan_.at(other).input.camera; camera != input.camera)
+      all.text += read_text(camera, "camera", "--camera");
   }
-  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+  all.text = fmt::format("{:016x}", XXH3_64bits(all.text.data(), all.text.size()));
+  return all;
 }
 
 /// Whether all outputs of a frame are there and whole, made with the options of this digest from inputs of this
@@ -169,11 +165,10 @@ static bool has_whole_outputs(const Settings& frame, const std::string& options_
   });
 }
 
-std::vector<int> frames_to_compute(const FramePlan& plan, const Settings& settings) {
-  if (!settings.frames.resume || settings.frames.overwrite || plan.frames().empty()) return plan.frames();
+std::vector<int> frames_to_compute(const FramePlan& plan, const std::string& digest, InputIdentities& identities) {
+  const FrameSettings& frames = plan.settings().frames;
+  if (!frames.resume || frames.overwrite || plan.frames().empty()) return plan.frames();
   const Settings first = plan.at(plan.frames().front());
-  const std::string digest = options_digest(first);
-  InputIdentities identities(plan);
   std::vector<int> wanted;
   std::ranges::copy_if(plan.frames(), std::back_inserter(wanted), [&](int frame) {
     const Settings of_frame = plan.at(frame);

@@ -29,25 +29,26 @@ bool shows_composite(const OutputSettings& output);
 class InputIdentities {
  public:
   explicit InputIdentities(const FramePlan& plan) : plan_(plan) {}
-  std::string of(int frame);
+  std::string of(int frame) { return all_of(frame).text; }
   /// When the last of these files was written.
-  std::filesystem::file_time_type newest(int frame);
+  std::filesystem::file_time_type newest(int frame) { return all_of(frame).newest; }
 
  private:
-  struct Known {
-    std::string identity;
+  struct Identity {
+    std::string text;
     std::filesystem::file_time_type newest = std::filesystem::file_time_type::min();
   };
-  static Known look_at(const Settings& frame);
-  Known own(int frame);
+  static Identity identity_of(const Settings& frame);
+  Identity own(int frame);
+  Identity all_of(int frame);
 
   const FramePlan& plan_;
   std::mutex mutex_;
-  std::map<int, Known> known_;  // their own files
+  std::map<int, Identity> own_;  // of the files of each frame
 };
 
 /// The frames of the plan to compute: all but those whose outputs an earlier run has left whole, where the settings say
-/// to resume it.
-std::vector<int> frames_to_compute(const FramePlan& plan, const Settings& settings);
+/// to resume it. `digest` is that of the first frame.
+std::vector<int> frames_to_compute(const FramePlan& plan, const std::string& digest, InputIdentities& identities);
 
 }  // namespace alcove

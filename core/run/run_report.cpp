@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/json_text.h"
 #include "core/base/system.h"
+#include "core/base/text.h"
 #include "core/formats/sequence.h"
 
 namespace alcove {

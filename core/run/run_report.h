@@ -10,8 +10,8 @@
 
 #include "core/base/error.h"
 #include "core/base/note.h"
-#include "core/gpu/pass_time.h"
-#include "kernels/shared.h"
+#include "core/gpu/device_info.h"
+#include "kernels/base/shared.h"
 
 namespace alcove {
 

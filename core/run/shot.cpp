@@ -10,12 +10,12 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/chain/geometry.h"
-#include "core/chain/warp.h"
+#include "core/chain/geometry/geometry.h"
+#include "core/chain/hidden/warp.h"
 #include "core/frame/channels.h"
 #include "core/frame/motion.h"
 #include "core/frame/settle.h"
-#include "kernels/reprojection.h"
+#include "kernels/base/reprojection.h"
 
 namespace alcove {
 namespace {
@@ -27,7 +27,7 @@ constexpr int kLeastJudges = 2;
 int judges_to_each_side(int count) { return std::max(count, kLeastJudges); }
 
 bool has_deep_depth(const FrameSource& source) {
-  const ChannelRef& depth = source[RawPlane::depth][0];
+  const ChannelRef& depth = source.channels[RawPlane::depth][0];
   return source.part_of(depth).deep.has_value();
 }
 
@@ -48,17 +48,17 @@ InputSettings of_first_surface(InputSettings input, const FrameSource* settled) 
 
 /// The same of a frame that was found: samples hold more than the first surface.
 void leave_out_hidden(FrameSource& source) {
-  source[RawPlane::behind].clear();
-  source.behind.clear();
-  if (!has_deep_depth(source)) source.deep.reset();
+  source.channels[RawPlane::behind].clear();
+  source.reading.behind.clear();
+  if (!has_deep_depth(source)) source.channels.deep.reset();
 }
 
 /// The views of a file beside the one that is looked at.
 std::vector<std::string> other_views_of(const FrameSource& source) {
-  std::vector<std::string> views = views_of(source.files[source[RawPlane::depth][0].file]);
+  std::vector<std::string> views = views_of(source.files[source.channels[RawPlane::depth][0].file]);
   if (views.size() < 2)
     fail(ErrorKind::input, "{}: it has no other view for --set other-views: leave that out", source.depth_path());
-  std::erase_if(views, [&](const std::string& view) { return same_name(view, source.view); });
+  std::erase_if(views, [&](const std::string& view) { return same_name(view, source.channels.view); });
   return views;
 }
 
@@ -133,7 +133,7 @@ bool is_same_place(const Camera& a, const Camera& b) {
 }  // namespace
 
 void require_place(const FrameSource& source, int frame, const char* option) {
-  if (!source.camera.view_from_world)
+  if (!source.reading.camera.view_from_world)
     fail(
         ErrorKind::input,
         "{}: {} needs to know where the camera of frame {} stands, and it has no world_to_camera: give a --camera file "
@@ -196,7 +196,7 @@ SeenFrame SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, 
   leave_out_hidden(source);
   require_place(source, frame, option);
   if (settled_) settle_like(source, *settled_);
-  const FrameInputs inputs = load_frame(gpu, source, settings, frame);
+  const FrameInputs inputs = load_frame(gpu, source, source.reading.data, settings, frame);
   upload(gpu, inputs);
   const GBuffer gbuffer = reconstruct(gpu, alcove::prepare(gpu, inputs, "other "));
   gpu.download(*gbuffer.depth);
@@ -206,13 +206,8 @@ SeenFrame SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, 
   took.passes.insert(took.passes.end(), gpu.passes().begin(), gpu.passes().end());
   const auto depth = gbuffer.depth->as<const float>();
   const auto normal = gbuffer.normal->as<const std::uint32_t>();
-  SeenFrame seen{source.camera,
-                 source.data,
-                 source.display,
-                 gbuffer.view,
-                 gbuffer.depth_precision,
-                 {depth.begin(), depth.end()},
-                 {normal.begin(), normal.end()}};
+  SeenFrame seen{source.reading.camera,   source.reading.data,          source.reading.display,        gbuffer.view,
+                 gbuffer.depth_precision, {depth.begin(), depth.end()}, {normal.begin(), normal.end()}};
   seen.hash = hash_of(seen.normal, hash_of(seen.depth));
   return seen;
 }
@@ -278,7 +273,7 @@ std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu
   for (std::size_t i = 0; i < frames.size(); i++) {
     found.push_back({frames[i], moving[i]});
     const auto projection = [](const Camera& camera) { return camera.orthographic ? "orthographic" : "perspective"; };
-    const char *here = projection(target.camera), *there = projection(found.back().seen->camera);
+    const char *here = projection(target.reading.camera), *there = projection(found.back().seen->camera);
     if (std::string_view(here) != there)
       fail(
           ErrorKind::input,
@@ -297,7 +292,7 @@ std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, 
   for (const auto& view : others.views) {
     input.view = view;
     const auto other = std::make_shared<const SeenFrame>(prepare(gpu, input, frame, "--set other-views", took));
-    if (is_same_place(other->camera, target.camera))
+    if (is_same_place(other->camera, target.reading.camera))
       fail(ErrorKind::input,
            "{}: its views have one camera, and --set other-views needs that of each: give a --camera file with "
            "\"views\"",
@@ -314,7 +309,7 @@ Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, in
   if (around_of(input) > 0) found = frames_around(gpu, target, frame, others, took);
   if (input.other_views) std::ranges::move(other_views(gpu, target, frame, others, took), std::back_inserter(found));
   for (const auto& [seen, moving] : found)
-    others.seen.push_back(filled(gpu, *seen, *moving, target.camera, others.seen.size()));
+    others.seen.push_back(filled(gpu, *seen, *moving, target.reading.camera, others.seen.size()));
   return others;
 }
 

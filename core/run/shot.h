@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "core/chain/other_views.h"
-#include "core/chain/seen_estimates.h"
+#include "core/chain/base/other_views.h"
+#include "core/chain/base/seen_estimates.h"
 #include "core/gpu/recorder.h"
 #include "core/run/frame_files.h"
 #include "core/run/plan.h"

@@ -1,7 +1,7 @@
-# Alcove in Blender: renders depth and normals, computes ambient occlusion of them, and loads it into the compositor.
+# Alcove in Blender: renders depth and normals, computes their ambient occlusion, and loads it into the compositor.
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# One file: Edit > Preferences > Add-ons > Install. Tested with Blender 3.4.1; written for 3.4 to 5.
+# Install this one file by Edit > Preferences > Add-ons > Install. Tested with Blender 3.4.1; written for 3.4 to 5.
 """Ambient occlusion of the rendered frame, or of the whole animation, by the program `alcove`."""
 
 import json
@@ -31,7 +31,7 @@ HASHES = "####"  # of a frame's number in names
 
 
 class Failure(Exception):
-    """What the user is to read."""
+    """A failure with a message for the user."""
 
 
 FAILURES = (Failure, OSError, RuntimeError)  # Blender's operators fail with the last one
@@ -42,7 +42,7 @@ FAILURES = (Failure, OSError, RuntimeError)  # Blender's operators fail with the
 
 def camera_of(scene, depsgraph):
     """The camera of the scene's frame as fields of a camera file: with shift, sensor fit, parents, constraints and pixel
-    aspect; the scale of its parents takes no part."""
+    aspect; the scale of its parents is ignored."""
     if scene.camera is None:
         raise Failure("The scene has no camera")
     camera = scene.camera.evaluated_get(depsgraph)
@@ -69,8 +69,8 @@ def camera_of(scene, depsgraph):
 
 
 class Cameras:
-    """The cameras of frames, taken as each is set: markers, drivers and constraints have acted then. A renderer evaluates
-    the scene by itself, so that what the window shows may still be of another frame."""
+    """The cameras of frames, taken when each frame is set, since markers, drivers and constraints have then acted. A renderer
+    evaluates the scene by itself, so the window may still show another frame."""
 
     def __init__(self):
         self.frames = {}
@@ -90,7 +90,7 @@ class Cameras:
             json.dump({"frames": frames}, file, indent=1)
 
 
-# ---- what is rendered ----
+# ---- rendering ----
 
 
 def turn_on_passes(scene, with_composite):
@@ -101,7 +101,7 @@ def turn_on_passes(scene, with_composite):
 
 
 class OutputSettings:
-    """The scene's output as Alcove needs it; the user's own comes back at the end."""
+    """Sets the scene's output as Alcove needs it; restore() brings the user's settings back."""
 
     def __init__(self, scene, folder):
         self.scene = scene
@@ -116,11 +116,11 @@ class OutputSettings:
         image.color_depth = "32"
         image.exr_codec = "ZIP"
         render.use_file_extension = render.use_overwrite = True
-        render.use_compositing = render.use_sequencer = False  # AO is of what is rendered, not of what is made of it
+        render.use_compositing = render.use_sequencer = False  # AO needs the rendered frame, not the comp
         render.filepath = os.path.join(folder, "frame." + HASHES + ".exr")
 
     def name_frame(self, frame):
-        """A still has no number of its own."""
+        """Puts the frame number into the name, since Blender numbers animations only."""
         self.scene.render.filepath = self.scene.render.filepath.replace(HASHES, "%04d" % frame)
 
     def restore(self):
@@ -134,7 +134,7 @@ class OutputSettings:
 
 
 def folder_for(scene):
-    """Beside the saved file, else in a folder that goes with Blender."""
+    """The output folder: beside the saved file, else one that vanishes with Blender."""
     asked = scene.alcove.folder
     if asked.startswith("//") and not bpy.data.filepath:
         return os.path.join(bpy.app.tempdir or tempfile.gettempdir(), "alcove")
@@ -154,7 +154,7 @@ def program():
 
 
 def command_for(scene, folder, frames):
-    """What a user would type for these frames."""
+    """The command for these frames, as a user would type it."""
     settings = scene.alcove
     name = HASHES if len(frames) > 1 else "%04d" % frames[0]
     command = [
@@ -173,12 +173,12 @@ def command_for(scene, folder, frames):
 
 
 class Process:
-    """The running program; threads read what it says, so that Blender never waits for it."""
+    """The running program; threads read its output, so that Blender never waits for it."""
 
     def __init__(self, command):
         self.running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace")
         self.percent = 0
-        self.said = []
+        self.messages = []
         self.threads = [threading.Thread(target=self.follow), threading.Thread(target=self.listen)]
         for thread in self.threads:
             thread.start()
@@ -190,7 +190,7 @@ class Process:
                 self.percent = int(number.group(1))
 
     def listen(self):
-        self.said += [line.strip() for line in self.running.stderr if line.strip()]
+        self.messages += [line.strip() for line in self.running.stderr if line.strip()]
 
     def is_done(self):
         return self.running.poll() is not None
@@ -202,9 +202,9 @@ class Process:
         self.running.stdout.close()
         self.running.stderr.close()
         if code != 0:
-            errors = [line for line in self.said if "error" in line] or self.said or ["it said nothing"]
+            errors = [line for line in self.messages if "error" in line] or self.messages or ["it said nothing"]
             raise Failure("Alcove: %s (exit code %d)" % (errors[-1], code))
-        return [line for line in self.said if "warning: " in line]
+        return [line for line in self.messages if "warning: " in line]
 
     def stop(self):
         self.running.terminate()
@@ -215,7 +215,7 @@ class Process:
 
 
 def compositor_of(scene):
-    """The scene's node tree, and whether it is new."""
+    """The scene's node tree, and True if it is new."""
     if hasattr(scene, "compositing_node_group"):  # Blender 5
         is_new = scene.compositing_node_group is None
         if is_new:
@@ -227,8 +227,8 @@ def compositor_of(scene):
 
 
 def load_result(scene, folder, frames):
-    """An image node with the result; a second run takes the same node. In a new compositor the AO darkens the picture,
-    an old one stays as it was."""
+    """Loads the result into an image node; a second run reuses the node. In a new compositor the AO darkens the picture;
+    an existing node tree only gets the image node."""
     stem = "composite" if scene.alcove.output == "COMPOSITE" else "ao"
     path = os.path.join(folder, "%s.%04d.exr" % (stem, frames[0]))
     tree, is_new = compositor_of(scene)
@@ -308,7 +308,7 @@ class ALCOVE_OT_compute(bpy.types.Operator):
         self.report({"INFO"}, "Alcove: %d frame%s in %s" % (len(self.frames), "s"[:len(self.frames) > 1], self.folder))
 
     def execute(self, context):
-        """Without a window: one step after the other."""
+        """Runs without a window, one step after the other."""
         try:
             self.begin(context)
             try:
@@ -323,7 +323,7 @@ class ALCOVE_OT_compute(bpy.types.Operator):
         return {"FINISHED"}
 
     def invoke(self, context, event):
-        """With a window: Blender renders as it always does, and the program runs beside it."""
+        """Runs with a window: Blender renders as usual, and the program runs beside it."""
         if bpy.app.background:
             return self.execute(context)
         try:
@@ -410,12 +410,12 @@ class ALCOVE_OT_write_cameras(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
 
-# ---- what is shown ----
+# ---- panels ----
 
 
 class AlcoveSettings(bpy.types.PropertyGroup):
     radius: bpy.props.FloatProperty(
-        name="Radius", description="How far occluders reach; 0: as the frame proposes", default=0, min=0, soft_max=10,
+        name="Radius", description="Reach of occluders; 0: as the frame proposes", default=0, min=0, soft_max=10,
         subtype="DISTANCE")
     preset: bpy.props.EnumProperty(
         name="Preset", default="STANDARD",
@@ -425,7 +425,7 @@ class AlcoveSettings(bpy.types.PropertyGroup):
         items=[("AO", "AO", "The ambient occlusion"),
                ("COMPOSITE", "Composite", "The picture with ambient occlusion in its indirect light")])
     folder: bpy.props.StringProperty(
-        name="Folder", description="Where frames, cameras and results go", default="//alcove", subtype="DIR_PATH")
+        name="Folder", description="Folder of frames, cameras and results", default="//alcove", subtype="DIR_PATH")
 
 
 class ALCOVE_PT_panel(bpy.types.Panel):

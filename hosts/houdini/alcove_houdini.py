@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Written from documentation and tested against a stub of Houdini's API: it has NOT been run in Houdini.
-# Into a folder of Python modules, such as ~/houdiniX.Y/pythonX.Ylibs. Select the camera; in a shelf tool or the Python Shell:
+# Put it into a folder of Python modules, such as ~/houdiniX.Y/pythonX.Ylibs. Select the camera; in a shelf tool or the Python Shell:
 #     import alcove_houdini
 #     alcove_houdini.export()
 """Cameras of Houdini for `alcove run --camera FILE`."""
@@ -13,8 +13,8 @@ import math
 import hou
 
 
-def world_to_camera(axes, place):
-    """The rows of world_to_camera, of a camera's axes in the world (right, up, backwards) and its place; scale takes no part."""
+def world_to_camera(axes, position):
+    """The rows of world_to_camera, from a camera's axes in the world (right, up, backwards) and its position; scale is ignored."""
     lengths = [math.sqrt(sum(x * x for x in axis)) for axis in axes]
     if min(lengths) == 0:
         raise ValueError("The camera is scaled to nothing")
@@ -24,7 +24,7 @@ def world_to_camera(axes, place):
     cross = [right[i - 2] * up[i - 1] - right[i - 1] * up[i - 2] for i in range(3)]
     if sum(a * b for a, b in zip(cross, back)) < 0:
         raise ValueError("The camera is mirrored: take the negative scale off it or its parents")
-    return [unit + [-sum(a * b for a, b in zip(unit, place))] for unit in units] + [[0, 0, 0, 1]]
+    return [unit + [-sum(a * b for a, b in zip(unit, position))] for unit in units] + [[0, 0, 0, 1]]
 
 
 def camera_at(node, frame):

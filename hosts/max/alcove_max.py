@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Written from documentation and tested against a stub of pymxs: it has NOT been run in 3ds Max.
-# Into a folder of scripts, such as <3ds Max>/scripts/python. Select the camera; in the Listener (Python):
+# Put it into a folder of scripts, such as <3ds Max>/scripts/python. Select the camera; in the Listener (Python):
 #     import alcove_max
 #     alcove_max.export()
 """Cameras of 3ds Max for `alcove run --camera FILE`."""
@@ -13,13 +13,13 @@ import math
 import pymxs
 from pymxs import runtime as rt
 
-# How far these move and bend the picture is not certain enough to be taken: the camera has none of them, or the script fails.
+# The effect of these on the picture is not certain enough: the script fails if the camera has one of them.
 NOT_TAKEN = ("horizontal_shift", "vertical_shift", "horizontal_tilt_correction", "vertical_tilt_correction",
              "auto_vertical_tilt_correction")
 
 
-def world_to_camera(axes, place):
-    """The rows of world_to_camera, of a camera's axes in the world (right, up, backwards) and its place; scale takes no part."""
+def world_to_camera(axes, position):
+    """The rows of world_to_camera, from a camera's axes in the world (right, up, backwards) and its position; scale is ignored."""
     lengths = [math.sqrt(sum(x * x for x in axis)) for axis in axes]
     if min(lengths) == 0:
         raise ValueError("The camera is scaled to nothing")
@@ -29,7 +29,7 @@ def world_to_camera(axes, place):
     cross = [right[i - 2] * up[i - 1] - right[i - 1] * up[i - 2] for i in range(3)]
     if sum(a * b for a, b in zip(cross, back)) < 0:
         raise ValueError("The camera is mirrored: take the negative scale off it or its parents")
-    return [unit + [-sum(a * b for a, b in zip(unit, place))] for unit in units] + [[0, 0, 0, 1]]
+    return [unit + [-sum(a * b for a, b in zip(unit, position))] for unit in units] + [[0, 0, 0, 1]]
 
 
 def numbers(point):
@@ -44,8 +44,8 @@ def target_distance(camera):
 
 
 def camera_now(camera):
-    """The camera of the frame that is set, as fields of a camera file. fov is the angle of the picture's width; an orthographic
-    camera sees as wide as that angle is at its target."""
+    """The camera of the current frame as fields of a camera file. fov is the angle of the picture's width; an orthographic
+    camera sees the width of that angle at its target."""
     for name in NOT_TAKEN:
         if getattr(camera, name, 0):
             raise ValueError("%s has %s, which this script does not take; a pass of positions tells the camera, too" %

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Written from documentation and tested against a stub of Maya's API: it has NOT been run in Maya.
-# Into a folder of scripts, such as ~/maya/scripts. Select the camera; in the Script Editor (Python):
+# Put it into a folder of scripts, such as ~/maya/scripts. Select the camera; in the Script Editor (Python):
 #     import alcove_maya
 #     alcove_maya.export()
 """Cameras of Maya for `alcove run --camera FILE`."""
@@ -17,8 +17,8 @@ MM_PER_INCH = 25.4
 CM_PER_UNIT = {"mm": 0.1, "cm": 1, "m": 100, "km": 100000, "in": 2.54, "ft": 30.48, "yd": 91.44, "mi": 160934.4}
 
 
-def world_to_camera(axes, place):
-    """The rows of world_to_camera, of a camera's axes in the world (right, up, backwards) and its place; scale takes no part."""
+def world_to_camera(axes, position):
+    """The rows of world_to_camera, from a camera's axes in the world (right, up, backwards) and its position; scale is ignored."""
     lengths = [math.sqrt(sum(x * x for x in axis)) for axis in axes]
     if min(lengths) == 0:
         raise ValueError("The camera is scaled to nothing")
@@ -28,11 +28,11 @@ def world_to_camera(axes, place):
     cross = [right[i - 2] * up[i - 1] - right[i - 1] * up[i - 2] for i in range(3)]
     if sum(a * b for a, b in zip(cross, back)) < 0:
         raise ValueError("The camera is mirrored: take the negative scale off it or its parents")
-    return [unit + [-sum(a * b for a, b in zip(unit, place))] for unit in units] + [[0, 0, 0, 1]]
+    return [unit + [-sum(a * b for a, b in zip(unit, position))] for unit in units] + [[0, 0, 0, 1]]
 
 
 def shown_width(film_width, film_height, fit, aspect):
-    """How much of the film's width a picture of this aspect ratio shows, or would show if the film went on."""
+    """The width of film that a picture of this aspect ratio shows, or would show on a larger film."""
     film_aspect = film_width / film_height
     by_width = fit == HORIZONTAL or (fit == FILL and film_aspect < aspect) or (fit == OVERSCAN and film_aspect > aspect)
     return film_width if by_width else film_height * aspect
@@ -89,7 +89,7 @@ def camera_now(shape):
 
 
 def write_cameras(path, shape, first, last, step=1):
-    """Writes the camera of each frame, set as a renderer sets it; the current frame comes back at the end."""
+    """Writes the camera of each frame, at the time of that frame; restores the current frame at the end."""
     current = cmds.currentTime(query=True)
     frames = []
     try:

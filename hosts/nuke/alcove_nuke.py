@@ -1,9 +1,9 @@
-# Alcove in Nuke: AO of a Read node, with the camera of a Camera node or of the file, as a Read node beside it.
+# Alcove in Nuke: computes the AO of a Read node, with the camera of a Camera node or of the file, and loads it as a Read node.
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Written from documentation, for Nuke 13 and later, and tested against a stub of Nuke's API: it has NOT been run in Nuke.
-# With menu.py, which is beside it, into ~/.nuke or a folder of NUKE_PATH.
-"""Ambient occlusion of a Read node by the program `alcove`, which is on the path, or which the variable ALCOVE names."""
+# Put it, with menu.py beside it, into ~/.nuke or a folder of NUKE_PATH.
+"""Ambient occlusion of a Read node by the program `alcove`, found on the path or by the variable ALCOVE."""
 
 import json
 import math
@@ -27,8 +27,8 @@ POLL_S = 0.1
 # ---- the camera ----
 
 
-def world_to_camera(axes, place):
-    """The rows of world_to_camera, of a camera's axes in the world (right, up, backwards) and its place; scale takes no part."""
+def world_to_camera(axes, position):
+    """The rows of world_to_camera, from a camera's axes in the world (right, up, backwards) and its position; scale is ignored."""
     lengths = [math.sqrt(sum(x * x for x in axis)) for axis in axes]
     if min(lengths) == 0:
         raise ValueError("The camera is scaled to nothing")
@@ -38,12 +38,12 @@ def world_to_camera(axes, place):
     cross = [right[i - 2] * up[i - 1] - right[i - 1] * up[i - 2] for i in range(3)]
     if sum(a * b for a, b in zip(cross, back)) < 0:
         raise ValueError("The camera is mirrored: take the negative scale off it or its parents")
-    return [unit + [-sum(a * b for a, b in zip(unit, place))] for unit in units] + [[0, 0, 0, 1]]
+    return [unit + [-sum(a * b for a, b in zip(unit, position))] for unit in units] + [[0, 0, 0, 1]]
 
 
 def camera_at(camera, picture, frame):
-    """The camera of a frame as fields of a camera file, for pictures of a format. The horizontal aperture lies across the
-    format's width, whatever the vertical one is; the window is moved by halves of that width, upwards too, and then scaled."""
+    """The camera of a frame as fields of a camera file, for pictures of a format. The horizontal aperture spans the
+    format's width, whatever the vertical one is; the window moves in halves of that width, also upwards, and is then scaled."""
     def at(name, index=0):
         return camera[name].getValueAt(frame, index)
 
@@ -77,7 +77,7 @@ def write_cameras(path, camera, picture, frames):
 
 
 def numbers_of(frames):
-    """The numbers of frames that are written as 1001-1100, 1-9x2 or 1,5,9."""
+    """The numbers in a list of frames: 1001-1100, 1-9x2 or 1,5,9."""
     numbers = nuke.FrameRanges(frames.replace(",", " ")).toFrameList()
     if not numbers:
         raise ValueError("\"%s\" names no frame" % frames)
@@ -85,14 +85,14 @@ def numbers_of(frames):
 
 
 def require_frames_of_the_file(read):
-    """Camera files go by the numbers in the names of files, and Camera nodes by the time of the script."""
+    """Fails if the Read node shifts its frames: camera files go by the numbers in file names, and Camera nodes by the script's time."""
     shift = read["frame"].value().strip()
     starts_as_named = read["frame_mode"].value() in ("start at", "start_at") and shift == str(int(read["first"].value()))
     if shift not in ("", "0", "frame") and not starts_as_named:
         raise ValueError("%s shifts its frames: leave its frame field empty, and use a TimeOffset below it" % read.name())
 
 
-# ---- what the user says ----
+# ---- the user's choices ----
 
 
 def selected_read():
@@ -103,7 +103,7 @@ def selected_read():
 
 
 def source_of(read):
-    """The name of the files, with #### or %04d for the frame."""
+    """The name of the files, with #### or %04d for the frame number."""
     source = nuke.filename(read)
     if not source:
         raise ValueError("%s names no file" % read.name())
@@ -113,7 +113,7 @@ def source_of(read):
 
 
 def camera_choices():
-    """What the camera may be; the first is proposed: the selected Camera node, else the only one, else the file's."""
+    """The choices of a camera, the proposal first: the selected Camera node, else the only one, else the file's."""
     names = [node.name() for node in nuke.allNodes() if node.Class() in CAMERAS]
     selected = [node.name() for node in nuke.selectedNodes() if node.Class() in CAMERAS]
     if len(selected) == 1 or len(names) == 1:
@@ -127,8 +127,8 @@ def default_output(source):
     return os.path.join(folder, "ao", os.path.splitext(name)[0] + ".exr").replace("\\", "/")
 
 
-def asked(read, source):
-    """The settings by which AO is computed, or None where the user leaves the panel."""
+def ask_settings(read, source):
+    """Asks for the settings; None if the user leaves the panel."""
     first, last = int(read["first"].value()), int(read["last"].value())
     panel = nuke.Panel("Alcove")
     panel.addSingleLineInput("Radius (0 = auto)", "0")
@@ -160,7 +160,7 @@ def program():
 
 
 def command_for(read, source, settings):
-    """What a user would type; writes the camera file where a Camera node is chosen."""
+    """The command as a user would type it. Writes the camera file if a Camera node is chosen."""
     output, radius = settings["output"], settings["radius"]
     frames = numbers_of(settings["frames"])
     command = [program(), "run", source, "-o", output, "--radius", "auto" if radius in ("", "0") else radius,
@@ -176,9 +176,9 @@ def command_for(read, source, settings):
 
 
 def run_program(command, task):
-    """Runs the program to its end, tells the task how far it is, and gives the program's warnings; None where the user has
-    cancelled, which ends it. Fails with what the program says."""
-    percents, said = [0], []
+    """Runs the program, reports its progress to the task, and gives its warnings; None if the user has cancelled, which ends
+    it. Fails with the program's message."""
+    percents, messages = [0], []
 
     def follow(stream):
         percents.extend(int(number) for line in stream for number in re.findall(r"(\d+)\s*%", line))
@@ -186,7 +186,7 @@ def run_program(command, task):
     pipe, nothing = subprocess.PIPE, subprocess.DEVNULL
     with subprocess.Popen(command, stdin=nothing, stdout=pipe, stderr=pipe, text=True, errors="replace") as running:
         listeners = [threading.Thread(target=follow, args=(running.stdout,)),
-                     threading.Thread(target=said.extend, args=(running.stderr,))]
+                     threading.Thread(target=messages.extend, args=(running.stderr,))]
         for listener in listeners:
             listener.start()
         is_cancelled = False
@@ -204,7 +204,7 @@ def run_program(command, task):
             listener.join()
     if is_cancelled:
         return None
-    lines = [line.strip() for line in said if line.strip()]
+    lines = [line.strip() for line in messages if line.strip()]
     if running.returncode != 0:
         errors = [line for line in lines if "error" in line] or lines or ["it said nothing"]
         raise ValueError("%s (exit code %d)" % (errors[-1], running.returncode))
@@ -216,7 +216,7 @@ def run_program(command, task):
 
 
 def load_result(read, output, first, last):
-    """A Read node of the AO to the right of the source; one that is there is loaded again."""
+    """Makes a Read node of the AO to the right of the source, or reloads the one that exists."""
     for node in nuke.allNodes():
         if node.Class() == "Read" and node["file"].value() == output:
             node["first"].setValue(min(first, node["first"].value()))
@@ -232,7 +232,7 @@ def complain(failure):
 
 
 def work(command, read, output, first, last):
-    """In a thread: whatever touches nodes or windows goes to the main one."""
+    """Runs in a thread of its own: calls that touch nodes or windows go to the main thread."""
     try:
         warnings = run_program(command, nuke.ProgressTask("Alcove"))
         if warnings is not None:
@@ -244,11 +244,11 @@ def work(command, read, output, first, last):
 
 
 def compute():
-    """The menu's command. Nuke goes on while the program runs; the thread in which it is waited for is returned."""
+    """The menu's command. Nuke goes on while the program runs. Returns the thread that waits for it."""
     try:
         read = selected_read()
         source = source_of(read)
-        settings = asked(read, source)
+        settings = ask_settings(read, source)
         if settings is None:
             return None
         command = command_for(read, source, settings)

@@ -1,4 +1,4 @@
-# Puts Alcove into Nuke's menu. Who has a menu.py adds these lines to it.
+# Puts Alcove into Nuke's menu. If you have a menu.py, add these lines to it.
 # SPDX-License-Identifier: BSD-3-Clause
 import nuke
 

@@ -5,7 +5,7 @@
 #include "core/base/version.h"
 #include "tests/support/library.h"
 
-namespace alcove {
+namespace alcove::library_test {
 namespace {
 
 using namespace test;
@@ -254,4 +254,4 @@ TEST_F(Library, keeps_handles_of_several_threads_apart) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::library_test

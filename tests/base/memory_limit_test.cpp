@@ -4,7 +4,7 @@
 
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::memory_limit_test {
 namespace {
 
 using namespace test;
@@ -163,4 +163,4 @@ TEST(Slurm, says_by_its_variables_what_a_job_asked_for) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::memory_limit_test

@@ -41,7 +41,7 @@ extern "C" int rename(const char* from, const char* to) noexcept {
   return int(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
 }
 
-namespace alcove {
+namespace alcove::new_file_test {
 namespace {
 
 using namespace test;
@@ -109,4 +109,4 @@ TEST_F(NewFiles, are_whole_though_signals_interrupt_the_wait_for_the_disk) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::new_file_test

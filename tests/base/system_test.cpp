@@ -5,7 +5,7 @@
 
 #include <csignal>
 
-namespace alcove {
+namespace alcove::system_test {
 namespace {
 
 using testing::ExitedWithCode;
@@ -31,4 +31,4 @@ TEST(Signals, end_the_process_the_second_time) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::system_test

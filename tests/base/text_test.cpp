@@ -4,11 +4,9 @@
 
 #include "core/base/error.h"
 #include "core/base/flat_toml.h"
-
-#include "core/base/json_text.h"
 #include "tests/support/test.h"
 
-namespace alcove {
+namespace alcove::text_test {
 namespace {
 
 using namespace test;
@@ -165,4 +163,4 @@ TEST(Toml, has_no_quotes_within_words) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::text_test

@@ -15,7 +15,7 @@
 #include "tests/support/long_tests.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::kept_references_test {
 namespace {
 
 using namespace test;
@@ -161,4 +161,4 @@ TEST(KeptReferences, DISABLED_writes_them) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::kept_references_test

@@ -5,7 +5,7 @@
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 
-namespace alcove {
+namespace alcove::real_frame_test {
 namespace {
 
 using namespace test;
@@ -27,4 +27,4 @@ TEST(RealFrame, normals_from_depth_come_close_to_the_rendered_ones) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::real_frame_test

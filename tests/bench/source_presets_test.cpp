@@ -11,11 +11,11 @@
 #include "core/formats/exr.h"
 #include "core/frame/gbuffer.h"
 #include "core/measure/metrics.h"
-#include "core/reference/reference_estimators.h"
+#include "core/reference/reference.h"
 #include "tests/support/device.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::source_presets_test {
 namespace {
 
 const char* const kGoldens = ALCOVE_SOURCE_DIR "/tests/bench/source_presets.exr";
@@ -104,4 +104,4 @@ TEST(SourcePresets, DISABLED_writes_the_goldens) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::source_presets_test

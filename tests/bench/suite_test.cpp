@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::suite_test {
 namespace {
 
 using namespace test;
@@ -155,4 +155,4 @@ TEST_F(SuiteGrain, has_a_limit_that_holds_breaks_or_cannot_be_checked) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::suite_test

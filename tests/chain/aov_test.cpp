@@ -3,7 +3,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
-namespace alcove {
+namespace alcove::aov_test {
 namespace {
 
 using namespace test;
@@ -279,4 +279,4 @@ TEST_F(Aovs, fade_goes_from_its_start_to_its_end) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::aov_test

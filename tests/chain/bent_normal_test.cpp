@@ -1,11 +1,11 @@
 // Bent normals: closed forms, the CPU reference, and what the filters make of them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/shading.h"
+#include "core/chain/results/shading.h"
 #include "core/reference/reference.h"
 #include "tests/support/bent.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::bent_normal_test {
 namespace {
 
 using namespace test;
@@ -16,7 +16,7 @@ struct vec2 {
   vec2(float along_x, float along_y) : x(along_x), y(along_y) {}
   float x, y;
 };
-#include "kernels/bent.glsl"
+#include "kernels/estimate/bent.glsl"
 }  // namespace glsl
 
 constexpr Estimator kSliced[]{Estimator::gtao, Estimator::bitmask};
@@ -401,4 +401,4 @@ TEST(SpecularOcclusion, follows_the_bent_normal) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::bent_normal_test

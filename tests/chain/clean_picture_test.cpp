@@ -4,7 +4,7 @@
 #include "tests/support/chain.h"
 #include "tests/support/preset.h"
 
-namespace alcove {
+namespace alcove::clean_picture_test {
 namespace {
 
 using namespace test;
@@ -187,4 +187,4 @@ TEST(Joints, stay_lines) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::clean_picture_test

@@ -9,7 +9,7 @@
 #include "core/reference/reference.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::closed_form_test {
 namespace {
 
 using namespace test;
@@ -484,4 +484,4 @@ TEST(Thickness, thin_blades_block_as_thin_ones) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::closed_form_test

@@ -1,15 +1,15 @@
 // What completed surfaces take of the visibility: who asks for it, its sums, its picture, and what is said of it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/completion.h"
+#include "core/chain/estimate/completion.h"
 #include "core/base/estimator_facts.h"
-#include "core/chain/debug.h"
+#include "core/chain/results/debug.h"
 #include "core/chain/reuse.h"
 #include "core/run/frame_run.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/sites_of.h"
 
-namespace alcove {
+namespace alcove::completion_test {
 namespace {
 
 using namespace test;
@@ -53,7 +53,7 @@ class CompletedPlanes : public testing::Test {
   int width() const { return frame.data.width; }
   int height() const { return frame.data.height; }
 
-  /// Whether a pixel is on the lattice of that spacing: see kernels/lattice.glsl.
+  /// Whether a pixel is on the lattice of that spacing: see kernels/base/lattice.glsl.
   static bool is_receiver(int x, int y, int spacing) { return is_on_lattice(x + 3, y + 5, spacing); }
 
   Sites sites_of(int spacing) const { return sites(recorder(), gbuffer, {spacing, false}); }
@@ -364,4 +364,4 @@ TEST_F(CompletionStats, of_a_view_without_any_are_refused) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::completion_test

@@ -3,7 +3,7 @@
 #include "core/formats/exr.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::confidence_test {
 namespace {
 
 using namespace test;
@@ -118,4 +118,4 @@ TEST(Confidence, does_not_change_the_ao_and_is_there_for_every_estimator) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::confidence_test

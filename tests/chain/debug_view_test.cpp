@@ -1,11 +1,11 @@
 // The debug views: a picture each that says its scale, whole or not at all, and right where what it must show is
 // known.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/debug_view.h"
+#include "core/chain/results/debug_view.h"
 #include "tests/support/command_line.h"
 #include "tests/support/whole_picture.h"
 
-namespace alcove {
+namespace alcove::debug_view_test {
 namespace {
 
 using namespace test;
@@ -154,4 +154,4 @@ TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::debug_view_test

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::denoise_test {
 namespace {
 
 using namespace test;
@@ -155,4 +155,4 @@ TEST(Denoise, of_the_mirrored_frame_is_the_mirrored_result) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::denoise_test

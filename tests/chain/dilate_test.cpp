@@ -1,11 +1,11 @@
 // What the filters leave out because of what tiles hold: the result has the bits of the whole.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/estimator_facts.h"
-#include "core/chain/filters.h"
-#include "core/chain/sites.h"
+#include "core/chain/estimate/sites.h"
+#include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::dilate_test {
 namespace {
 
 using namespace test;
@@ -123,4 +123,4 @@ TEST(Dilate, nothing_is_filtered_where_nothing_can_change) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::dilate_test

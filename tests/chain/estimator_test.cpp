@@ -2,11 +2,11 @@
 // against slow versions of themselves. docs/testing.md says which mistake of such designs which test finds.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/estimator_facts.h"
-#include "core/reference/reference_estimators.h"
+#include "core/reference/reference.h"
 #include "tests/support/block_scene.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::estimator_test {
 namespace {
 
 using namespace test;
@@ -413,4 +413,4 @@ TEST(EveryVariant, agrees_with_its_slow_version) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::estimator_test

@@ -6,7 +6,7 @@
 #include "tests/support/hidden_truth.h"
 #include "tests/support/peels.h"
 
-namespace alcove {
+namespace alcove::exact_test {
 namespace {
 
 using namespace test;
@@ -447,4 +447,4 @@ TEST_F(CommandLine, a_surface_goes_on_into_a_region_from_far_beyond_its_reach) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::exact_test

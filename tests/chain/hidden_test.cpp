@@ -4,7 +4,7 @@
 #include "tests/support/peels.h"
 #include "tests/support/random_scenes.h"
 
-namespace alcove {
+namespace alcove::hidden_test {
 namespace {
 
 using namespace test;
@@ -195,4 +195,4 @@ TEST(Hidden, smaller_images_keep_what_their_pixels_hide) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::hidden_test

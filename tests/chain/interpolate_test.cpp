@@ -1,13 +1,13 @@
 // The filter that gives all pixels theirs from the sites: against its formulas written out slowly, and what it keeps.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/estimator_facts.h"
-#include "core/chain/filters.h"
+#include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"
 #include "tests/support/site_frames.h"
 #include "tests/support/site_picture.h"
 
-namespace alcove {
+namespace alcove::interpolate_test {
 namespace {
 
 using namespace test;
@@ -340,4 +340,4 @@ TEST(Sparse, is_as_near_to_the_dense_estimate_as_noise_allows) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::interpolate_test

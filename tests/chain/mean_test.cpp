@@ -1,9 +1,9 @@
 // The mean of two frames, made by hand: which of the other one's pixels count.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/accumulate.h"
+#include "core/chain/time/accumulate.h"
 #include "tests/support/device.h"
 
-namespace alcove {
+namespace alcove::mean_test {
 namespace {
 
 using namespace test;
@@ -170,4 +170,4 @@ TEST(Mean, of_fewer_frames_than_are_listed_runs_the_same_kernels) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::mean_test

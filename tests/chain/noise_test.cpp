@@ -8,7 +8,7 @@
 #include "tests/support/site_frames.h"
 #include "tests/support/sites_of.h"
 
-namespace alcove {
+namespace alcove::noise_test {
 namespace {
 
 using namespace test;
@@ -25,7 +25,7 @@ struct Lattice {
 
 /// A lattice as noise.glsl has it.
 Lattice lattice_of(const std::string& name) {
-  const std::string text = read_bytes(ALCOVE_SOURCE_DIR "/kernels/noise.glsl");
+  const std::string text = read_bytes(ALCOVE_SOURCE_DIR "/kernels/base/noise.glsl");
   const auto number = [&](const std::string& constant) {
     std::smatch match;
     EXPECT_TRUE(std::regex_search(text, match, std::regex(constant + " = (\\d+)u"))) << constant;
@@ -103,4 +103,4 @@ TEST(Noise, of_a_crop_far_away_is_that_of_the_whole) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::noise_test

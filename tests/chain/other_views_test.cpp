@@ -1,11 +1,11 @@
 // What other frames and views show behind the first surface lies where it is in the world, and stands still.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/margin.h"
-#include "kernels/reprojection.h"
+#include "core/chain/geometry/margin.h"
+#include "kernels/base/reprojection.h"
 #include "tests/support/chain.h"
 #include "tests/support/seen_views.h"
 
-namespace alcove {
+namespace alcove::other_views_test {
 namespace {
 
 using namespace test;
@@ -319,4 +319,4 @@ TEST(OtherViews, a_part_has_a_margin_where_it_ends_with_the_frame) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::other_views_test

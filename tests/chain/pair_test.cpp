@@ -1,12 +1,12 @@
-// Which hidden surfaces are taken to close a solid, where nobody says it: kernels/ends.comp and kernels/pair.comp.
+// Which hidden surfaces are taken to close a solid, where nobody says it: ends.comp and pair.comp of kernels/hidden.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/hidden.h"
-#include "core/reference/reference_layers.h"
-#include "kernels/hidden.h"
+#include "core/chain/hidden/hidden.h"
+#include "core/reference/reference_scene.h"
+#include "kernels/hidden/hidden.h"
 #include "tests/support/device.h"
 #include "tests/support/peels.h"
 
-namespace alcove {
+namespace alcove::pair_test {
 namespace {
 
 using namespace test;
@@ -189,4 +189,4 @@ TEST(Pair, a_crop_with_its_margin_is_as_the_whole) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::pair_test

@@ -8,7 +8,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/hidden_truth.h"
 
-namespace alcove {
+namespace alcove::pieces_test {
 namespace {
 
 using namespace test;
@@ -258,4 +258,4 @@ TEST_F(PiecesOfFiles, of_a_region_are_those_of_the_whole_where_normals_come_from
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::pieces_test

@@ -4,7 +4,7 @@
 #include "tests/support/furnished.h"
 #include "tests/support/site_frames.h"
 
-namespace alcove {
+namespace alcove::property_test {
 namespace {
 
 using namespace test;
@@ -359,4 +359,4 @@ TEST(Radius, of_few_pixels_darkens_a_crease) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::property_test

@@ -4,7 +4,7 @@
 #include "tests/support/bent.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::reconstruction_test {
 namespace {
 
 using namespace test;
@@ -74,4 +74,4 @@ TEST(Reconstruction, keeps_edges_of_flat_surfaces) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::reconstruction_test

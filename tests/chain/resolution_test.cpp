@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::resolution_test {
 namespace {
 
 using namespace test;
@@ -129,4 +129,4 @@ TEST_P(Reduced, mirrored_blocks_give_the_mirrored_result) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::resolution_test

@@ -8,7 +8,7 @@
 #include "tests/support/sequence_folder.h"
 #include "tests/support/site_frames.h"
 
-namespace alcove {
+namespace alcove::reuse_test {
 namespace {
 
 using namespace test;
@@ -427,4 +427,4 @@ TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_directions) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::reuse_test

@@ -6,7 +6,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
-namespace alcove {
+namespace alcove::scales_test {
 namespace {
 
 using namespace test;
@@ -129,8 +129,8 @@ TEST(Scales, share_all_passes_but_the_search) {
 class ScaleFiles : public CommandLine {
  protected:
   /// The input stands behind the radii, which must not swallow it.
-  Finished run(const Options& more, const Surroundings& surroundings = {}) const override {
-    return run_program(joined(joined({"run"}, more), {frame, "-o", ao, "--camera", camera}), surroundings);
+  Finished run(const Options& more, const Launch& launch = {}) const override {
+    return run_program(joined(joined({"run"}, more), {frame, "-o", ao, "--camera", camera}), launch);
   }
   Image good(const Options& more) const {
     done(more);
@@ -181,4 +181,4 @@ TEST_F(ScaleFiles, count_in_digest_and_statistics) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::scales_test

@@ -1,10 +1,10 @@
 // What is made of the visibility: shaping, multi-bounce, specular occlusion; each against its definition.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/shading.h"
-#include "kernels/geometry.h"
+#include "core/chain/results/shading.h"
+#include "kernels/geometry/geometry.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::shading_test {
 namespace {
 
 using namespace test;
@@ -170,7 +170,7 @@ TEST(MultiBounce, every_colour_takes_its_own_albedo_and_broken_ones_return_nothi
 
 // Specular occlusion.
 
-/// As kernels/normal.glsl packs: the octahedral map in 16 bits per coordinate.
+/// As kernels/base/normal.glsl packs: the octahedral map in 16 bits per coordinate.
 float packed_as_float(Vec3 n) {
   const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   double x = n.x / sum, y = n.y / sum;
@@ -276,4 +276,4 @@ TEST(SpecularOcclusion, of_a_mirror_is_all_or_nothing) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::shading_test

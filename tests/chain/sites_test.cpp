@@ -2,14 +2,14 @@
 // it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/estimator_facts.h"
-#include "core/chain/estimate.h"
-#include "core/chain/filters.h"
+#include "core/chain/estimate/estimate.h"
+#include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"
 #include "tests/support/site_frames.h"
 #include "tests/support/site_picture.h"
 
-namespace alcove {
+namespace alcove::sites_test {
 namespace {
 
 using namespace test;
@@ -278,4 +278,4 @@ TEST(DenoiseRadius, left_open_is_wide_where_pixels_share_estimates) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::sites_test

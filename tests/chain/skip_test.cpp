@@ -5,7 +5,7 @@
 #include "tests/support/random_scenes.h"
 #include "tests/support/site_frames.h"
 
-namespace alcove {
+namespace alcove::skip_test {
 namespace {
 
 using namespace test;
@@ -132,4 +132,4 @@ TEST(Skip, any_bits_as_input) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::skip_test

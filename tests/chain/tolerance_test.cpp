@@ -1,11 +1,11 @@
 // Estimates by their error: as many directions as the tolerance takes.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/estimate.h"
-#include "kernels/estimate.h"
-#include "kernels/exact_search.h"
+#include "core/chain/estimate/estimate.h"
+#include "kernels/estimate/estimate.h"
+#include "kernels/estimate/exact_search.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::tolerance_test {
 namespace {
 
 using namespace test;
@@ -273,4 +273,4 @@ TEST(Tolerance, radii_are_each_estimated_by_their_error) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::tolerance_test

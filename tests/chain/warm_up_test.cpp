@@ -6,7 +6,7 @@
 #include "tests/support/preset.h"
 #include "tests/support/scenes.h"
 
-namespace alcove {
+namespace alcove::warm_up_test {
 namespace {
 
 using namespace test;
@@ -34,4 +34,4 @@ TEST(WarmUp, begins_with_what_has_the_most_code) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::warm_up_test

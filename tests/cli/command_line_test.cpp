@@ -5,7 +5,7 @@
 #include "cli/options.h"
 #include "core/base/error.h"
 
-namespace alcove {
+namespace alcove::command_line_test {
 namespace {
 
 using namespace test;
@@ -47,8 +47,7 @@ TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
   EXPECT_THAT(help, AllOf(HasSubstr("Examples:"), HasSubstr("--radius"), HasSubstr("--output"), HasSubstr("--camera"),
                           HasSubstr("--help-all"), Not(HasSubstr("sample-kernel"))));
   EXPECT_LE(options_in(help), 16);
-  RunOptions options;
-  for (const auto& row : option_table(options)) {
+  for (const auto& row : option_table()) {
     if (row.is_only_key()) continue;
     EXPECT_THAT(all, HasSubstr(row.long_name()));
     if (row.is_common) EXPECT_THAT(help, HasSubstr(row.long_name()));
@@ -245,12 +244,12 @@ TEST_F(CommandLine, a_file_in_the_working_directory_is_not_taken_for_a_preset_of
 
 TEST_F(CommandLine, a_switch_that_a_preset_turns_off_is_off) {
   write_bytes(folder / "on.toml", "no-pipeline-cache = false\nrequire-gpu = false\nvalidate = false\nquiet = false\n");
-  const Surroundings surroundings{.environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
-  done({"--preset", folder / "on.toml"}, surroundings);
+  const Launch launch{.environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
+  done({"--preset", folder / "on.toml"}, launch);
   EXPECT_THAT(names_in(folder / "cache"), Contains(StartsWith("alcove/pipelines-")))
       << "no-pipeline-cache = false keeps the cache";
   fs::remove_all(folder / "cache");
-  EXPECT_EQ(run({"--set", "no-pipeline-cache=true"}, surroundings).code, 0);
+  EXPECT_EQ(run({"--set", "no-pipeline-cache=true"}, launch).code, 0);
   EXPECT_FALSE(fs::exists(folder / "cache/alcove"));
 }
 
@@ -259,14 +258,14 @@ TEST_F(CommandLine, presets_of_another_folder_have_their_path_as_name) {
   write_bytes(folder / "presets/show/day.toml", "slices = 11\n");
   write_bytes(folder / "elsewhere.toml", "slices = 13\n");
   fs::create_symlink(folder / "elsewhere.toml", folder / "presets/linked.toml");
-  const Surroundings surroundings{.environment = {{"ALCOVE_PRESETS", folder / "presets"}}};
-  const json listed = json::parse(run_program({"presets", "--json"}, surroundings).out);
+  const Launch launch{.environment = {{"ALCOVE_PRESETS", folder / "presets"}}};
+  const json listed = json::parse(run_program({"presets", "--json"}, launch).out);
   ASSERT_EQ(listed.size(), 2);
   EXPECT_EQ(listed[0]["name"], "linked");
   EXPECT_EQ(listed[1]["name"], "show/day");
-  EXPECT_THAT(lines_of(run_program({"run", "--preset", "linked", "--print-config"}, surroundings).out),
+  EXPECT_THAT(lines_of(run_program({"run", "--preset", "linked", "--print-config"}, launch).out),
               Contains("slices=13"));
-  EXPECT_THAT(lines_of(run_program({"run", "--preset", "show/day", "--print-config"}, surroundings).out),
+  EXPECT_THAT(lines_of(run_program({"run", "--preset", "show/day", "--print-config"}, launch).out),
               Contains("slices=11"));
 }
 
@@ -316,4 +315,4 @@ TEST_F(CommandLine, doctor_tells_what_is_amiss) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::command_line_test

@@ -7,7 +7,7 @@
 #include "tests/support/deep_file.h"
 #include "tests/support/source_frame.h"
 
-namespace alcove {
+namespace alcove::docs_test {
 namespace {
 
 using namespace test;
@@ -166,4 +166,4 @@ TEST(Pages, the_first_one_is_short_and_leads_to_all_others) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::docs_test

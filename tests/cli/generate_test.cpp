@@ -5,7 +5,7 @@
 #include "core/base/system.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::generate_test {
 namespace {
 
 using namespace test;
@@ -192,4 +192,4 @@ TEST_F(Generated, other_words_are_refused) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::generate_test

@@ -8,28 +8,28 @@
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
-namespace alcove {
+namespace alcove::options_test {
 namespace {
 
 using namespace test;
 
-static_assert(!std::is_constructible_v<OptionGroup, std::vector<OptionRow>&, std::string>,
+static_assert(!std::is_constructible_v<OptionGroup<Settings>, std::vector<SettingRow>&, std::string>,
               "a row without a declared effect must not compile");
 
 class Options : public CommandLine {
  protected:
   Options() {
-    options.settings.estimator.radius = 1;
+    settings.estimator.radius = 1;
     write_bytes(file, "a");
     write_bytes(same, "a");
     write_bytes(other, "b");
   }
 
-  std::string digest() const { return options_digest(options.settings); }
+  std::string digest() const { return options_digest(settings); }
 
   /// Gives the row another value than it has: one of its own words, else what it takes of a number or a text.
-  static bool change(const OptionRow& row) {
-    const Words before = row.words();
+  bool change(const SettingRow& row) {
+    const Words before = row.words(settings);
     Words candidates{"true"};
     for (std::size_t at = 0; at != std::string::npos && at <= row.value.size();) {
       const std::size_t bar = std::min(row.value.find('|', at), row.value.size());
@@ -39,51 +39,48 @@ class Options : public CommandLine {
     candidates.insert(candidates.end(), {"0.5", "0.05", "2", "5", "x", "1,2", "1,2,3,4", "0.1,0.2,0.3", "2/3", "4G"});
     for (const auto& candidate : candidates) {
       try {
-        row.read({candidate});
+        row.read(settings, {candidate});
       } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage) << row.name;
         EXPECT_THAT(error.what(), HasSubstr(row.long_name()));
         continue;
       }
-      if (row.words() != before) return true;
+      if (row.words(settings) != before) return true;
     }
     return false;
   }
 
-  /// Calls it with each row of the effect, bound to `options` as they are by default.
-  void for_each(Effect effect, const std::function<void(const OptionRow&)>& call) {
-    const RunOptions defaults = options;
+  /// Calls it with each row of the effect that is a setting, and with the settings as they are by default.
+  void for_each(Effect effect, const std::function<void(const SettingRow&)>& call) {
+    const Settings defaults = settings;
     int rows = 0;
-    const auto table = option_table(options);
-    for (const auto& row : table)
-      if (row.effect == effect) {
-        options = defaults;
+    for (const auto& row : option_table())
+      if (row.effect == effect && row.is_key()) {
+        settings = defaults;
         call(row);
         rows++;
       }
-    options = defaults;
+    settings = defaults;
     EXPECT_GT(rows, 0);
   }
 
-  RunOptions options;
+  Settings settings;
   const std::string file = folder / "file", same = folder / "same", other = folder / "other";
 };
 
 TEST_F(Options, of_every_row_take_what_they_say) {
-  for (const auto& row : option_table(options)) {
+  for (const auto& row : option_table()) {
+    if (!row.is_key()) continue;
     ASSERT_TRUE(change(row)) << row.name << " has no other value";
-    RunOptions fresh;
-    const auto rows = option_table(fresh);
-    const auto& again = *std::ranges::find(rows, row.name, &OptionRow::name);
-    again.read(row.words());
-    EXPECT_EQ(again.words(), row.words()) << row.name;
+    Settings fresh;
+    row.read(fresh, row.words(settings));
+    EXPECT_EQ(row.words(fresh), row.words(settings)) << row.name;
   }
 }
 
 TEST_F(Options, refuse_what_hidden_surfaces_cannot_be) {
-  const auto rows = option_table(options);
   const auto read = [&](const char* option, const Words& words) {
-    std::ranges::find(rows, std::string(option), &OptionRow::long_name)->read(words);
+    std::ranges::find(option_table(), std::string(option), &OptionRow::long_name)->read(settings, words);
   };
   const auto refusal = [&](const char* option, const Words& words) {
     try {
@@ -104,21 +101,20 @@ TEST_F(Options, refuse_what_hidden_surfaces_cannot_be) {
                                            {"--set hidden", "4", "out of range: 0 to 3"}})
     EXPECT_THAT(refusal(option, {word}), HasSubstr(said));
   read("--around", {"ALL"});
-  EXPECT_TRUE(options.settings.input.around_all);
+  EXPECT_TRUE(settings.input.around_all);
   read("--around", {"4"});
-  EXPECT_FALSE(options.settings.input.around_all);
+  EXPECT_FALSE(settings.input.around_all);
   read("--set separation", {"0.5"});
   read("--set separation", {"auto"});
-  EXPECT_FALSE(options.settings.estimator.separation);
+  EXPECT_FALSE(settings.estimator.separation);
 }
 
 TEST_F(Options, say_numbers_to_the_last_bit) {
-  const auto rows = option_table(options);
-  const auto& radius = *std::ranges::find(rows, "--radius", &OptionRow::name);
+  const SettingRow& radius = row_of_key("radius");
   for (const double value : {0.1, 1.0 / 3, 1e-300, 0x1.fffffffffffffp+58}) {
-    options.settings.estimator.radius = value;
-    radius.read(radius.words());
-    EXPECT_EQ(options.settings.estimator.radius, value);
+    settings.estimator.radius = value;
+    radius.read(settings, radius.words(settings));
+    EXPECT_EQ(settings.estimator.radius, value);
   }
 }
 
@@ -126,7 +122,7 @@ TEST_F(Options, that_change_pixels_change_the_digest_each_in_its_own_way) {
   const std::string plain = digest();
   std::set<std::string> digests;
   int rows = 0;
-  for_each(Effect::pixels, [&](const OptionRow& row) {
+  for_each(Effect::pixels, [&](const SettingRow& row) {
     EXPECT_TRUE(change(row));
     EXPECT_NE(digest(), plain) << row.name;
     digests.insert(digest());
@@ -138,79 +134,79 @@ TEST_F(Options, that_change_pixels_change_the_digest_each_in_its_own_way) {
 TEST_F(Options, that_change_no_pixels_are_these_and_not_in_the_digest) {
   const std::string plain = digest();
   Words names;
-  for_each(Effect::none, [&](const OptionRow& row) {
+  for_each(Effect::none, [&](const SettingRow& row) {
     EXPECT_TRUE(change(row));
     EXPECT_EQ(digest(), plain) << row.name;
     names.push_back(row.long_name());
   });
-  EXPECT_THAT(names, ElementsAre("--strict", "--frames", "--set output-offset", "--chunk", "--set missing",
-                                 "--keep-going", "--set warnings-as-errors", "--resume", "--set overwrite", "--dry-run",
-                                 "--preset", "--set", "--no-skip", "--output", "--composite", "--preview",
-                                 "--set debug", "--set compression", "--set no-mkdir", "--device", "--set require-gpu",
-                                 "--validate", "--set no-pipeline-cache", "--memory", "--threads", "--stats",
-                                 "--progress", "--log-json", "--verbose", "--quiet", "--print-config"))
+  EXPECT_THAT(names,
+              ElementsAre("--strict", "--frames", "--set output-offset", "--chunk", "--set missing", "--keep-going",
+                          "--set warnings-as-errors", "--resume", "--set overwrite", "--no-skip", "--output",
+                          "--composite", "--preview", "--set debug", "--set compression", "--set no-mkdir", "--device",
+                          "--set require-gpu", "--validate", "--set no-pipeline-cache", "--memory", "--threads",
+                          "--stats", "--progress", "--log-json", "--verbose", "--quiet"))
       << "whoever adds to this list says that the pixels come out the same";
 }
 
 TEST_F(Options, that_name_inputs_count_by_being_given) {
   const std::string plain = digest();
   for (const Effect effect : {Effect::input, Effect::pixels_or_input})
-    for_each(effect, [&](const OptionRow& row) {
-      row.read({file});
+    for_each(effect, [&](const SettingRow& row) {
+      row.read(settings, {file});
       const std::string given = digest();
       EXPECT_NE(given, plain) << row.name;
-      row.read({other});
+      row.read(settings, {other});
       EXPECT_EQ(digest(), given) << row.name << ": inputs are known by their bytes";
     });
-  options.settings.input.albedo_value = 0.5;
+  settings.input.albedo_value = 0.5;
   const std::string half = digest();
-  options.settings.input.albedo_value = 0.25;
+  settings.input.albedo_value = 0.25;
   EXPECT_NE(digest(), half);
 }
 
 TEST_F(Options, that_name_a_picture_or_objects_count_by_being_given_or_by_the_objects) {
   const std::string plain = digest();
-  for_each(Effect::pixels_or_picture, [&](const OptionRow& row) {
-    row.read({"a.exr"});
+  for_each(Effect::pixels_or_picture, [&](const SettingRow& row) {
+    row.read(settings, {"a.exr"});
     const std::string given = digest();
     EXPECT_NE(given, plain) << row.name;
-    row.read({"folder/b.####.PNG"});
+    row.read(settings, {"folder/b.####.PNG"});
     EXPECT_EQ(digest(), given) << row.name << ": inputs are known by their bytes";
-    row.read({"Hero"});
+    row.read(settings, {"Hero"});
     const std::string hero = digest();
     EXPECT_NE(hero, given) << row.name;
-    row.read({"Villain"});
+    row.read(settings, {"Villain"});
     EXPECT_NE(digest(), hero) << row.name;
   });
 }
 
 TEST_F(Options, that_name_a_file_count_by_its_content) {
   const std::string plain = digest();
-  for_each(Effect::content, [&](const OptionRow& row) {
-    row.read({file});
+  for_each(Effect::content, [&](const SettingRow& row) {
+    row.read(settings, {file});
     const std::string first = digest();
     EXPECT_NE(first, plain) << row.name;
-    row.read({same});
+    row.read(settings, {same});
     EXPECT_EQ(digest(), first) << row.name << ": another place";
-    row.read({other});
+    row.read(settings, {other});
     EXPECT_NE(digest(), first) << row.name;
   });
 }
 
 TEST_F(Options, of_the_display_count_where_a_preview_shows_a_composite) {
   ::unsetenv("OCIO");
-  const auto digest_of = [&](const OptionRow& row, const std::string& name) {
-    row.read({name});
+  const auto digest_of = [&](const SettingRow& row, const std::string& name) {
+    row.read(settings, {name});
     return digest();
   };
-  for_each(Effect::display, [&](const OptionRow& row) {
-    OutputSettings& output = options.settings.output;
+  for_each(Effect::display, [&](const SettingRow& row) {
+    OutputSettings& output = settings.output;
     const std::string plain = digest();
     for (std::string* const path : {&output.preview, &output.composite}) {
       *path = "a.file";
       EXPECT_EQ(digest_of(row, file), plain) << "a preview of the AO, or a composite alone";
       path->clear();
-      row.read({""});
+      row.read(settings, {""});
     }
     output.preview = output.composite = "a.file";
     const std::string built_in = digest();
@@ -219,7 +215,7 @@ TEST_F(Options, of_the_display_count_where_a_preview_shows_a_composite) {
     EXPECT_NE(first, built_in);
     EXPECT_EQ(digest_of(row, same), first) << "another place";
     EXPECT_NE(digest_of(row, other), first);
-    row.read({""});
+    row.read(settings, {""});
     ::setenv("OCIO", file.c_str(), 1);
     EXPECT_EQ(digest(), first) << "the variable says the same";
     ::unsetenv("OCIO");
@@ -228,25 +224,25 @@ TEST_F(Options, of_the_display_count_where_a_preview_shows_a_composite) {
 
 TEST_F(Options, that_are_zero_or_given_twice_or_run_into_each_other_have_digests_of_their_own) {
   const std::string plain = digest();
-  options.settings.estimator.fade_start = 0;
+  settings.estimator.fade_start = 0;
   EXPECT_NE(digest(), plain) << "not those that are not set";
-  options.settings.input.layer = "a\n--view 1 b";
+  settings.input.layer = "a\n--view 1 b";
   const std::string one_text = digest();
-  options.settings.input.layer = "a";
-  options.settings.input.view = "b";
+  settings.input.layer = "a";
+  settings.input.view = "b";
   EXPECT_NE(digest(), one_text);
-  options.settings.input.behind = {"a.exr"};
+  settings.input.behind = {"a.exr"};
   const std::string one_file = digest();
-  options.settings.input.behind = {"b.exr"};
+  settings.input.behind = {"b.exr"};
   EXPECT_EQ(digest(), one_file);
-  options.settings.input.behind = {"a.exr", "b.exr"};
+  settings.input.behind = {"a.exr", "b.exr"};
   EXPECT_NE(digest(), one_file);
 }
 
 TEST_F(Options, as_a_preset_are_what_they_are) {
   const auto preset_of = [&](const std::string& text) {
-    options.settings.input.camera = text;
-    return preset_text(option_table(options), options.settings);
+    settings.input.camera = text;
+    return preset_text(settings);
   };
   for (const std::string text :
        {"a b", "a \"b\"", "it's", "c:\\d", "'\"\\\t\x7f'", "\n", "007", "1001", "inf", "true", "ü#"}) {
@@ -333,4 +329,4 @@ TEST_F(Previews, are_made_again_for_another_configuration_of_the_display) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::options_test

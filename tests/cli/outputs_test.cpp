@@ -3,7 +3,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
-namespace alcove {
+namespace alcove::outputs_test {
 namespace {
 
 using namespace test;
@@ -229,4 +229,4 @@ TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::outputs_test

@@ -4,14 +4,14 @@
 
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::progress_test {
 namespace {
 
 using namespace test;
 
 /// What farms are told while so many frames run, of which the first has done so much, and then so much.
 std::vector<std::string> told_to_farm(const std::string& kind, int frames, const std::vector<double>& done) {
-  ProgressOptions options;
+  ProgressSettings options;
   options.kind = kind;
   options.quiet = true;
   Progress progress(options, "");
@@ -31,7 +31,7 @@ std::vector<std::string> told_to_farm(const std::string& kind, int frames, const
 /// What is printed while one frame is in work for so many seconds, and then for so many.
 std::string printed(const std::string& kind, bool is_quiet, const std::vector<double>& seconds,
                     FrameProgress frame = {.frame = 1, .input = "shot.exr", .part = 3, .parts = 17}) {
-  ProgressOptions options;
+  ProgressSettings options;
   options.kind = kind;
   options.quiet = is_quiet;
   Progress progress(options, "");
@@ -68,7 +68,7 @@ TEST(Progress, tells_farms_how_far_a_frame_is_and_never_goes_back) {
 }
 
 TEST(Progress, takes_its_line_away_at_the_end_of_a_run) {
-  ProgressOptions options;
+  ProgressSettings options;
   options.kind = "bar";
   Progress progress(options, "");
   const FrameProgress work{.frame = 1, .input = "shot.exr", .seconds = 5};
@@ -88,4 +88,4 @@ TEST(Progress, is_silent_where_nobody_wants_it) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::progress_test

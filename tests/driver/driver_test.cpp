@@ -5,13 +5,13 @@
 
 #include "core/chain/chain.h"
 #include "core/gpu/pipeline_cache.h"
-#include "core/run/pipeline.h"
+#include "core/run/lanes.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/fake_driver.h"
 #include "tests/support/single_pass.h"
 
-namespace alcove {
+namespace alcove::driver_test {
 namespace {
 
 using namespace test;
@@ -214,7 +214,7 @@ TEST_F(Driver, gets_a_long_recording_in_parts_that_give_the_same_bits) {
 
 TEST(Kernels, do_not_count_the_workgroups_of_a_dispatch_which_may_be_a_slice) {
   int kernels = 0;
-  for (const auto& entry : fs::directory_iterator(ALCOVE_SOURCE_DIR "/kernels")) {
+  for (const auto& entry : fs::recursive_directory_iterator(ALCOVE_SOURCE_DIR "/kernels")) {
     if (entry.path().extension() != ".comp") continue;
     kernels++;
     const auto code = gpu::kernel_code(entry.path().stem().string());
@@ -384,11 +384,11 @@ TEST_F(Runs, in_memory_of_the_devices_own_give_the_bits_of_shared_memory_in_tile
   add_beauty(large);
   large.write(frame);
   write_bytes(camera, wall_camera(display).dump());
-  const test::Surroundings own_memory{.environment = {{"ALCOVE_FAKE_MEMORY", "1"}}, .preload = ALCOVE_FAKE_DRIVER};
-  const auto outputs = [&](const std::string& more, const test::Surroundings& surroundings) {
+  const test::Launch own_memory{.environment = {{"ALCOVE_FAKE_MEMORY", "1"}}, .preload = ALCOVE_FAKE_DRIVER};
+  const auto outputs = [&](const std::string& more, const test::Launch& launch) {
     done(joined(typed("--radius 0.1 --type float --device cpu --aov ao,normal,depth,confidence " + more),
                 {"--composite", folder / "c.exr"}),
-         surroundings);
+         launch);
     return read_bytes(ao) + read_bytes(folder / "c.exr");
   };
   const std::string shared = outputs("", {});
@@ -408,11 +408,14 @@ TEST_F(Driver, is_not_asked_for_another_device_when_what_runs_on_a_lane_fails) {
   const gpu::DeviceOptions of_lanes = options();
   const int before = fake.live_instances;
   Lanes lanes(of_lanes, 1);
-  const auto fails = [&] { lanes.with([](Lane&) -> bool { throw Error(ErrorKind::device, "no memory"); }); };
+  const auto fails = [&] {
+    const Lanes::Lease lease(lanes);
+    throw Error(ErrorKind::device, "no memory");
+  };
   EXPECT_THROW(fails(), Error);
-  lanes.with([](Lane&) { return true; });
+  const Lanes::Lease lease(lanes);
   EXPECT_EQ(fake.live_instances, before + 1);
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::driver_test

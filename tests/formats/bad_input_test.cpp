@@ -5,7 +5,7 @@
 
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::bad_input_test {
 namespace {
 
 using namespace test;
@@ -21,10 +21,9 @@ class BadInput : public CommandLine {
 
   /// A run with these arguments must end with this code and one line on stderr, or a list of what is missing. It must
   /// hold the words and name an option, and must leave the output folder as it was.
-  void expect_refused(int code, const Options& words, const Options& arguments,
-                      const Surroundings& surroundings = {}) const {
+  void expect_refused(int code, const Options& words, const Options& arguments, const Launch& launch = {}) const {
     const auto before = names_in(out);
-    const Finished finished = run_program(joined({"run"}, arguments), surroundings);
+    const Finished finished = run_program(joined({"run"}, arguments), launch);
     EXPECT_EQ(finished.code, code) << testing::PrintToString(arguments) << finished;
     const bool is_list = finished.err.starts_with("alcove: error: missing:");
     EXPECT_TRUE(is_list || lines_of(finished.err).size() == 1) << finished;
@@ -220,7 +219,7 @@ TEST_F(BadInput, a_full_disk) {
 // Devices.
 
 TEST_F(BadInput, no_vulkan_driver) {
-  const Surroundings none{.environment = {{"VK_ICD_FILENAMES", "/nonexistent"}, {"VK_DRIVER_FILES", "/nonexistent"}}};
+  const Launch none{.environment = {{"VK_ICD_FILENAMES", "/nonexistent"}, {"VK_DRIVER_FILES", "/nonexistent"}}};
   const auto before = names_in(out);
   for (const Options& words : {joined({"run"}, good(frame)), {"devices"}, {"devices", "--json"}})
     test::expect_refused(run_program(words, none), 5, {"Vulkan"});
@@ -237,4 +236,4 @@ TEST_F(BadInput, a_device_that_is_not_there) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::bad_input_test

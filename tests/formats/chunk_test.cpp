@@ -1,12 +1,12 @@
 // Chunks of deep data and of ZIP lines: whatever their bytes say, nothing beyond them is read or written.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/formats/deep_chunk.h"
 #include "core/formats/exr.h"
-#include "core/formats/zip_chunk.h"
+#include "core/formats/exr_deep.h"
+#include "core/formats/exr_zip.h"
 #include "tests/support/guarded_bytes.h"
 #include "tests/support/test.h"
 
-namespace alcove {
+namespace alcove::chunk_test {
 namespace {
 
 using namespace test;
@@ -120,4 +120,4 @@ TEST(ZipChunk, no_length_of_a_chunk_makes_a_reader_leave_its_bytes) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::chunk_test

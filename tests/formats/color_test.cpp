@@ -5,7 +5,7 @@
 
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::color_test {
 namespace {
 
 using namespace test;
@@ -51,4 +51,4 @@ colorspaces:
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::color_test

@@ -5,7 +5,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::deep_test {
 namespace {
 
 using namespace test;
@@ -434,4 +434,4 @@ TEST_F(DeepFile, sizes_that_the_file_cannot_hold_are_refused_before_anything_is_
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::deep_test

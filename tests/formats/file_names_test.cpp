@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::file_names_test {
 namespace {
 
 using namespace test;
@@ -14,8 +14,8 @@ class FileNames : public CommandLine {
  protected:
   FileNames() { wall_frame().write(input); }
 
-  Finished run(const Options& more, const Surroundings& surroundings = {}) const override {
-    return run_program(joined({"run", input, "-o", output, "--camera", camera, "--radius", "1"}, more), surroundings);
+  Finished run(const Options& more, const Launch& launch = {}) const override {
+    return run_program(joined({"run", input, "-o", output, "--camera", camera, "--radius", "1"}, more), launch);
   }
 
   /// Nothing but UTF-8, with the name as it is to be shown.
@@ -72,4 +72,4 @@ TEST_F(FileNames, in_what_compare_says) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::file_names_test

@@ -13,7 +13,7 @@
 #include "tests/support/openexr.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::file_test {
 namespace {
 
 using namespace test;
@@ -388,4 +388,4 @@ TEST_F(Files, a_png_that_cannot_be_written_is_an_output_error) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::file_test

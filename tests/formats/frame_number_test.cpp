@@ -3,7 +3,7 @@
 #include "core/formats/sequence.h"
 #include "tests/support/test.h"
 
-namespace alcove {
+namespace alcove::frame_number_test {
 namespace {
 
 using namespace test;
@@ -43,4 +43,4 @@ TEST(FrameNumber, that_is_in_doubt_says_why) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::frame_number_test

@@ -7,7 +7,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/expect_error.h"
 
-namespace alcove {
+namespace alcove::hostile_test {
 namespace {
 
 using namespace test;
@@ -113,7 +113,7 @@ TEST_F(Hostile, the_command_that_inspect_proposes_quotes_what_a_shell_would_run)
   const std::string command = json::parse(inspected.out)["command"];
   const std::string echo =
       "cd " + folder.path() + " && set -- " + command.substr(std::strlen("alcove ")) + " && printf %s \"$2\"";
-  Surroundings shell;
+  Launch shell;
   shell.program = "/bin/sh";
   EXPECT_EQ(run_program({"-c", echo}, shell).out, name);
   EXPECT_FALSE(fs::exists(folder / "x"));
@@ -222,4 +222,4 @@ TEST_F(Hostile, a_zero_byte_in_a_preset_is_refused) {  // or it would end a file
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::hostile_test

@@ -6,7 +6,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/picture_file.h"
 
-namespace alcove {
+namespace alcove::open_image_test {
 namespace {
 
 using namespace test;
@@ -117,4 +117,4 @@ TEST_F(OpenImage, a_picture_that_is_cut_short_is_named) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::open_image_test

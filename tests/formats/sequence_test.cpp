@@ -5,7 +5,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::sequence_test {
 namespace {
 
 using namespace test;
@@ -119,4 +119,4 @@ TEST_F(OnDisk, a_token_in_a_folders_name_needs_a_list) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::sequence_test

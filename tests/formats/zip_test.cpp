@@ -14,7 +14,7 @@
 #include "tests/support/openexr_planes.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::zip_test {
 namespace {
 
 using namespace test;
@@ -438,4 +438,4 @@ INSTANTIATE_TEST_SUITE_P(Zip, Damaged,
                                          std::pair(Imf::ZIPS_COMPRESSION, Content::both)));
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::zip_test

@@ -10,7 +10,7 @@
 #include "tests/support/openexr_planes.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::zip_writer_test {
 namespace {
 
 using namespace test;
@@ -146,4 +146,4 @@ TEST_F(ZipWriting, a_file_whose_rows_are_too_few_is_not_finished) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::zip_writer_test

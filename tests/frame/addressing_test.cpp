@@ -6,7 +6,7 @@
 #include "core/inspect/inspect.h"
 #include "tests/support/part_files.h"
 
-namespace alcove {
+namespace alcove::addressing_test {
 namespace {
 
 using namespace test;
@@ -41,7 +41,7 @@ TEST_F(Views, hidden_surfaces_are_proposed_of_the_one_that_is_read) {
       InputSettings with = settings;
       with.behind[0] = settings.input;
       with.behind_channels = {name};
-      EXPECT_EQ(names_of(find_frame(with, false, 0)[RawPlane::behind]), Names{name});
+      EXPECT_EQ(names_of(find_frame(with, false, 0).channels[RawPlane::behind]), Names{name});
     }
   }
   write(std::vector<Part>{{"left", {"Z", "ZBack"}, kWidth, "left"}, {"right", {"Z"}, kWidth, "right"}});
@@ -166,4 +166,4 @@ TEST_F(ThreeChannels, that_are_a_vector_are_told) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::addressing_test

@@ -6,7 +6,7 @@
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
 
-namespace alcove {
+namespace alcove::camera_test {
 namespace {
 
 using namespace test;
@@ -287,4 +287,4 @@ TEST_F(CameraFiles, view_is_the_inverse_of_the_projection_in_every_data_window) 
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::camera_test

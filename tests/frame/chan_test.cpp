@@ -4,7 +4,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/expect_error.h"
 
-namespace alcove {
+namespace alcove::chan_test {
 namespace {
 
 using namespace test;
@@ -70,4 +70,4 @@ TEST_F(Chan, is_refused_where_it_makes_no_sense) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::chan_test

@@ -3,7 +3,7 @@
 #include "core/frame/flatness.h"
 #include "tests/support/test.h"
 
-namespace alcove {
+namespace alcove::flatness_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -152,4 +152,4 @@ TEST(Jitter, is_that_of_random_places_within_pixels) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::flatness_test

@@ -10,7 +10,7 @@
 #include "tests/support/difference.h"
 #include "tests/support/furnished.h"
 
-namespace alcove {
+namespace alcove::inputs_test {
 namespace {
 
 using namespace test;
@@ -321,4 +321,4 @@ TEST_F(CommandLine, flips_and_far_are_checked) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::inputs_test

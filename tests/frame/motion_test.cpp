@@ -3,7 +3,7 @@
 #include "core/frame/motion.h"
 #include "tests/support/test.h"
 
-namespace alcove {
+namespace alcove::motion_test {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 32;
@@ -111,4 +111,4 @@ TEST_F(Motion, that_nothing_shares_with_the_cameras_has_no_reading) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::motion_test

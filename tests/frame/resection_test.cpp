@@ -7,7 +7,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 
-namespace alcove {
+namespace alcove::resection_test {
 namespace {
 
 using namespace test;
@@ -365,4 +365,4 @@ TEST(ResectedCameras, are_read_as_they_were_written) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::resection_test

@@ -11,7 +11,7 @@
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"
 
-namespace alcove {
+namespace alcove::strangers_test {
 namespace {
 
 using namespace test;
@@ -207,4 +207,4 @@ INSTANTIATE_TEST_SUITE_P(Pack, Strangers, testing::Range(std::size_t(0), all_cas
 });
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::strangers_test

@@ -1,12 +1,12 @@
 // The Vulkan layer: reflection, checks between host and kernel, staging, and errors that name what is wrong.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kernels/estimate.h"
-#include "kernels/geometry.h"
-#include "kernels/shading.h"
+#include "kernels/estimate/estimate.h"
+#include "kernels/geometry/geometry.h"
+#include "kernels/results/shading.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 
-namespace alcove {
+namespace alcove::gpu_test {
 namespace {
 
 using namespace test;
@@ -359,4 +359,4 @@ TEST(Device, names_what_there_is_when_the_choice_fits_none) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::gpu_test

@@ -2,11 +2,11 @@
 // asks it to.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/chain.h"
-#include "core/chain/warp.h"
+#include "core/chain/hidden/warp.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 
-namespace alcove {
+namespace alcove::validation_test {
 namespace {
 
 using namespace test;
@@ -172,4 +172,4 @@ TEST(Validation, is_silent_about_copies) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::validation_test

@@ -3,7 +3,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/dwa_frame.h"
 
-namespace alcove {
+namespace alcove::inspect_test {
 namespace {
 
 using namespace test;
@@ -318,4 +318,4 @@ TEST_F(Inspect, bad_files_and_arguments_have_their_exit_codes) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::inspect_test

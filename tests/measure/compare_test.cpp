@@ -6,7 +6,7 @@
 #include "tests/support/compare_command.h"
 #include "tests/support/formula_images.h"
 
-namespace alcove {
+namespace alcove::compare_test {
 namespace {
 
 using namespace test;
@@ -470,4 +470,4 @@ TEST_F(CompareSequence, a_page_that_cannot_be_written_ends_with_4_before_any_wor
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::compare_test

@@ -1,11 +1,11 @@
 // FLIP against its formulas worked out for plain colours, and against a second implementation.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/measure/flip.h"
+#include "core/measure/metrics.h"
 
 #include "tests/support/formula_images.h"
 #include "tests/support/test.h"
 
-namespace alcove {
+namespace alcove::flip_test {
 namespace {
 
 using namespace test;
@@ -147,4 +147,4 @@ TEST(HdrFlip, of_equal_pictures_is_0_and_is_the_same_for_twice_the_light) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::flip_test

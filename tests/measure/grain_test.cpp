@@ -3,7 +3,7 @@
 #include "core/measure/metrics.h"
 #include "tests/support/compare_command.h"
 
-namespace alcove {
+namespace alcove::grain_test {
 namespace {
 
 using namespace test;
@@ -293,4 +293,4 @@ TEST_F(GrainCommand, of_a_sequence_is_that_of_its_worst_frame) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::grain_test

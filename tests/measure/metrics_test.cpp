@@ -6,7 +6,7 @@
 #include "tests/support/formula_images.h"
 #include "tests/support/test.h"
 
-namespace alcove {
+namespace alcove::metrics_test {
 namespace {
 
 using namespace test;
@@ -250,4 +250,4 @@ TEST(Flicker, noise_of_two_references_cancels) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::metrics_test

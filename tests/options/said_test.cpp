@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::said_test {
 namespace {
 
 using namespace test;
@@ -167,9 +167,7 @@ class Said : public testing::Test {
   }
 
   /// The words that the setting has in the end.
-  static Words value_of(const std::string& key, RunOptions options) {
-    return row_of_key(option_table(options), key).words();
-  }
+  static Words value_of(const std::string& key, RunOptions options) { return row_of_key(key).words(options.settings); }
 
   static Words usual_value_of(const std::string& key) { return value_of(key, {}); }
 
@@ -182,14 +180,14 @@ class Said : public testing::Test {
 };
 
 TEST_F(Said, settings_that_may_have_no_effect_are_those_of_the_cases) {
-  RunOptions options;
-  const auto table = option_table(options);
   std::set<std::string> with_reason, with_case;
-  for (const auto& row : table)
+  for (const auto& row : option_table())
     if (row.why_without_effect) with_reason.insert(row.long_name());
+  for (const auto& [ones, others, why] : rivals())
+    for (const auto& key : joined(ones, others)) with_reason.insert(row_of_key(key).long_name());
   for (const auto& one : cases_without_effect()) with_case.insert(one.option());
   for (const auto& [one, other] : pairs())
-    for (const auto& value : {one, other}) with_case.insert(row_of_key(table, value.key).long_name());
+    for (const auto& value : {one, other}) with_case.insert(row_of_key(value.key).long_name());
   EXPECT_EQ(with_reason, with_case) << "whoever says why a setting may have no effect shows both here";
 }
 
@@ -231,13 +229,10 @@ TEST_F(Said, what_a_preset_says_without_effect_stays_where_another_one_gives_it_
 }
 
 TEST_F(Said, of_a_pair_only_one_may_be_typed) {
-  RunOptions options;
-  const auto table = option_table(options);
   for (const auto& [one, other] : pairs())
     for (const auto& words : {joined(set(one), set(other)), joined(set(other), set(one))})
-      EXPECT_THAT(refusal(words),
-                  AllOf(HasSubstr(row_of_key(table, one.key).long_name()),
-                        HasSubstr(row_of_key(table, other.key).long_name()), HasSubstr("only one of them")));
+      EXPECT_THAT(refusal(words), AllOf(HasSubstr(row_of_key(one.key).long_name()),
+                                        HasSubstr(row_of_key(other.key).long_name()), HasSubstr("only one of them")));
 }
 
 TEST_F(Said, of_a_pair_what_is_typed_beats_a_preset_and_a_later_preset_an_earlier_one) {
@@ -332,9 +327,8 @@ TEST_F(Said, settings_are_set_by_key_and_value) {
 }
 
 TEST_F(Said, a_key_that_is_typed_as_an_option_says_what_to_type) {
-  RunOptions options;
   int keys = 0;
-  for (const auto& row : option_table(options)) {
+  for (const auto& row : option_table()) {
     if (!row.is_only_key()) continue;
     const std::string value = row.is_flag() ? "true" : "1";
     const std::string said = fmt::format("--{} is a setting: write --set {}={}", row.name, row.name, value);
@@ -408,4 +402,4 @@ TEST_F(Said, lists_with_commas_are_what_repeated_options_are) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::said_test

@@ -5,7 +5,7 @@
 #include "cli/options.h"
 #include "tests/support/program.h"
 
-namespace alcove {
+namespace alcove::layers_test {
 namespace {
 
 using namespace test;
@@ -78,8 +78,8 @@ TEST(Layers, only_one_file_includes_each_library) {
                     [](const SourceFile& file) { return !file.name.starts_with("core/formats/exr"); }),
             Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"](Imath/)?half\.h)", unless("core/base/half.h")), Names{});
-  EXPECT_EQ(matches(product(), R"(#include [<"]zlib)", unless("core/formats/deep_chunk.cpp")), Names{});
-  EXPECT_EQ(matches(product(), R"(#include [<"]libdeflate)", unless("core/formats/zip_chunk.cpp")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include [<"]zlib)", unless("core/formats/exr_deep.cpp")), Names{});
+  EXPECT_EQ(matches(product(), R"(#include [<"]libdeflate)", unless("core/formats/exr_zip.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenImageIO)", unless("core/formats/image_io.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]OpenColorIO)", unless("core/formats/color.cpp")), Names{});
   EXPECT_EQ(matches(product(), R"(#include [<"]png\.h)", unless("core/formats/png.cpp")), Names{});
@@ -120,19 +120,53 @@ const std::map<std::string, Names> kRooms = {
       "core/inspect", "core/bench"}},
 };
 
+std::string folder_of(const std::string& file) { return fs::path(file).parent_path().string(); }
+
+/// The room that a file is in: these two have folders of their own.
+std::string room_of(const std::string& file) {
+  for (const char* room : {"core/chain", "kernels"})
+    if (file.starts_with(std::string(room) + "/")) return room;
+  return folder_of(file);
+}
+
 TEST(Layers, rooms_include_only_what_the_table_allows) {
   const std::regex include("^#include \"([^\"]+)\"");
   for (const auto& file : product()) {
-    const std::string room = fs::path(file.name).parent_path().string();
+    const std::string room = room_of(file.name);
     ASSERT_TRUE(kRooms.contains(room)) << file.name << " is in no room of the table";
     for (const auto& line : file.lines) {
       std::smatch name;
       if (!std::regex_search(line, name, include)) continue;
-      const std::string other = fs::path(name.str(1)).parent_path().string();
-      if (other == room || (room == "kernels" && other.empty())) continue;
+      const std::string other = room_of(name.str(1));
+      if (other == room) continue;
       EXPECT_THAT(kRooms.at(room), Contains(other)) << file.name << ": " << line;
     }
   }
+}
+
+/// How many sources lie in each folder of core and kernels, those in folders of it not counted.
+std::map<std::string, int> sizes_of_folders() {
+  std::map<std::string, int> sizes;
+  for (const auto& file : product())
+    if (file.is_in("core") || file.is_in("kernels")) sizes[folder_of(file.name)]++;
+  return sizes;
+}
+
+TEST(Layers, folders_can_be_overlooked) {
+  for (const auto& [folder, size] : sizes_of_folders()) {
+    EXPECT_LE(std::ranges::count(folder, '/'), 2) << folder;
+    if (folder != "core/formats" && folder != "core/frame") EXPECT_LE(size, 30) << folder;
+  }
+}
+
+TEST(Layers, both_halves_of_a_pass_lie_in_folders_of_one_name) {
+  Names kernels, chain;
+  for (const auto& [folder, size] : sizes_of_folders()) {
+    if (folder.starts_with("kernels/")) kernels.push_back(folder.substr(8));
+    if (folder.starts_with("core/chain/")) chain.push_back(folder.substr(11));
+  }
+  EXPECT_EQ(kernels, chain);
+  EXPECT_GE(kernels.size(), 4);
 }
 
 /// The table of rooms as docs/internals.md shows it, with the sentence that stands there for each room.
@@ -140,7 +174,7 @@ std::string rooms_markdown() {
   static const std::vector<std::pair<const char*, const char*>> kAnswers = {
       {"kernels",
        "What does the device compute? One `.comp` per pass; one `.h` per source of `chain`, shared by GLSL and C++; "
-       "mathematics without bindings in `.glsl`."},
+       "mathematics without bindings in `.glsl`. Its folders bear the names of `chain`'s."},
       {"core/base", "What does everything stand on? Errors, texts, files, settings."},
       {"core/gpu", "What is the device? Memory, kernels checked against their own SPIR-V, recording."},
       {"core/formats", "How do the bytes of a file become planes, and back?"},
@@ -195,9 +229,9 @@ TEST(Layers, only_the_command_line_prints_and_reads_arguments) {
 std::string chain_source() {
   std::string chain = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/chain.cpp");
   for (const auto& [file, type, name] :
-       {std::array{"sites", "Sites", "sites"}, std::array{"estimate", "Estimate", "estimate"},
-        std::array{"hidden", "GBuffer", "layers"}, std::array{"warp", "GBuffer", "warp"},
-        std::array{"warp", "void", "surfels"}, std::array{"accumulate", "Accumulation", "accumulate"}}) {
+       {std::array{"estimate/sites", "Sites", "sites"}, std::array{"estimate/estimate", "Estimate", "estimate"},
+        std::array{"hidden/hidden", "GBuffer", "layers"}, std::array{"hidden/warp", "GBuffer", "warp"},
+        std::array{"hidden/warp", "void", "surfels"}, std::array{"time/accumulate", "Accumulation", "accumulate"}}) {
     const std::string source = read_bytes(std::string(ALCOVE_SOURCE_DIR "/core/chain/") + file + ".cpp");
     std::smatch choice;
     const std::regex body(std::string("\\n") + type + " " + name + R"(\([^]*?\n\})");
@@ -217,28 +251,32 @@ std::string passes_in(const std::string& ending) {
   return text;
 }
 
-Names kernel_stems() {
-  Names stems;
+std::string stem_of(const std::string& file) { return fs::path(file).stem().string(); }
+
+/// "kernels/FOLDER/NAME.comp" of each.
+Names kernel_sources() {
+  Names sources;
   for (const auto& file : product())
-    if (file.name.ends_with(".comp")) stems.push_back(fs::path(file.name).stem().string());
-  return stems;
+    if (file.name.ends_with(".comp")) sources.push_back(file.name);
+  return sources;
 }
 
 TEST(Kernels, a_stem_is_found_everywhere) {
-  const Names stems = kernel_stems();
+  const Names sources = kernel_sources();
   const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/internals.md");
   const std::string passes = passes_in(".h");
   const std::string passes_source = passes_in(".cpp");
   const std::string chain = chain_source();
-  EXPECT_GE(stems.size(), 4);
-  for (const auto& stem : stems) {
+  EXPECT_GE(sources.size(), 4);
+  for (const auto& source : sources) {
+    const std::string stem = stem_of(source);
     EXPECT_TRUE(std::regex_search(passes, std::regex("\\b" + stem + "\\(gpu::Recorder&")))
         << stem << " is no function of a header in core/chain";
     EXPECT_TRUE(std::regex_search(passes_source, std::regex("gpu\\.dispatch\\(\\s*\"" + stem + "\"")))
         << stem << " is no label in the timing report";
     EXPECT_TRUE(std::regex_search(chain, std::regex("\\b" + stem + "\\(")))
         << stem << " is not in core/chain/chain.cpp";
-    EXPECT_THAT(page, HasSubstr("[" + stem + "](../kernels/" + stem + ".comp)")) << "the chain of internals.md";
+    EXPECT_THAT(page, HasSubstr("[" + stem + "](../" + source + ")")) << "the chain of internals.md";
   }
 }
 
@@ -262,24 +300,24 @@ TEST(Presets, each_of_ours_has_limits_on_every_frame_of_the_suite) {
 /// A header that several kernels include: its GLSL stands beside it.
 bool is_shared(const std::string& header) {
   const fs::path glsl = fs::path(ALCOVE_SOURCE_DIR) / fs::path(header).replace_extension(".glsl");
-  return header == "kernels/shared.h" || fs::exists(glsl);
+  return header == "kernels/base/shared.h" || fs::exists(glsl);
 }
 
 TEST(Kernels, every_header_belongs_to_a_source_of_the_chain_or_to_glsl) {
   for (const auto& file : product())
     if (file.is_in("kernels") && file.name.ends_with(".h") && !is_shared(file.name)) {
-      const std::string stem = fs::path(file.name).stem().string();
-      EXPECT_TRUE(fs::exists(ALCOVE_SOURCE_DIR "/core/chain/" + stem + ".cpp")) << file.name;
+      const std::string source = "core/chain/" + fs::path(file.name).replace_extension(".cpp").string().substr(8);
+      EXPECT_TRUE(fs::exists(ALCOVE_SOURCE_DIR "/" + source)) << file.name;
     }
 }
 
 TEST(Kernels, the_page_lists_the_passes_in_the_order_of_the_chain) {
   const std::string page = read_bytes(ALCOVE_SOURCE_DIR "/docs/internals.md"), chain = chain_source();
   std::vector<std::pair<std::size_t, std::size_t>> places;
-  for (const auto& stem : kernel_stems()) {
+  for (const auto& source : kernel_sources()) {
     std::smatch call;
-    ASSERT_TRUE(std::regex_search(chain, call, std::regex("\\b" + stem + "\\("))) << stem;
-    places.emplace_back(call.position(), page.find("(../kernels/" + stem + ".comp)"));
+    ASSERT_TRUE(std::regex_search(chain, call, std::regex("\\b" + stem_of(source) + "\\("))) << source;
+    places.emplace_back(call.position(), page.find("(../" + source + ")"));
   }
   std::ranges::sort(places);
   EXPECT_TRUE(std::ranges::is_sorted(places, {}, &std::pair<std::size_t, std::size_t>::second));
@@ -296,7 +334,7 @@ TEST(Kernels, main_fits_in_120_lines) {
 
 TEST(Kernels, variants_are_specialization_constants) {
   const auto in_kernels = [](const SourceFile& file) {
-    return file.is_in("kernels") && file.name != "kernels/shared.h";
+    return file.is_in("kernels") && file.name != "kernels/base/shared.h";
   };
   for (const auto& line : matches(product(), R"(#\s*(if|ifdef|elif|else)\b)", in_kernels)) ADD_FAILURE() << line;
   for (const auto& file : product())
@@ -307,7 +345,7 @@ TEST(Kernels, variants_are_specialization_constants) {
 TEST(Kernels, tell_nan_and_infinity_by_their_bits) {
   const auto in_kernels = [](const SourceFile& file) { return file.is_in("kernels"); };
   for (const auto& line : matches(product(), R"(\b(isnan|isinf)\()", in_kernels))
-    ADD_FAILURE() << line << ": see kernels/finite.glsl";
+    ADD_FAILURE() << line << ": see kernels/base/finite.glsl";
 }
 
 // Form.
@@ -380,4 +418,4 @@ TEST(Pages, every_option_of_help_is_in_the_table) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::layers_test

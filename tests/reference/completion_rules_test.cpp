@@ -3,7 +3,7 @@
 #include "core/reference/reference.h"
 #include "tests/support/scenes.h"
 
-namespace alcove {
+namespace alcove::completion_rules_test {
 namespace {
 
 using namespace test;
@@ -158,4 +158,4 @@ TEST(Settings, of_the_estimators_become_the_references) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::completion_rules_test

@@ -8,7 +8,7 @@
 #include "tests/support/hidden_truth.h"
 #include "tests/support/random_scenes.h"
 
-namespace alcove {
+namespace alcove::reference_completion_test {
 namespace {
 
 using namespace test;
@@ -185,4 +185,4 @@ TEST(Completion, never_opens_what_was_blocked) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::reference_completion_test

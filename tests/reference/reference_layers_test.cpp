@@ -5,7 +5,7 @@
 #include "tests/support/peels.h"
 #include "tests/support/random_scenes.h"
 
-namespace alcove {
+namespace alcove::reference_layers_test {
 namespace {
 
 using namespace test;
@@ -110,4 +110,4 @@ TEST(Hidden, a_copy_of_the_first_depth_and_what_lies_beyond_the_sphere_change_no
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::reference_layers_test

@@ -8,7 +8,7 @@
 #include "tests/support/device.h"
 #include "tests/support/walked_shot.h"
 
-namespace alcove {
+namespace alcove::accumulate_shots_test {
 namespace {
 
 using namespace test;
@@ -101,7 +101,7 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
   const FramePlan plan(settings);
   const FrameSource source = open_frame(plan.at(4), 4);
   // Depth, normal and AO of an estimate, and what was read: depth and three of a normal.
-  const std::uint64_t bytes = (3 + 4) * sizeof(float) * source.file_data.pixels();
+  const std::uint64_t bytes = (3 + 4) * sizeof(float) * source.reading.data.pixels();
   std::vector<std::weak_ptr<const EstimatedFrame>> all;
   const auto most_kept = [&](std::span<const int> frames, std::size_t lanes) {
     SharedFrames shot(plan, nullptr, frames);
@@ -237,4 +237,4 @@ TEST_F(AccumulatedShots, a_folder_of_stats_that_another_run_has_taken_away_is_ma
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::accumulate_shots_test

@@ -3,7 +3,7 @@
 #include "tests/support/long_tests.h"
 #include "tests/support/walked_shot.h"
 
-namespace alcove {
+namespace alcove::accumulate_test {
 namespace {
 
 using namespace test;
@@ -319,4 +319,4 @@ TEST_F(Accumulated, views_show_how_many_frames_count) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::accumulate_test

@@ -3,7 +3,7 @@
 #include "core/run/plan.h"
 #include "tests/support/sequence_folder.h"
 
-namespace alcove {
+namespace alcove::batch_test {
 namespace {
 
 using namespace test;
@@ -232,4 +232,4 @@ TEST_F(Batch, memory_does_not_grow_with_the_frames) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::batch_test

@@ -3,7 +3,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/openexr.h"
 
-namespace alcove {
+namespace alcove::composite_layers_test {
 namespace {
 
 using namespace test;
@@ -435,4 +435,4 @@ TEST_F(Lights, are_dimmed_by_gain_tint_and_mix) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::composite_layers_test

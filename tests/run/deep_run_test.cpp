@@ -4,7 +4,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/deep_file.h"
 
-namespace alcove {
+namespace alcove::deep_run_test {
 namespace {
 
 using namespace test;
@@ -268,4 +268,4 @@ TEST_F(DeepRun, inspect_says_what_samples_hold) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::deep_run_test

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/sequence_folder.h"
 
-namespace alcove {
+namespace alcove::device_memory_test {
 namespace {
 
 using namespace test;
@@ -20,18 +20,18 @@ class DeviceMemory : public SequenceFolder {
   }
 
   /// A discrete GPU that has `mebibytes` of memory and says to have `stated`.
-  static Surroundings with(double mebibytes, double stated,
-                           std::map<std::string, std::optional<std::string>> environment = {}) {
+  static Launch with(double mebibytes, double stated,
+                     std::map<std::string, std::optional<std::string>> environment = {}) {
     environment.insert({{"ALCOVE_HEAP", std::to_string(std::uint64_t(mebibytes * kMiB))},
                         {"ALCOVE_HEAP_SAYS", std::to_string(std::uint64_t(stated * kMiB))},
                         {"ALCOVE_TEST_DEVICE", std::nullopt}});
     return {.environment = environment, .preload = ALCOVE_POOR_DEVICE};
   }
   /// A run on it, which must write what was written before.
-  json expect_whole(const Surroundings& surroundings, const Options& more = kOptions) {
+  json expect_whole(const Launch& launch, const Options& more = kOptions) {
     remove_outputs();
     said = "";
-    const Finished finished = done(joined(more, {"--stats", folder / "stats.json"}), surroundings);
+    const Finished finished = done(joined(more, {"--stats", folder / "stats.json"}), launch);
     said = finished.err;
     if (whole.empty()) whole = outputs();
     EXPECT_TRUE(outputs() == whole);
@@ -86,8 +86,7 @@ TEST_F(DeviceMemory, that_six_frames_miss_side_by_side_halves_their_number_once)
 }
 
 TEST_F(DeviceMemory, that_is_missing_for_a_second_device_leaves_one_lane) {
-  const Surroundings lacking{.environment = {{"ALCOVE_LACKS", "memory for a second device"}},
-                             .preload = ALCOVE_POOR_DEVICE};
+  const Launch lacking{.environment = {{"ALCOVE_LACKS", "memory for a second device"}}, .preload = ALCOVE_POOR_DEVICE};
   EXPECT_EQ(expect_whole(lacking, typed("--device cpu --threads 2 --radius 0.1"))["totals"]["at_once"], 1);
   EXPECT_THAT(said, HasSubstr("had no memory for 2 frames at once; from here on it computes 1"));
   EXPECT_EQ(outputs().size(), std::size_t(kFrames));
@@ -138,4 +137,4 @@ TEST_F(MemoryLimit, holds_for_several_frames_at_once) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::device_memory_test

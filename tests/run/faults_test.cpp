@@ -12,7 +12,7 @@
 
 #include "tests/support/sequence_folder.h"
 
-namespace alcove {
+namespace alcove::faults_test {
 namespace {
 
 using namespace test;
@@ -35,13 +35,13 @@ class Faults : public SequenceFolder {
 void sleep_ms(double ms) { std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms)); }
 
 /// Waits for the program to have written that many files, then signals it.
-Surroundings signalled(const std::string& out, std::size_t files, int signal) {
-  Surroundings surroundings;
-  surroundings.meanwhile = [=](int process) {
+Launch signalled(const std::string& out, std::size_t files, int signal) {
+  Launch launch;
+  launch.meanwhile = [=](int process) {
     for (int i = 0; i < 3000 && names_in(out).size() < files; i++) sleep_ms(10);
     ::kill(process, signal);
   };
-  return surroundings;
+  return launch;
 }
 
 void cut_short(const std::string& path) { fs::resize_file(path, fs::file_size(path) - 10); }
@@ -64,12 +64,12 @@ TEST_F(Faults, damaged_frames_end_the_run_by_name_or_are_left_out) {
 
 TEST_F(Faults, an_input_that_vanishes_is_a_failed_frame) {
   write_frames(1, 60);
-  Surroundings surroundings;
-  surroundings.meanwhile = [&](int) {
+  Launch launch;
+  launch.meanwhile = [&](int) {
     for (int i = 0; i < 3000 && names_in(out).empty(); i++) sleep_ms(10);
     fs::remove(input(60));
   };
-  const Finished finished = run({"--keep-going"}, surroundings);
+  const Finished finished = run({"--keep-going"}, launch);
   EXPECT_EQ(finished.code, 1) << finished;
   EXPECT_THAT(finished.err, HasSubstr("1 failed (60)"));
   EXPECT_THAT(names_in(out), SizeIs(59));
@@ -97,10 +97,10 @@ TEST_F(Faults, a_signal_ends_a_run_whose_frames_are_means_of_many) {
 
 TEST_F(Faults, a_run_that_nohup_started_outlives_its_terminal) {
   write_frames(1, 60);
-  Surroundings surroundings = signalled(out, 3, SIGHUP);
-  surroundings.program = "/bin/sh";
+  Launch launch = signalled(out, 3, SIGHUP);
+  launch.program = "/bin/sh";
   run_well(joined({"-c", "trap '' HUP; exec \"$0\" \"$@\"", ALCOVE_PROGRAM, "run"}, arguments({"--noise", "animated"})),
-           surroundings);
+           launch);
   EXPECT_THAT(names_in(out), SizeIs(60));
 }
 
@@ -113,10 +113,10 @@ TEST_F(Faults, a_terminal_that_stands_still_stops_no_frame) {
   const int reader = ::open(terminal.c_str(), O_RDWR | O_NONBLOCK);
   ASSERT_GE(reader, 0);
   ASSERT_GT(::fcntl(reader, F_SETPIPE_SZ, 4096), 0);
-  Surroundings surroundings;
-  surroundings.err = terminal;
+  Launch launch;
+  launch.err = terminal;
   std::size_t written = 0;
-  surroundings.meanwhile = [&](int process) {
+  launch.meanwhile = [&](int process) {
     const auto whole_files = [&] {
       return std::size_t(std::ranges::count_if(names_in(out), [](const auto& name) { return name.ends_with(".exr"); }));
     };
@@ -131,7 +131,7 @@ TEST_F(Faults, a_terminal_that_stands_still_stops_no_frame) {
     while (is_running())
       if (::read(reader, text.data(), text.size()) <= 0) sleep_ms(5);
   };
-  const Finished finished = run({"--noise", "animated"}, surroundings);
+  const Finished finished = run({"--noise", "animated"}, launch);
   ::close(reader);
   EXPECT_EQ(finished.code, 0);
   EXPECT_EQ(written, std::size_t(kFrames)) << "before anybody read what the run has to say";
@@ -141,12 +141,12 @@ TEST_F(Faults, a_kill_at_any_moment_leaves_whole_files_and_what_is_cleaned_next_
   write_frames(1, 40);
   const auto whole = whole_outputs();
   for (int i = 0; i < 12; i++) {
-    Surroundings surroundings;
-    surroundings.meanwhile = [&](int process) {
+    Launch launch;
+    launch.meanwhile = [&](int process) {
       sleep_ms(40 + 37 * i);
       ::kill(process, SIGKILL);
     };
-    run({"--resume"}, surroundings);
+    run({"--resume"}, launch);
     for (const auto& [name, bytes] : outputs())
       if (!name.starts_with(".alcove-")) EXPECT_TRUE(whole.at(name) == bytes) << name;
   }
@@ -214,9 +214,7 @@ TEST_F(Faults, a_full_disk_leaves_nothing_half) {
   unmount(disk);
 }
 
-Surroundings losing(const char* times) {
-  return {.environment = {{"ALCOVE_LOSSES", times}}, .preload = ALCOVE_LOST_DEVICE};
-}
+Launch losing(const char* times) { return {.environment = {{"ALCOVE_LOSSES", times}}, .preload = ALCOVE_LOST_DEVICE}; }
 
 TEST_F(Faults, a_lost_device_is_replaced_once) {
   write_frames(1, 6);
@@ -232,12 +230,11 @@ TEST_F(Faults, a_lost_device_is_replaced_once) {
 
 TEST_F(Faults, what_frames_share_is_kept_when_a_device_is_lost) {
   write_frames(1, 8);
-  const auto rows_read_by = [&](const Surroundings& surroundings) {
-    return stats_of(typed("--accumulate 2 --frames 1,8 --threads 1"), surroundings)["frames"][0]["rows_read"]
-        .get<int>();
+  const auto rows_read_by = [&](const Launch& launch) {
+    return stats_of(typed("--accumulate 2 --frames 1,8 --threads 1"), launch)["frames"][0]["rows_read"].get<int>();
   };
   EXPECT_LT(rows_read_by(losing("1")), rows_read_by({})) << "two of its five frames were estimated before";
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::faults_test

@@ -3,7 +3,7 @@
 #include "tests/support/exr_header.h"
 #include "tests/support/sequence_folder.h"
 
-namespace alcove {
+namespace alcove::first_look_test {
 namespace {
 
 using namespace test;
@@ -252,4 +252,4 @@ TEST_F(Radius, auto_is_the_only_one_and_needs_a_surface) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::first_look_test

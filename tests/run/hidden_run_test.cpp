@@ -4,7 +4,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
-namespace alcove {
+namespace alcove::hidden_run_test {
 namespace {
 
 using namespace test;
@@ -263,4 +263,4 @@ TEST_F(HiddenRun, inspect_proposes_channels_that_may_be_hidden_and_reads_none_of
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::hidden_run_test

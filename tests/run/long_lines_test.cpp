@@ -4,7 +4,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 
-namespace alcove {
+namespace alcove::long_lines_test {
 namespace {
 
 using namespace test;
@@ -93,4 +93,4 @@ TEST(Chain, refuses_lines_that_an_exact_search_cannot_number) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::long_lines_test

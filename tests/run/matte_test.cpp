@@ -5,7 +5,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 
-namespace alcove {
+namespace alcove::matte_test {
 namespace {
 
 using namespace test;
@@ -326,4 +326,4 @@ TEST_F(Matte, one_that_moves_along_a_sequence_gives_each_frame_its_own) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::matte_test

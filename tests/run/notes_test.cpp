@@ -5,7 +5,7 @@
 #include "tests/support/exr_header.h"
 #include "tests/support/sequence_folder.h"
 
-namespace alcove {
+namespace alcove::notes_test {
 namespace {
 
 using namespace test;
@@ -190,4 +190,4 @@ TEST(NoteTable, is_that_of_the_page) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::notes_test

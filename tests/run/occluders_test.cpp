@@ -4,7 +4,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 
-namespace alcove {
+namespace alcove::occluders_test {
 namespace {
 
 using namespace test;
@@ -209,4 +209,4 @@ TEST_F(Occluders, that_change_along_a_sequence_are_each_frame_s_own) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::occluders_test

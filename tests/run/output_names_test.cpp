@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/sequence_folder.h"
 
-namespace alcove {
+namespace alcove::output_names_test {
 namespace {
 
 using namespace test;
@@ -97,4 +97,4 @@ TEST_F(InputNames, that_are_globs_are_answered_with_the_pattern) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::output_names_test

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::preview_test {
 namespace {
 
 using namespace test;
@@ -113,4 +113,4 @@ TEST_F(Preview, of_another_look_is_made_again_by_resume) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::preview_test

@@ -4,14 +4,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/sequence_folder.h"
 
-namespace alcove {
+namespace alcove::refusals_test {
 namespace {
 
 using namespace test;
 
-void expect_failure(int code, const Options& texts, const Options& arguments, const Surroundings& surroundings = {}) {
+void expect_failure(int code, const Options& texts, const Options& arguments, const Launch& launch = {}) {
   SCOPED_TRACE(testing::PrintToString(arguments));
-  test::expect_refused(run_program(arguments, surroundings), code, texts);
+  test::expect_refused(run_program(arguments, launch), code, texts);
 }
 
 // The standard streams.
@@ -25,7 +25,7 @@ using Streams = SequenceFolder;
 
 TEST_F(Streams, an_error_stream_that_is_full_changes_nothing_else) {
   write_frames(1, 2);
-  const Surroundings full{.err = "/dev/full"};
+  const Launch full{.err = "/dev/full"};
   done({}, full);
   EXPECT_THAT(names_in(out), ElementsAre("ao.0001.exr", "ao.0002.exr"));
   done({"--progress", "bar"}, full);
@@ -362,7 +362,7 @@ TEST_F(Refusals, a_broken_module_of_pictures_is_named_where_one_is_read_and_not_
 #endif
   fs::create_directory(folder / "lib");
   write_bytes(folder / "lib/libalcove_image_io.so", "no library");
-  const Surroundings broken{.environment = {{"LD_LIBRARY_PATH", folder / "lib"}}};
+  const Launch broken{.environment = {{"LD_LIBRARY_PATH", folder / "lib"}}};
   write_bytes(folder / "a.png", "x");
   expect_failure(3, {folder / "a.png", "libalcove_image_io.so", "alcove-pictures"},
                  {"compare", folder / "a.png", frame}, broken);
@@ -372,7 +372,7 @@ TEST_F(Refusals, a_broken_module_of_pictures_is_named_where_one_is_read_and_not_
 
 // Devices.
 
-Surroundings lacking(const std::string& what) {
+Launch lacking(const std::string& what) {
   return {.environment = {{"ALCOVE_LACKS", what}}, .preload = ALCOVE_POOR_DEVICE};
 }
 
@@ -422,4 +422,4 @@ TEST_F(Streams, a_frame_that_finds_no_memory_is_computed_again_and_leaves_nothin
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::refusals_test

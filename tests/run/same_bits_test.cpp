@@ -5,7 +5,7 @@
 #include "tests/support/deep_file.h"
 #include "tests/support/walked_shot.h"
 
-namespace alcove {
+namespace alcove::same_bits_test {
 namespace {
 
 using namespace test;
@@ -137,4 +137,4 @@ TEST_F(SameBits, of_a_region_that_shows_too_little_are_read_as_those_of_the_whol
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::same_bits_test

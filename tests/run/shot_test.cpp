@@ -8,7 +8,7 @@
 #include "tests/support/device.h"
 #include "tests/support/walked_shot.h"
 
-namespace alcove {
+namespace alcove::shot_test {
 namespace {
 
 using namespace test;
@@ -300,7 +300,7 @@ TEST_F(Shots, take_memory_for_the_frames_around_and_for_motion_vectors) {
     settings.input.around = around;
     const FramePlan plan(settings);
     const FrameSource source = open_frame(plan.at(4), 4);
-    const std::uint64_t of_frame = memory_with_others(plan, source, settings).of(source.file_data).host;
+    const std::uint64_t of_frame = memory_with_others(plan, source, settings).of(source.reading.data).host;
     const std::uint64_t of_shot = bytes_of_shot(plan, source, settings.input, 1);
     // Two frames to each side tell what moves, if no more are taken.
     EXPECT_GE(of_frame, frame_before + (around == 2 ? 0 : 1)) << around;
@@ -376,4 +376,4 @@ TEST_F(Shots, files_that_know_what_is_hidden_leave_others_nothing_to_add) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::shot_test

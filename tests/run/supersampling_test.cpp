@@ -5,7 +5,7 @@
 #include "tests/support/difference.h"
 #include "tests/support/exr_header.h"
 
-namespace alcove {
+namespace alcove::supersampling_test {
 namespace {
 
 using namespace test;
@@ -239,4 +239,4 @@ TEST_F(Supersampling, sizes_that_do_not_fit_are_refused_and_one_keeps_every_pixe
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::supersampling_test

@@ -9,7 +9,7 @@
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
-namespace alcove {
+namespace alcove::surroundings_test {
 namespace {
 
 using namespace test;
@@ -17,14 +17,14 @@ using namespace test;
 class SurroundingsTest : public CommandLine {
  protected:
   /// The AO file's bytes, of a run that must succeed.
-  std::string result(const Options& more, const Surroundings& surroundings = {}) const {
-    return done(more, surroundings).code == 0 ? read_bytes(ao) : "";
+  std::string result(const Options& more, const Launch& launch = {}) const {
+    return done(more, launch).code == 0 ? read_bytes(ao) : "";
   }
   /// A run must succeed and give the file that a plain run gives.
-  void expect_plain(const Options& more, const Surroundings& surroundings = {}) {
+  void expect_plain(const Options& more, const Launch& launch = {}) {
     if (plain.empty()) plain = result({});
-    EXPECT_TRUE(result(more, surroundings) == plain) << "another file with " << testing::PrintToString(more) << " "
-                                                     << testing::PrintToString(surroundings.environment);
+    EXPECT_TRUE(result(more, launch) == plain)
+        << "another file with " << testing::PrintToString(more) << " " << testing::PrintToString(launch.environment);
   }
   void expect_plain_with(const std::map<std::string, std::optional<std::string>>& environment) {
     expect_plain({}, {.environment = environment});
@@ -82,14 +82,14 @@ TEST_F(SurroundingsTest, with_a_full_cache_folder_cost_nothing_but_time_and_leav
 }
 
 TEST_F(SurroundingsTest, a_damaged_pipeline_cache_does_no_harm) {
-  const Surroundings surroundings{.environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
-  expect_plain({}, surroundings);
+  const Launch launch{.environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
+  expect_plain({}, launch);
   const auto caches = fs::directory_iterator(folder / "cache/alcove");
   ASSERT_NE(caches, fs::directory_iterator());
   const std::string file = caches->path().string(), whole = read_bytes(file);
   for (const std::string& bytes : {std::string(), whole.substr(0, whole.size() / 2), std::string(5000, '\xff')}) {
     write_bytes(file, bytes);
-    expect_plain({}, surroundings);
+    expect_plain({}, launch);
   }
 }
 
@@ -201,4 +201,4 @@ TEST_F(SurroundingsTest, a_run_replaces_what_was_there_and_no_reader_sees_half_a
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::surroundings_test

@@ -4,7 +4,7 @@
 #include "tests/support/long_tests.h"
 #include "tests/support/walked_shot.h"
 
-namespace alcove {
+namespace alcove::tiles_test {
 namespace {
 
 using namespace test;
@@ -256,4 +256,4 @@ TEST_F(Tiles, of_a_frame_with_one_near_corner_are_few) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::tiles_test

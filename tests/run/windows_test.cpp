@@ -1,9 +1,9 @@
 // A beauty, mattes and other colours whose data windows are not the depth's.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/windows.h"
+#include "core/base/image.h"
 #include "tests/support/command_line.h"
 
-namespace alcove {
+namespace alcove::windows_test {
 namespace {
 
 using namespace test;
@@ -126,4 +126,4 @@ TEST_F(Windows, materials_without_pixels_are_open_and_mattes_without_pixels_take
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::windows_test

@@ -3,7 +3,7 @@
 #include "tests/support/bent.h"
 
 #include "core/chain/chain.h"
-#include "core/chain/estimate.h"
+#include "core/chain/estimate/estimate.h"
 #include "tests/support/device.h"
 
 namespace alcove::test {

@@ -13,17 +13,17 @@ class Runs : public testing::Test {
  protected:
   Runs() { write_bytes(camera, wall_camera().dump()); }
 
-  virtual Finished run(const Options& more, const Surroundings& surroundings = {}) const = 0;
+  virtual Finished run(const Options& more, const Launch& launch = {}) const = 0;
 
   /// A run that must succeed.
-  Finished done(const Options& more = {}, const Surroundings& surroundings = {}) const {
-    const Finished finished = run(more, surroundings);
+  Finished done(const Options& more = {}, const Launch& launch = {}) const {
+    const Finished finished = run(more, launch);
     EXPECT_EQ(finished.code, 0) << testing::PrintToString(more) << finished;
     return finished;
   }
   /// What such a run's statistics say.
-  json stats_of(const Options& more, const Surroundings& surroundings = {}) const {
-    done(joined(more, {"--stats", folder / "stats.json"}), surroundings);
+  json stats_of(const Options& more, const Launch& launch = {}) const {
+    done(joined(more, {"--stats", folder / "stats.json"}), launch);
     return json::parse(read_bytes(folder / "stats.json"));
   }
   /// The passes of its first frame.
@@ -34,10 +34,9 @@ class Runs : public testing::Test {
     return names;
   }
   /// A run that must end with this code and one line that holds these texts.
-  void expect_refused(int code, const Options& more, const Options& texts,
-                      const Surroundings& surroundings = {}) const {
+  void expect_refused(int code, const Options& more, const Options& texts, const Launch& launch = {}) const {
     SCOPED_TRACE(testing::PrintToString(more));
-    test::expect_refused(run(more, surroundings), code, texts);
+    test::expect_refused(run(more, launch), code, texts);
   }
 
   /// The same of a run that must leave nothing behind.
@@ -57,8 +56,8 @@ class CommandLine : public Runs {
   CommandLine() { wall_frame().write(frame); }
 
   /// `run` on the frame with its camera, a radius of 1 and these arguments.
-  Finished run(const Options& more, const Surroundings& surroundings = {}) const override {
-    return run_program(joined({"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, more), surroundings);
+  Finished run(const Options& more, const Launch& launch = {}) const override {
+    return run_program(joined({"run", frame, "-o", ao, "--camera", camera, "--radius", "1"}, more), launch);
   }
   /// What a run that must succeed writes as floats: all channels of the AO's file.
   Image computed(const Options& more) const {

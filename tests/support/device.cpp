@@ -7,8 +7,6 @@
 namespace alcove::test {
 namespace {
 
-[[maybe_unused]] const bool kOneThread = compute_in_one_thread();
-
 constexpr std::size_t kGuardBytes = 4096;
 
 gpu::DeviceOptions options() {

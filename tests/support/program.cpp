@@ -24,8 +24,6 @@
 namespace alcove::test {
 namespace {
 
-[[maybe_unused]] const bool kOneThread = compute_in_one_thread();
-
 void require(bool condition, const char* what) {
   if (!condition) throw std::system_error(errno, std::generic_category(), what);
 }
@@ -50,11 +48,11 @@ class Capture {
 };
 
 /// Our environment with the changes.
-std::vector<std::string> environment_with(const Surroundings& surroundings) {
-  auto changes = surroundings.environment;
+std::vector<std::string> environment_with(const Launch& launch) {
+  auto changes = launch.environment;
   changes.try_emplace("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets");  // a build folder may lie anywhere
-  if (!surroundings.preload.empty()) {
-    changes["LD_PRELOAD"] = surroundings.preload;
+  if (!launch.preload.empty()) {
+    changes["LD_PRELOAD"] = launch.preload;
     const char* before = std::getenv("ASAN_OPTIONS");
     // which asks to be the first itself
     changes["ASAN_OPTIONS"] = std::string(before ? before : "") + ":verify_asan_link_order=0";
@@ -120,18 +118,18 @@ std::ostream& operator<<(std::ostream& stream, const Finished& finished) {
   return stream << "exit code " << finished.code << "\nstdout: " << finished.out << "\nstderr: " << finished.err;
 }
 
-Finished run_program(const Options& arguments, const Surroundings& surroundings) {
+Finished run_program(const Options& arguments, const Launch& launch) {
   const Capture out("stdout"), err("stderr");
-  std::vector<std::string> words = on_test_device(arguments), variables = environment_with(surroundings);
-  words.insert(words.begin(), surroundings.program);
+  std::vector<std::string> words = on_test_device(arguments), variables = environment_with(launch);
+  words.insert(words.begin(), launch.program);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", 0, 0);
   posix_spawn_file_actions_adddup2(&actions, out.descriptor(), 1);
   posix_spawn_file_actions_adddup2(&actions, err.descriptor(), 2);
-  for (const auto& [number, path] : {std::pair(1, &surroundings.out), {2, &surroundings.err}})
+  for (const auto& [number, path] : {std::pair(1, &launch.out), {2, &launch.err}})
     if (!path->empty()) posix_spawn_file_actions_addopen(&actions, number, path->c_str(), O_WRONLY, 0);
-  posix_spawn_file_actions_addchdir_np(&actions, surroundings.folder.c_str());
+  posix_spawn_file_actions_addchdir_np(&actions, launch.folder.c_str());
   // The program gets the signals' defaults, also where nohup has started the tests.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
@@ -141,19 +139,19 @@ Finished run_program(const Options& arguments, const Surroundings& surroundings)
   posix_spawnattr_setsigdefault(&attributes, &ending);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   pid_t child = -1;
-  errno = ::posix_spawn(&child, surroundings.program.c_str(), &actions, &attributes, pointers_to(words).data(),
+  errno = ::posix_spawn(&child, launch.program.c_str(), &actions, &attributes, pointers_to(words).data(),
                         pointers_to(variables).data());
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
-  require(errno == 0, surroundings.program.c_str());
-  if (surroundings.meanwhile) surroundings.meanwhile(child);
+  require(errno == 0, launch.program.c_str());
+  if (launch.meanwhile) launch.meanwhile(child);
   rusage usage{};
-  const int code = wait_for(child, surroundings.seconds, usage);
+  const int code = wait_for(child, launch.seconds, usage);
   return {code, out.text(), without_durations(err.text()), usage.ru_maxrss >> 10};
 }
 
-Finished run_well(const Options& arguments, const Surroundings& surroundings) {
-  Finished finished = run_program(arguments, surroundings);
+Finished run_well(const Options& arguments, const Launch& launch) {
+  Finished finished = run_program(arguments, launch);
   EXPECT_EQ(finished.code, 0) << testing::PrintToString(arguments) << finished;
   return finished;
 }

@@ -14,8 +14,8 @@ struct Finished {
 };
 std::ostream& operator<<(std::ostream& stream, const Finished& finished);
 
-/// Where the program runs.
-struct Surroundings {
+/// How the program is started.
+struct Launch {
   std::string folder = "/";  // working directory; not the test's own, so that nothing depends on it
   // to set, or to remove where there is no value; all else is inherited
   std::map<std::string, std::optional<std::string>> environment = {};
@@ -31,11 +31,11 @@ struct Surroundings {
 using Options = std::vector<std::string>;
 
 /// Runs the program with these arguments and waits for its end. It finds the presets of the project unless the
-/// surroundings say otherwise, and computes on the device that ALCOVE_TEST_DEVICE names unless the arguments do. What
+/// launch says otherwise, and computes on the device that ALCOVE_TEST_DEVICE names unless the arguments do. What
 /// slow machines alone print, how long a frame takes, is left out of Finished::err.
-Finished run_program(const Options& arguments, const Surroundings& surroundings = {});
+Finished run_program(const Options& arguments, const Launch& launch = {});
 /// The same of a run that must succeed.
-Finished run_well(const Options& arguments, const Surroundings& surroundings = {});
+Finished run_well(const Options& arguments, const Launch& launch = {});
 
 /// The words of a text with blanks between them.
 Options typed(const std::string& text);

@@ -21,8 +21,8 @@ class SequenceFolder : public Runs {
   std::string output(int frame) const { return fmt::format("{}/ao.{:04}.exr", out, frame); }
 
   /// `run` on the sequence with these arguments and, where they say nothing else, its camera and a radius of 1.
-  Finished run(const Options& more = {}, const Surroundings& surroundings = {}) const override {
-    return run_program(joined({"run"}, arguments(more)), surroundings);
+  Finished run(const Options& more = {}, const Launch& launch = {}) const override {
+    return run_program(joined({"run"}, arguments(more)), launch);
   }
   Options arguments(const Options& more) const {
     Options all{in + "/f.%04d.exr"};

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/single_pass.h"
 
-#include "core/chain/filters.h"
+#include "core/chain/filters/filters.h"
 #include "tests/support/device.h"
 
 namespace alcove::test {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/chain/sites.h"
+#include "core/chain/estimate/sites.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
 #include "tests/support/sites_of.h"

@@ -6,13 +6,11 @@
 
 namespace alcove::test {
 
-/// Makes lavapipe compute in the thread that calls it, in this process and in the programs that it starts. Tests run
+/// Lavapipe computes in the thread that calls it, in this process and in the programs that it starts. Tests run
 /// beside each other, and for small frames lavapipe's threads take longer to wait for each other than to compute. Where
 /// ALCOVE_TEST_THREADS is set, lavapipe has its own threads, so that workgroups do run at once: tests/CMakeLists.txt
 /// sets it for some tests, and tests/long.sh for all. LP_NUM_THREADS of the environment comes first.
-inline bool compute_in_one_thread() {
-  if (!std::getenv("ALCOVE_TEST_THREADS")) ::setenv("LP_NUM_THREADS", "0", 0);
-  return true;
-}
+inline const bool kComputesInOneThread =
+    std::getenv("ALCOVE_TEST_THREADS") == nullptr && ::setenv("LP_NUM_THREADS", "0", 0) == 0;
 
 }  // namespace alcove::test

@@ -44,7 +44,8 @@ inline RunReport run_here(const Options& arguments, std::uint64_t bytes = 0, con
   EXPECT_TRUE(parse_run_options(arguments, options));
   if (bytes) options.settings.device.memory = 1;
   if (bytes) options.settings.device.least_memory = bytes;
-  return run_frames(options.settings, watch);
+  FirstLook look(options.settings);
+  return run_frames(look, watch);
 }
 
 class WalkedShot : public SequenceFolder {

@@ -15,9 +15,9 @@ Arrays, by the library libalcove, with numpy:
     ao = alcove.ao(depth, radius=0.5, fov=40)                            # (H, W), float32, 1 = open
     made = alcove.compute(depth, normal, camera="shot.json", frame=1001, radius=[0.1, 0.5], aov=["ao", "bent-normal"])
 
-Options are those of the command line, by the same names with `_` for `-`: `slices=4` is `--slices 4`; True is a flag that
-is given, False and None are options that are not; a list becomes words with commas, or for `behind` and its like the
-option once for each.
+Options are those of the command line, by the same names with `_` for `-`: `slices=4` is `--slices 4`. True sets a flag;
+False and None leave an option out. A list becomes words with commas; `behind` and `behind_channel` repeat the option for each
+value.
 """
 
 import collections
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
 __all__ = ["Error", "FramesFailed", "UsageError", "InputError", "OutputError", "DeviceError", "ComparisonError", "run", "inspect",
            "compare", "version", "program", "ao", "compute"]
 
-# Each value of such an option stands by itself: file names may hold commas.
+# Each value of such an option is given by itself, since file names may hold commas.
 _REPEATED = ("behind", "behind_channel")
-_ONLY_OPTIONS = ("preset", "dry-run", "print-config", "write-camera")  # no preset holds them
+_ONLY_OPTIONS = ("preset", "dry-run", "print-config", "write-camera")  # options that are not settings
 
 
 class Error(Exception):
-    """The program failed. `code` is its exit code, `events` what it had told until then."""
+    """The program failed. `code` is its exit code, `events` holds its events until then."""
 
     code = 0
 
@@ -56,7 +56,7 @@ class FramesFailed(Error):
 
 
 class UsageError(Error):
-    """Options that are none, contradict each other, or lack another."""
+    """Options are unknown, contradict each other, or lack another."""
 
     code = 2
 
@@ -89,8 +89,8 @@ _ERRORS = {kind.code: kind for kind in (FramesFailed, UsageError, InputError, Ou
 
 
 def program() -> str:
-    """The path of the program: that of the variable ALCOVE, else the one on the path. Fails with DeviceError."""
-    # Where the package is installed as a part of Alcove, the program may lie in the same prefix.
+    """The path of the program: that in the variable ALCOVE, else the one on the path. Fails with DeviceError."""
+    # If the package was installed with Alcove, the program may lie in the same prefix.
     beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../../../bin/alcove")
     found = shutil.which(os.environ.get("ALCOVE", "alcove")) or ("ALCOVE" not in os.environ and shutil.which(beside))
     if not found:
@@ -99,7 +99,8 @@ def program() -> str:
 
 
 def _words(options: Dict[str, Any], of_frames: bool = True) -> List[str]:
-    """Options as the command line has them. A value is never taken for an option. `of_frames`: of run and inspect, where all but a few are settings."""
+    """Options as words of the command line, such that no value is taken for an option. `of_frames`: for run and inspect, whose
+    options are settings except for a few."""
     words = []
     for name, value in options.items():
         key = name.rstrip("_").replace("_", "-")
@@ -121,18 +122,18 @@ def _text(value: Any) -> str:
     return repr(float(value)) if isinstance(value, float) else os.fspath(value) if isinstance(value, os.PathLike) else str(value)
 
 
-def _message(code: int, said: str) -> str:
-    lines = [line for line in said.splitlines() if line.strip()]
+def _message(code: int, errors_text: str) -> str:
+    lines = [line for line in errors_text.splitlines() if line.strip()]
     errors = [line for line in lines if "error" in line] or lines or [f"alcove ended with exit code {code}"]
     prefix = "alcove: error: "
     for number, line in enumerate(lines):
-        if line.startswith(prefix) and line.endswith(":"):  # a list, and the command that has all of it
+        if line.startswith(prefix) and line.endswith(":"):  # a list, and the complete command
             return " ".join(part.strip() for part in [line[len(prefix):]] + lines[number + 1:])
     return errors[-1][len(prefix):] if errors[-1].startswith(prefix) else errors[-1]
 
 
-def _fail(code: int, said: str, events: Optional[List[Dict[str, Any]]] = None) -> None:
-    raise _ERRORS.get(code, Error)(_message(code, said), events)
+def _fail(code: int, errors_text: str, events: Optional[List[Dict[str, Any]]] = None) -> None:
+    raise _ERRORS.get(code, Error)(_message(code, errors_text), events)
 
 
 def _output_of(*words: str) -> str:
@@ -145,23 +146,23 @@ def _output_of(*words: str) -> str:
 def run(input: Optional[str] = None, *, output: str, progress: Optional[Callable[[Dict[str, Any]], None]] = None,
         **options: Any) -> Dict[str, Any]:
     """Computes a frame, or a sequence whose names have a pattern such as `####`, and returns the totals of the run: the
-    counts `done`, `kept`, `failed`, `warned`, `dropped` and `missing`, and `frames`, what is told of each.
+    counts `done`, `kept`, `failed`, `warned`, `dropped` and `missing`, and `frames`, the events of each.
 
-    input: an EXR file, or None where `depth` or `position` names one. output: the AO's EXR file.
+    input: an EXR file, or None if `depth` or `position` names one. output: the AO's EXR file.
     progress: is called with each event of --log-json as it comes, in this thread: `begin`, `frame` and `end`. An exception
-    of it stops the program, which leaves nothing partial, and goes on to the caller.
+    in it stops the program, which leaves nothing partial, and passes on to the caller.
     options: those of `alcove run`. Fails with a kind of Error by the program's exit code.
     """
     if isinstance(options.get("camera"), dict):
         raise UsageError("camera: a dict is for arrays; run() takes the path of a camera file")
     if "log_json" in options:
-        raise UsageError("log_json is what progress is told by: give that")
+        raise UsageError("log_json is taken by progress: use that")
     words = [program(), "run", *([] if input is None else [os.fspath(input)]), "--output", os.fspath(output),
              "--log-json", "-", *_words({"progress": "none", **options})]
     events: List[Dict[str, Any]] = []
-    said: "collections.deque[str]" = collections.deque(maxlen=200)
+    error_lines: "collections.deque[str]" = collections.deque(maxlen=200)
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True) as running:
-        listener = threading.Thread(target=lambda: said.extend(running.stderr), daemon=True)
+        listener = threading.Thread(target=lambda: error_lines.extend(running.stderr), daemon=True)
         listener.start()
         try:
             for line in running.stdout:
@@ -174,7 +175,7 @@ def run(input: Optional[str] = None, *, output: str, progress: Optional[Callable
         code = running.wait()
         listener.join()
     if code != 0:
-        _fail(code, "".join(said), events)
+        _fail(code, "".join(error_lines), events)
     totals = dict(events[-1]) if events else {}
     totals.pop("event", None)
     totals["frames"] = [event for event in events if event["event"] == "frame"]
@@ -182,25 +183,25 @@ def run(input: Optional[str] = None, *, output: str, progress: Optional[Callable
 
 
 def inspect(input: Optional[str] = None, **options: Any) -> Dict[str, Any]:
-    """What a frame, or a sequence, holds and how it would be read, as `alcove inspect --json` prints it. Fails as run() does."""
+    """The contents of a frame or a sequence, and its reading, as `alcove inspect --json` prints them. Fails as run() does."""
     return json.loads(_output_of("inspect", *([] if input is None else [os.fspath(input)]), "--json", *_words(options)))
 
 
 def compare(result: str, reference: str, **options: Any) -> Dict[str, Any]:
-    """The measures of `alcove compare --json`: rmse, ssim and others. A limit that is exceeded, such as max_rmse=0.01, fails
-    with ComparisonError; all else as in run()."""
+    """The measures of `alcove compare --json`: rmse, ssim and others. A broken limit, such as max_rmse=0.01, fails
+    with ComparisonError; other failures are those of run()."""
     return json.loads(_output_of("compare", os.fspath(result), os.fspath(reference), "--json", *_words(options, of_frames=False)))
 
 
 def version() -> str:
-    """The program's, such as 0.2.0."""
+    """The program's version, such as 0.2.0."""
     return _output_of("--version").split()[1]
 
 
 def ao(depth: Optional["numpy.ndarray"] = None, normal: Optional["numpy.ndarray"] = None, *, camera: Any = None, radius: Any = None,
        **options: Any) -> "numpy.ndarray":
-    """The ambient occlusion of a frame in arrays: (H, W), float32, visibility from 0 to 1, 1 = open. As compute(), with this
-    one result."""
+    """The ambient occlusion of a frame in arrays: (H, W), float32, visibility from 0 to 1, 1 = open. It is the result
+    `ao` of compute()."""
     if "aov" in options:
         raise UsageError("aov: ao() gives the AO alone; compute() gives others")
     return compute(depth, normal, camera=camera, radius=radius, aov="ao", **options)["ao"]
@@ -208,24 +209,24 @@ def ao(depth: Optional["numpy.ndarray"] = None, normal: Optional["numpy.ndarray"
 
 def compute(depth: Optional["numpy.ndarray"] = None, normal: Optional["numpy.ndarray"] = None, *, camera: Any = None,
             aov: Any = "ao", frame: int = 0, **options: Any) -> Dict[str, Any]:
-    """Everything that a frame in arrays gives, by the names of `aov`: arrays of (H, W), or (H, W, C) of results with several
-    components, float32. Beside them `stats`: compute_ms (of the device), sky_pixels, repaired_depth, repaired_normals, radius,
+    """Computes the results that `aov` names for a frame in arrays: arrays of (H, W), or (H, W, C) if a result has several
+    components, float32. It adds `stats`: compute_ms (of the device), sky_pixels, repaired_depth, repaired_normals, radius,
     device.
 
     depth: (H, W), planar and positive in scene units, upper left pixel first; other kinds by depth_kind. 0, infinite and
-        NaN are sky. float16 and float32 are taken as they lie, whatever their strides; all else becomes float32.
-    normal: (H, W, 3), or (H, W, 2) by normal_encoding; None: reconstructed from depth. Where the camera has a place,
-        normal_space must be "world" or "view", or stand in the camera. normal_encoding is "signed" unless it is said.
-    camera: a camera file's fields as a dict (without resolution: that of the arrays), or its path, of which `frame` picks the entry; or fov=DEGREES (horizontal),
-        focal=MM and aperture=MM, or ortho_width=UNITS instead.
-    frame: the frame's number, by which noise="animated" changes.
+        NaN are sky. float16 and float32 are read in place, with any strides; other types are converted to float32.
+    normal: (H, W, 3), or (H, W, 2) by normal_encoding; None: reconstructed from depth. If the camera has a position,
+        normal_space must be "world" or "view", here or in the camera. normal_encoding is "signed" by default.
+    camera: the fields of a camera file as a dict (without resolution: that of the arrays), or its path, with the entry of
+        `frame`; or instead fov=DEGREES (horizontal), focal=MM and aperture=MM, or ortho_width=UNITS.
+    frame: the frame's number; noise="animated" depends on it.
     position: (H, W, 3) instead of depth. behind: an array of depth behind the first surface, or a list of them.
     material_ao, matte, occluders, ignore: (H, W), numbers or bool. albedo: (H, W, 3), or one number.
     options: those of `alcove run` that are not about files: radius (required; "auto" proposes one), preset, slices, ...
 
-    Fails with UsageError, InputError or DeviceError, also where the pixels speak against depth, normals or camera; what only
-    may be wrong is a warning. Other threads go on meanwhile; each thread has a device of its own, which
-    is opened by its first call and stays open. After a fork the child opens its own.
+    Fails with UsageError, InputError or DeviceError, also if the pixels contradict depth, normals or camera; doubts are
+    warnings. Other threads go on meanwhile. The first call of a thread opens its own device, which stays open. After a fork
+    the child opens its own.
     """
     from . import _arrays  # numpy and the library are loaded on first use
     return _arrays.compute(depth, normal, camera, aov, frame, options)

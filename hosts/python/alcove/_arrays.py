@@ -1,6 +1,6 @@
-# Arrays to the C library and back, by ctypes.
+# Passes arrays to the C library and back, by ctypes.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is behind alcove.ao() and alcove.compute()."""
+"""The implementation of alcove.ao() and alcove.compute()."""
 
 import ctypes
 import json
@@ -16,20 +16,20 @@ import numpy
 from . import _ERRORS, DeviceError, Error, InputError, UsageError, _text, program
 
 _NAME = "libalcove.so.0"
-_PLANES = ("position", "material_ao", "matte", "occluders", "ignore")  # and behind and albedo, which may be more or less
+_PLANES = ("position", "material_ao", "matte", "occluders", "ignore")  # besides behind, which may be several, and albedo, which may be a number
 _STATS = ("compute-ms", "sky-pixels", "repaired-depth", "repaired-normals", "radius")
 
 
 class _Layout(ctypes.Structure):
-    """alcove_layout of alcove/alcove.h."""
+    """The alcove_layout of alcove/alcove.h."""
 
     _fields_ = [("width", ctypes.c_int), ("height", ctypes.c_int), ("components", ctypes.c_int), ("type", ctypes.c_int),
                 ("pixel_stride", ctypes.c_ssize_t), ("row_stride", ctypes.c_ssize_t), ("component_stride", ctypes.c_ssize_t)]
 
 
 def _paths() -> List[str]:
-    """Where the library may lie: as the variable ALCOVE_LIBRARY says, beside the program as it is built or installed, or where
-    the system looks."""
+    """The possible paths of the library: that of the variable ALCOVE_LIBRARY, beside the built or installed program, or the
+    system's."""
     if os.environ.get("ALCOVE_LIBRARY"):
         return [os.environ["ALCOVE_LIBRARY"]]
     try:
@@ -41,7 +41,7 @@ def _paths() -> List[str]:
 
 
 def _load() -> ctypes.CDLL:
-    """The library. Fails with DeviceError."""
+    """Loads the library. Fails with DeviceError."""
     reasons = []
     for path in _paths():
         try:
@@ -65,7 +65,7 @@ def _load() -> ctypes.CDLL:
 
 
 def _as_plane(name: str, values: Any) -> numpy.ndarray:
-    """(H, W, C) of half floats or floats of this machine's byte order, not copied where they are that."""
+    """Gives (H, W, C) of half floats or floats in this machine's byte order, copied only if needed."""
     if isinstance(values, numpy.ma.MaskedArray):
         raise UsageError(f"{name}: a masked array; fill it first, depth with 0 where there is nothing")
     array = numpy.asarray(values)
@@ -78,7 +78,7 @@ def _as_plane(name: str, values: Any) -> numpy.ndarray:
         raise UsageError(f"{name}: an array of {array.dtype}, where {'floats belong' if name == 'normal' else 'numbers belong'}")
     is_half = array.dtype.kind == "f" and array.dtype.itemsize == 2
     array = array.astype(numpy.float16 if is_half else numpy.float32, copy=False)
-    # One value that stands for many has a stride of 0, which the library takes for none.
+    # A value that is repeated by a stride of 0 needs a copy, since 0 means packed to the library.
     has_shared = any(stride == 0 and count > 1 for stride, count in zip(array.strides, array.shape))
     return numpy.ascontiguousarray(array) if has_shared else array
 
@@ -90,7 +90,7 @@ def _layout_of(array: numpy.ndarray) -> _Layout:
 
 
 class _Session:
-    """A handle of the library, which is reused: what was said of the last frame is taken back first."""
+    """A handle of the library. It is reused after clear(), which resets the options and planes of the last frame."""
 
     def __init__(self) -> None:
         self.library = _load()
@@ -149,12 +149,12 @@ class _Session:
 
 
 def _in_keywords(text: bytes) -> str:
-    """A sentence of the library's, with options as Python names them."""
+    """A sentence of the library, with options under their Python names."""
     return re.sub(r"--(?:set )?([a-z][a-z-]*)", lambda match: match.group(1).replace("-", "_"), text.decode("utf-8", "replace"))
 
 
 _of_thread = threading.local()
-_before_fork: List[Any] = []  # sessions whose devices are the parent's: they are neither used nor freed
+_before_fork: List[Any] = []  # sessions of the parent process: neither used nor freed
 
 
 def _forget() -> None:

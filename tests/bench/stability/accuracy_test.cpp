@@ -17,12 +17,11 @@
 
 #include "core/base/estimator_facts.h"
 #include "core/reference/reference.h"
-#include "core/reference/reference_estimators.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 
-namespace alcove {
+namespace alcove::accuracy_test {
 namespace {
 
 using namespace test;
@@ -223,4 +222,4 @@ TEST(Accuracy, of_positions_too_far_off_to_tell_any_height_feigns_nothing) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::accuracy_test

@@ -78,7 +78,7 @@ Rendering corner(double fov, double aspect, double shift, int width, int height)
               aspect, shift);
 }
 
-/// A direction in the plane of one of three slices of a pixel (see pixel_noise() in kernels/noise.glsl), as many
+/// A direction in the plane of one of three slices of a pixel (see pixel_noise() in kernels/base/noise.glsl), as many
 /// degrees from the view ray; or across that plane.
 Vec3 of_slice(const HostFrame& frame, std::size_t pixel, int slice, double degrees, bool across) {
   const double x = double(pixel % std::size_t(frame.data.width)), y = double(pixel / std::size_t(frame.data.width));

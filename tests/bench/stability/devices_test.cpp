@@ -4,7 +4,7 @@
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 
-namespace alcove {
+namespace alcove::devices_test {
 namespace {
 
 using namespace test;
@@ -32,4 +32,4 @@ TEST(Devices, agree) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::devices_test

@@ -8,15 +8,15 @@
 #include <iostream>
 
 #include "core/base/estimator_facts.h"
+#include "core/chain/base/pass_common.h"
 #include "core/chain/chain.h"
-#include "core/chain/estimate.h"
-#include "core/chain/pass_common.h"
+#include "core/chain/estimate/estimate.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/long_tests.h"
 
-namespace alcove {
+namespace alcove::grid_test {
 namespace {
 
 using namespace test;
@@ -185,4 +185,4 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::grid_test

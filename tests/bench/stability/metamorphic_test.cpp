@@ -6,7 +6,7 @@
 #include "tests/bench/stability/cases.h"
 #include "tests/support/chain.h"
 
-namespace alcove {
+namespace alcove::metamorphic_test {
 namespace {
 
 using namespace test;
@@ -231,4 +231,4 @@ TEST(Metamorphic, a_plane_at_a_grazing_angle_is_open) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::metamorphic_test

@@ -5,7 +5,7 @@
 #include "tests/support/device.h"
 #include "tests/support/long_tests.h"
 
-namespace alcove {
+namespace alcove::stability_report_test {
 namespace {
 
 using namespace test;
@@ -62,4 +62,4 @@ TEST(StabilityReport, says_where_each_estimator_breaks_down_and_that_a_run_notes
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::stability_report_test

@@ -8,7 +8,7 @@
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 
-namespace alcove {
+namespace alcove::scale_notes_test {
 namespace {
 
 using namespace test;
@@ -133,4 +133,4 @@ TEST(StabilityReport, shows_strings_as_text) {
 }
 
 }  // namespace
-}  // namespace alcove
+}  // namespace alcove::scale_notes_test

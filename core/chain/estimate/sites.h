@@ -1,0 +1,41 @@
+// Which pixels have an estimate of their own.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "core/base/settings.h"
+#include "core/chain/geometry/geometry.h"
+
+namespace alcove {
+
+/// The sites of a G-buffer: pixels with an estimate, from which the filters make that of the others.
+struct Sites {
+  const gpu::Buffer* rows = nullptr;  // 8 words per tile, see lattice.glsl; null: every pixel has an estimate
+  int spacing = 1;                    // one pixel of so many is a site at least
+  ivec2 shift{};                      // px of their lattice to the left and up
+};
+
+/// Where the sites lie.
+struct SiteRule {
+  int spacing;       // one pixel of so many is a site at least: 1, 2, 4, 8 or 16
+  bool is_adaptive;  // more where a surface is too small or too bent for its neighbours' sites
+  ivec2 shift{};     // px of the lattice to the left and up
+};
+/// `turn`: of frames whose sites are taken together each has its own, from 0 on, and with it another shift.
+SiteRule site_rule_of(const EstimatorSettings& settings, int turn = 0);
+
+/// Chooses the sites, from the G-buffer alone.
+/// `prefix` stands before the names of its buffers where there is another estimate.
+Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, const std::string& prefix = "");
+
+/// Says which neighbours show one surface, and makes the pixels of the widest lattice sites: see links.comp.
+const gpu::Buffer& links(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule,
+                         const std::string& prefix = "");
+
+struct TileList;
+/// Lists the sites of the listed tiles, for the estimators. `prefix` stands before the names of its buffers.
+void list_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, TileList& list,
+                const std::string& prefix = "");
+
+}  // namespace alcove

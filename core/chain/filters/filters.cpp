@@ -1,0 +1,259 @@
+// Host side of the kernels that smooth the visibility and bring it to all pixels.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/filters/filters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/estimator_facts.h"
+#include "core/chain/base/pass_common.h"
+#include "kernels/filters/filters.h"
+
+namespace alcove {
+namespace {
+
+/// The Gaussian's standard deviation, in radii of the denoiser.
+constexpr double kDenoiseSigma = 0.6;
+
+std::vector<double> gaussian(int radius) {
+  std::vector<double> weights;
+  const double sigma = kDenoiseSigma * radius;
+  for (int i = 0; i <= radius; i++) weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
+  return weights;
+}
+
+/// What interpolate makes of a radius: 0 a pixel beyond it.
+double narrowness_of(const EstimatorSettings& settings) {
+  const double end = denoise_radius_of(settings) + 1;
+  return 1 / (end * end);
+}
+
+std::vector<double> parabola(double narrowness, int reach) {
+  std::vector<double> weights;
+  for (int i = 0; i <= reach; i++) weights.push_back(1 - narrowness * i * i);
+  return weights;
+}
+
+/// Makes weights, from the centre outwards, reach for sites where there may be few.
+std::vector<double> reaching(std::vector<double> weights, int reach) {
+  const double least = kLeastWindow * weights.front();
+  weights.resize(std::size_t(reach) + 1, 0.0);
+  for (double& weight : weights) weight = std::max(weight, least);
+  return weights;
+}
+
+std::vector<double> weights_of(const EstimatorSettings& settings) {
+  const auto& kernel = settings.denoise_kernel;
+  const int reach = denoise_reach_of(settings);
+  if (reach == 0) return {};
+  // The mean of the four boxes of 4 x 4 that hold a pixel: 4 wide, and centred.
+  if (settings.denoise == Denoise::box) return {1, 1, 0.5};
+  if (spacing_of(settings) == 1) return kernel.empty() ? gaussian(denoise_radius_of(settings)) : kernel;
+  return reaching(kernel.empty() ? parabola(narrowness_of(settings), reach) : kernel, reach);
+}
+
+gpu::Buffer& denoised(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
+  return gpu.buffer(prefix + "denoised", bytes);
+}
+
+gpu::Buffer& upsampled(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
+  return gpu.buffer(prefix + "upsampled", bytes);
+}
+
+/// The parameters of the filter, without the axis.
+template <class Params>
+Params filter_params(const GBuffer& gbuffer, const Denoiser& denoiser) {
+  Params params{};
+  params.view = gbuffer.view;
+  params.depth_sigma = float(denoiser.depth_sigma);
+  const auto& weights = denoiser.weights;
+  const double sum = 2 * std::accumulate(weights.begin(), weights.end(), 0.0) - weights.front();
+  std::ranges::transform(weights, params.weight, [&](double weight) { return float(weight / sum); });
+  return params;
+}
+
+/// The workgroups of a filter along one axis.
+gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& listed) {
+  if (listed.counts) return gpu::Extent(*listed.counts);
+  const ivec2 size = gbuffer.view.size;
+  const int length = axis.x ? size.x : size.y;
+  const int lines = axis.x ? size.y : size.x;
+  return {uint(lines), groups_of(length, uint(kDenoiseRun))};
+}
+
+}  // namespace
+
+Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales) {
+  const uint radii = planes_in(*estimate.ao, gbuffer.view);
+  if (radii == 1) return {estimate.ao, nullptr, estimate.bent};
+  gpu::Buffer& mean = gpu.buffer("combined", plane_bytes(gbuffer.view));
+  gpu.dispatch("combine", CombineParams{gbuffer.view.size, radii}, {{"Scales", estimate.ao}, {"Ao", mean}},
+               extent_of(gbuffer.view));
+  return {&mean, keeps_scales ? estimate.ao : nullptr, estimate.bent};
+}
+
+Denoiser denoiser_of(const EstimatorSettings& settings) {
+  return {weights_of(settings), settings.denoise_depth_sigma,
+          settings.denoise_kernel.empty() ? narrowness_of(settings) : 0};
+}
+
+FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const Denoiser& denoiser) {
+  // A list costs as much as a twentieth of the filter: it pays where more than sky is left out.
+  if (!tiles.skips_surfaces) return {};
+  const BlockGrid& grid = gbuffer.grid;
+  const bool denoises = !denoiser.weights.empty();
+  const bool upsamples = grid.factor > 1;
+  const int radius = denoises ? int(denoiser.weights.size()) - 1 : 0;
+  const int width = gbuffer.view.size.x;
+  const int height = gbuffer.view.size.y;
+  if (!denoises && !upsamples) return {};
+  const auto groups = [](int pixels, int size) { return int(groups_of(pixels, uint(size))); };
+  const int in_column = groups(height, kDenoiseRun);
+  const int in_row = groups(width, kDenoiseRun);
+  const gpu::Buffer& columns =
+      gpu.buffer("runs along columns", sizeof(uint) * std::size_t(in_column * groups(width, kTile)));
+  const auto list = [&](const std::string& name, int runs, int lines, uint mode, const gpu::Buffer& result) {
+    const RunList out{&gpu.buffer(name, sizeof(uint) * std::size_t(runs * lines)),
+                      &gpu.buffer(name + " counts", sizeof(RunCounts))};
+    gpu.clear(*out.counts);
+    gpu.dispatch(
+        "dilate", DilateParams{gbuffer.view.size, runs, lines, in_column, grid.frame_size, grid.overhang, grid.factor},
+        {{"Tiles", tiles.kinds}, {"Columns", columns}, {"List", out.runs}, {"Counts", out.counts}, {"Result", result}},
+        {uint(runs), uint(lines)}, {uint(radius), mode});
+    return out;
+  };
+  FilterRuns listed;
+  if (denoises) {
+    const gpu::Buffer& result = denoised(gpu, "", plane_bytes(gbuffer.view));
+    listed.columns = list("listed columns", in_column, groups(width, kTile), kDilateAlongColumns, result);
+    listed.rows = list("listed rows", in_row, groups(height, kTile), kDilateAlongRows, result);
+  }
+  if (upsamples) {
+    const std::size_t bytes = sizeof(float) * std::size_t(grid.frame_size.x) * std::size_t(grid.frame_size.y);
+    listed.blocks = list("listed blocks", groups(width + 1, kGroupX), groups(height + 1, kGroupY), kDilateUpsample,
+                         upsampled(gpu, "", bytes));
+  }
+  return listed;
+}
+
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Denoiser& denoiser,
+                     const std::string& prefix, const FilterRuns& runs) {
+  if (denoiser.weights.empty()) return planes;
+  const auto radius = uint(denoiser.weights.size() - 1);
+  DenoiseParams params = filter_params<DenoiseParams>(gbuffer, denoiser);
+  gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
+  gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
+  const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
+    params.axis = axis;
+    gpu.dispatch("denoise", params,
+                 {{"Ao", from},
+                  {"Depth", gbuffer.depth},
+                  {"Normal", gbuffer.normal},
+                  {"Result", to},
+                  {"List", listed.runs},
+                  {"Counts", listed.counts}},
+                 runs_extent(gbuffer, axis, listed),
+                 {radius, denoiser.depth_sigma > 0 ? 1u : 0u, listed.runs ? 1u : 0u, planes_in(planes, gbuffer.view)});
+  };
+  along({1, 0}, runs.rows, planes, rows);
+  along({0, 1}, runs.columns, rows, result);
+  return result;
+}
+
+gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
+                         const Denoiser& denoiser, const std::string& prefix, const FilterRuns& runs) {
+  const auto radius = uint(denoiser.weights.size() - 1);
+  InterpolateParams params = filter_params<InterpolateParams>(gbuffer, denoiser);
+  const gpu::Buffer& written =
+      gpu.buffer(prefix + "written rows",
+                 sizeof(uint) * groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32));
+  gpu.clear(written);
+  params.narrowness = float(denoiser.narrowness);
+  params.missing = prefix == kBentPrefix ? 0.5f : 1.0f;
+  const uint mode =
+      (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.narrowness > 0 ? 0 : kInterpolateLooksUp);
+  gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
+  gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
+  const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
+    params.axis = axis;
+    gpu.dispatch("interpolate", params,
+                 {{"Ao", from},
+                  {"Depth", gbuffer.depth},
+                  {"Normal", gbuffer.normal},
+                  {"Result", to},
+                  {"List", listed.runs},
+                  {"Counts", listed.counts},
+                  {"Runs", written},
+                  {"Sites", sites.rows}},
+                 runs_extent(gbuffer, axis, listed),
+                 {radius, mode | (axis.y ? kInterpolateColumns : 0) | (listed.runs ? kInterpolateListed : 0),
+                  planes_in(planes, gbuffer.view)});
+  };
+  along({1, 0}, runs.rows, planes, rows);
+  along({0, 1}, runs.columns, rows, result);
+  return result;
+}
+
+namespace {
+
+/// Filters all planes of a visibility; only those of the AO have runs.
+template <class Filter>
+Visibility filtered(const Visibility& visibility, const FilterRuns& runs, const Filter& filter) {
+  Visibility result;
+  result.ao = &filter(*visibility.ao, "", runs);
+  if (visibility.scales) result.scales = &filter(*visibility.scales, kScalesPrefix, FilterRuns{});
+  if (visibility.bent) result.bent = &filter(*visibility.bent, kBentPrefix, FilterRuns{});
+  return result;
+}
+
+}  // namespace
+
+Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Denoiser& denoiser,
+                   const FilterRuns& runs) {
+  return filtered(visibility, runs,
+                  [&](gpu::Buffer& planes, const std::string& prefix, const FilterRuns& listed) -> gpu::Buffer& {
+                    return denoise(gpu, gbuffer, planes, denoiser, prefix, listed);
+                  });
+}
+
+Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
+                       const Denoiser& denoiser, const FilterRuns& runs) {
+  return filtered(visibility, runs,
+                  [&](gpu::Buffer& planes, const std::string& prefix, const FilterRuns& listed) -> gpu::Buffer& {
+                    return interpolate(gpu, gbuffer, planes, sites, denoiser, prefix, listed);
+                  });
+}
+
+gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, gpu::Buffer& low_planes,
+                      const std::string& prefix, const FilterRuns& runs) {
+  const BlockGrid& grid = low.grid;
+  if (grid.factor == 1) return low_planes;
+  const uint count = planes_in(low_planes, low.view);
+  gpu::Buffer& planes = upsampled(gpu, prefix, count * plane_bytes(gbuffer.view));
+  const RunList& listed = runs.blocks;
+  const gpu::Extent every_block(uint(grid.size.x + 1), uint(grid.size.y + 1));
+  gpu.dispatch("upsample", UpsampleParams{gbuffer.view, grid.size, grid.overhang},
+               {{"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"LowDepth", low.depth},
+                {"LowNormal", low.normal},
+                {"LowAo", low_planes},
+                {"Ao", planes},
+                {"List", listed.runs},
+                {"Counts", listed.counts}},
+               listed.counts ? gpu::Extent(*listed.counts) : every_block,
+               {uint(grid.factor), count, listed.runs ? 1u : 0u});
+  return planes;
+}
+
+Visibility upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const Visibility& visibility,
+                    const FilterRuns& runs) {
+  Visibility result;
+  result.ao = &upsample(gpu, gbuffer, low, *visibility.ao, "", runs);
+  if (visibility.scales) result.scales = &upsample(gpu, gbuffer, low, *visibility.scales, kScalesPrefix);
+  if (visibility.bent) result.bent = &upsample(gpu, gbuffer, low, *visibility.bent, kBentPrefix);
+  return result;
+}
+
+}  // namespace alcove

@@ -1,0 +1,101 @@
+// The search in the table, and what follows from what is found.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/results/aov.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/base/estimator_facts.h"
+#include "core/base/text.h"
+
+namespace alcove {
+namespace {
+
+bool is_of_visibility(const DebugView* view) {
+  return view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao ||
+         view->source == DebugSource::completed || view->source == DebugSource::tiles ||
+         view->source == DebugSource::count;
+}
+
+}  // namespace
+
+std::vector<std::string> aov_names() {
+  std::vector<std::string> names;
+  std::ranges::transform(kAovs, std::back_inserter(names), &AovRow::name);
+  return names;
+}
+
+std::vector<Aov> aovs_of(const OutputSettings& settings) {
+  std::vector<Aov> aovs;
+  for (const auto& name : split(settings.aovs)) {
+    const auto row = std::ranges::find(kAovs, name, &AovRow::name);
+    if (row == kAovs.end())
+      fail(ErrorKind::usage, "--aov: there is no AOV \"{}\"{}; there is {}", name, suggestion(name, aov_names()),
+           list_of(aov_names()));
+    if (std::ranges::find(aovs, name, &Aov::name) != aovs.end()) continue;
+    aovs.push_back({name, split(row->channels), row->planes, row->source, row->is_float});
+    if (name == "ao" && !settings.ao_name.empty()) aovs.back().channels = {settings.ao_name};
+    if (name != "ao" || settings.ao_channels == AoChannels::mono) continue;
+    const std::string layer = settings.ao_name.empty() ? "" : settings.ao_name + ".";
+    aovs.back().channels = {layer + "R", layer + "G", layer + "B"};
+    if (settings.multi_bounce) aovs.back().planes = &FrameOutputs::color_ao;
+  }
+  return aovs;
+}
+
+std::size_t planes_of(const Aov& aov, const EstimatorSettings& settings) {
+  if (aov.planes == &FrameOutputs::scales) return 1 + settings.further_radii.size();
+  return aov.planes == &FrameOutputs::hidden ? 2 * std::size_t(settings.hidden) : aov.channels.size();
+}
+
+std::vector<std::string> channels_of(const Aov& aov, std::size_t planes) {
+  std::vector<std::string> channels;
+  if (aov.planes == &FrameOutputs::hidden) {
+    for (std::size_t i = 1; i <= planes / 2; i++)
+      channels.insert(channels.end(), {fmt::format("hidden{}.Z", i), fmt::format("hidden{}.back", i)});
+    return channels;
+  }
+  if (aov.planes != &FrameOutputs::scales) return aov.channels;
+  for (std::size_t i = 1; i <= planes; i++) channels.push_back(fmt::format("scale{}.Y", i));
+  return channels;
+}
+
+bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes) { return Wanted(settings).has(planes); }
+
+Wanted::Wanted(const OutputSettings& settings)
+    : aovs(aovs_of(settings)),
+      debug_views(debug_views_of(settings)),
+      multi_bounce(settings.multi_bounce),
+      filter(settings.filter),
+      look(settings.look) {
+  const auto is_at_least = [](AovSource source) { return [source](const Aov& aov) { return aov.source >= source; }; };
+  const auto shows_completed = [](const DebugView* view) { return view->source == DebugSource::completed; };
+  completed = !settings.stats.empty() || std::ranges::any_of(debug_views, shows_completed);
+  open_directions = std::ranges::any_of(aovs, is_at_least(AovSource::open_directions));
+  visibility = std::ranges::any_of(aovs, is_at_least(AovSource::visibility)) || multi_bounce ||
+               !settings.composite.empty() || !settings.preview.empty() ||
+               std::ranges::any_of(debug_views, is_of_visibility);
+}
+
+bool Wanted::has(gpu::Buffer* FrameOutputs::*planes) const {
+  return std::ranges::find(aovs, planes, &Aov::planes) != aovs.end();
+}
+
+bool Wanted::is_only_visibility() const {
+  const auto is_ao = [](const Aov& aov) {
+    return aov.planes == &FrameOutputs::ao || aov.planes == &FrameOutputs::scales;
+  };
+  return visibility && !only_own && std::ranges::all_of(aovs, is_ao) && !multi_bounce && debug_views.empty();
+}
+
+bool in_world(const Camera& camera, const OutputSettings& settings) {
+  return settings.aov_space != NormalSpace::view && camera.view_from_world.has_value();
+}
+
+bool needs_ao(const OutputSettings& output) { return Wanted(output).visibility; }
+
+bool needs_bent(const EstimatorSettings& settings, const Wanted& wanted) {
+  return wanted.open_directions && searches_slices(settings);
+}
+
+}  // namespace alcove

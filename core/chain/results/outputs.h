@@ -1,0 +1,81 @@
+// What the chain gives: buffers that the host reads after the recorder has run, and ONE table of the AOVs among them.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/chain/results/own_estimate.h"
+#include "kernels/base/shared.h"
+
+namespace alcove {
+
+namespace gpu {
+class Buffer;
+}
+struct DebugView;  // core/chain/results/debug_view.h
+
+/// One number per pixel for a debug view; kSkyDepth for sky.
+struct DebugPlane {
+  const DebugView* view;
+  ivec2 size;  // px
+  gpu::Buffer* values;
+};
+
+/// Null: not asked for.
+struct FrameOutputs {
+  gpu::Buffer* counts = nullptr;        // one FrameCounts
+  gpu::Buffer* layer_counts = nullptr;  // one LayerCounts, where anything is known of what is hidden
+  gpu::Buffer* view_counts = nullptr;   // one ViewCounts, where others see what is hidden here
+  gpu::Buffer* tiles = nullptr;         // one TileCounts, where there is an estimate
+  gpu::Buffer* sites = nullptr;         // one SiteCounts, of the largest radius, where pixels share estimates
+  gpu::Buffer* squares = nullptr;       // with a tolerance, vec2 per tile: sum of its squares, and receivers
+  // with wanted.completed, vec2 per tile: what completed surfaces took of the visibility, and what all did
+  gpu::Buffer* completion = nullptr;
+  // with wanted.completed, a plane of the estimate's size: see Estimate. It stays on the device: whoever reads it calls
+  // download()
+  gpu::Buffer* completed = nullptr;
+  gpu::Buffer* ao = nullptr;           // a plane: visibility in [0, 1]; of several radii the mean
+  gpu::Buffer* scales = nullptr;       // a plane for each radius, from the smallest on
+  gpu::Buffer* normal = nullptr;       // planes x, y, z; 0 for sky
+  gpu::Buffer* bent_normal = nullptr;  // planes x, y, z; 0 for sky
+  gpu::Buffer* depth = nullptr;        // a plane: planar, scene units; kSkyDepth for sky
+  // for each surface that is kept behind the first, nearer first, a plane of planar depth, kSkyDepth for none; and a
+  // plane of 1 where it closes the solid of the one before it, else 0
+  gpu::Buffer* hidden = nullptr;
+  gpu::Buffer* confidence = nullptr;          // a plane, in [0, 1]
+  gpu::Buffer* error = nullptr;               // a plane: with a tolerance, the estimated error of the visibility
+  gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
+  gpu::Buffer* color_ao = nullptr;            // planes r, g, b: the visibility with multi-bounce
+  gpu::Buffer* composite = nullptr;           // the beauty's planes
+  gpu::Buffer* count = nullptr;    // a plane and more: of how many frames' estimates it is the mean; null: its own
+  std::optional<OwnEstimate> own;  // with wanted.only_own: then nothing else is made of it
+  std::vector<DebugPlane> debug;
+};
+
+/// What an AOV is made from; each needs what stands before it, too.
+enum class AovSource { geometry, visibility, open_directions };
+
+/// A row of the table.
+struct AovRow {
+  const char* name;                    // as --aov takes it
+  const char* channels;                // in the file, with commas; one for each plane, or all from the only plane
+  gpu::Buffer* FrameOutputs::*planes;  // where the chain leaves them
+  AovSource source;
+  bool is_float = false;  // whatever --type says: half would lose what it is for
+};
+
+inline constexpr std::array kAovs{
+    AovRow{"ao", "Y", &FrameOutputs::ao, AovSource::visibility},
+    AovRow{"ao-scales", "scale1.Y", &FrameOutputs::scales, AovSource::visibility},
+    AovRow{"normal", "normal.X,normal.Y,normal.Z", &FrameOutputs::normal, AovSource::geometry},
+    AovRow{"bent-normal", "bent.X,bent.Y,bent.Z", &FrameOutputs::bent_normal, AovSource::open_directions},
+    AovRow{"depth", "Z", &FrameOutputs::depth, AovSource::geometry, true},
+    AovRow{"hidden", "hidden1.Z,hidden1.back", &FrameOutputs::hidden, AovSource::geometry, true},
+    AovRow{"confidence", "confidence.Y", &FrameOutputs::confidence, AovSource::visibility},
+    AovRow{"error", "error.Y", &FrameOutputs::error, AovSource::visibility},
+    AovRow{"specular-occlusion", "specular.Y", &FrameOutputs::specular_occlusion, AovSource::open_directions},
+};
+
+}  // namespace alcove

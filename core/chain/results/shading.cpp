@@ -1,0 +1,121 @@
+// Host side of the kernels that make something of the visibility.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/results/shading.h"
+
+#include <algorithm>
+
+#include "core/chain/base/pass_common.h"
+#include "kernels/results/shading.h"
+
+namespace alcove {
+
+Shaping shaping_of(const EstimatorSettings& settings) {
+  return {settings.intensity, settings.power, settings.fade_start.value_or(0), settings.fade_end};
+}
+
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
+                   const gpu::Buffer* material_ao, const Matte& matte, const std::string& prefix) {
+  gpu::Buffer& shaped = gpu.buffer(prefix + "shaped", planes.bytes());
+  ShapeParams params{};
+  params.size = gbuffer.view.size;
+  params.intensity = float(shaping.intensity);
+  params.power = float(shaping.power);
+  params.fade_start = float(shaping.fade_start);
+  params.fade_end = float(shaping.fade_end.value_or(0));
+  params.outside = float(matte.outside);
+  params.planes = planes_in(planes, gbuffer.view);
+  const uint mode = (shaping.intensity != 1 ? kShapeByIntensity : 0) | (shaping.power != 1 ? kShapeByPower : 0) |
+                    (shaping.fade_end ? kShapeByFade : 0) | (material_ao ? kShapeByMaterial : 0) |
+                    (matte.plane ? kShapeByMatte : 0) | (material_ao && prefix.empty() ? kShapeCountsRepaired : 0);
+  gpu.dispatch("shape", params,
+               {{"Ao", planes},
+                {"Shaped", shaped},
+                {"Depth", gbuffer.depth},
+                {"Material", material_ao},
+                {"Matte", matte.plane},
+                {"Counts", gbuffer.counts}},
+               extent_of(gbuffer.view), {mode});
+  return shaped;
+}
+
+Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
+                 const gpu::Buffer* material_ao, const Matte& matte) {
+  const bool changes = shaping.intensity != 1 || shaping.power != 1 || shaping.fade_end || material_ao || matte.plane;
+  if (!changes) return visibility;
+  Visibility result = visibility;
+  result.ao = &shape(gpu, gbuffer, *visibility.ao, shaping, material_ao, matte);
+  if (visibility.scales)
+    result.scales = &shape(gpu, gbuffer, *visibility.scales, shaping, material_ao, matte, kScalesPrefix);
+  return result;
+}
+
+gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bent) {
+  if (!bent) return *gbuffer.normal;
+  gpu::Buffer& result = gpu.buffer("bent normal", plane_bytes(gbuffer.view));
+  gpu.dispatch("bent_normal", BentNormalParams{gbuffer.view.size},
+               {{"Normal", gbuffer.normal}, {"Bent", bent}, {"Result", result}}, extent_of(gbuffer.view));
+  return result;
+}
+
+gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,
+                        const Matrix3& aov_from_view) {
+  gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view));
+  const DirectionsParams params{gbuffer.view.size, to_vec3(aov_from_view[0]), to_vec3(aov_from_view[1]),
+                                to_vec3(aov_from_view[2])};
+  gpu.dispatch("directions", params, {{"Depth", gbuffer.depth}, {"Packed", packed}, {"Planes", planes}},
+               extent_of(gbuffer.view));
+  return planes;
+}
+
+gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& open,
+                                const gpu::Buffer& ao, double roughness) {
+  gpu::Buffer& result = gpu.buffer("specular occlusion", plane_bytes(gbuffer.view));
+  gpu.dispatch("specular_occlusion", SpecularOcclusionParams{gbuffer.view, float(roughness)},
+               {{"Depth", gbuffer.depth}, {"Normal", gbuffer.normal}, {"Bent", open}, {"Ao", ao}, {"Result", result}},
+               extent_of(gbuffer.view));
+  return result;
+}
+
+gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame) {
+  const gpu::Buffer* albedo = frame[RawPlane::albedo];
+  gpu::Buffer& result = gpu.buffer("color ao", 3 * plane_bytes(gbuffer.view));
+  gpu.dispatch("multi_bounce", MultiBounceParams{gbuffer.view.size, albedo ? 1u : 0u, float(frame.albedo_value)},
+               {{"Ao", ao}, {"Albedo", albedo}, {"Result", result}}, extent_of(gbuffer.view));
+  return result;
+}
+
+gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame,
+                       const CompositeLook& look) {
+  const gpu::Buffer& beauty = *frame[RawPlane::beauty];
+  const gpu::Buffer* light = frame[RawPlane::indirect];
+  const gpu::Buffer* color = frame[RawPlane::diffuse_color];
+  gpu::Buffer& result = gpu.buffer("composite", beauty.bytes());
+  gpu::Buffer& lights = gpu.buffer(
+      "ambient lights", std::max<std::size_t>(1, frame.ambient.size()) * sizeof(AmbientLight), gpu::Use::upload);
+  std::ranges::transform(frame.ambient, lights.as<AmbientLight>().begin(), [](const AmbientReading& reading) {
+    return AmbientLight{float(reading.weight), reading.color};
+  });
+  gpu.upload(lights);
+  CompositeParams params{};
+  params.view = frame.view;
+  params.has_alpha = planes_in(beauty, frame.view) == 4 ? 1 : 0;
+  params.lights = light ? uint(frame.ambient.size()) : 0;
+  params.has_color = planes_in(ao, frame.view) == 3 ? 1 : 0;
+  params.fog_density = float(look.fog_density);
+  params.gain = float(look.gain);
+  params.mix = float(look.mix);
+  params.tint = to_vec3(look.tint);
+  gpu.dispatch("composite", params,
+               {{"Ao", ao},
+                {"Beauty", beauty},
+                {"Light", light},
+                {"Color", color},
+                {"Lights", lights},
+                {"Result", result},
+                {"Counts", gbuffer.counts},
+                {"Depth", gbuffer.depth}},
+               extent_of(frame.view));
+  return result;
+}
+
+}  // namespace alcove

@@ -1,0 +1,50 @@
+// The passes that make something of the visibility: shaping, colour, reflections, composites, planes for files.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/base/settings.h"
+#include "core/chain/filters/filters.h"
+
+namespace alcove {
+
+/// How the visibility is bent after it has been estimated.
+struct Shaping {
+  double intensity = 1;
+  double power = 1;
+  double fade_start = 0;           // scene units of planar depth
+  std::optional<double> fade_end;  // none: there is no fade
+};
+Shaping shaping_of(const EstimatorSettings& settings);
+
+/// Shapes the AO and the planes of the radii; the input where nothing asks for any shaping. material_ao may be
+/// null.
+Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
+                 const gpu::Buffer* material_ao, const Matte& matte = {});
+/// The same for one buffer of planes. What it repairs is counted with the first one of a frame, whose prefix is empty.
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
+                   const gpu::Buffer* material_ao, const Matte& matte = {}, const std::string& prefix = "");
+
+/// The mean open directions as unit vectors, packed as the normals are. `bent` may be null, of an estimator that finds
+/// none: then they are the normals.
+gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bent);
+
+/// Packed directions as planes x, y, z of that name, for the host. aov_from_view rotates them.
+gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,
+                        const Matrix3& aov_from_view);
+
+/// `open`: the mean open directions, packed as the normals are. roughness: that of the surface, 0 to 1.
+gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& open,
+                                const gpu::Buffer& ao, double roughness);
+
+/// Visibility for each of red, green and blue.
+gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
+
+/// The beauty's planes, for the host. `ao` has one plane, or three with multi-bounce. What it dims is as
+/// frame.ambient says; the whole beauty without.
+gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame,
+                       const CompositeLook& look);
+
+}  // namespace alcove

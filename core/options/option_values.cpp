@@ -1,0 +1,295 @@
+// Values are tried together, by which the table tells what has no effect; then settings that contradict each other are
+// found, and the option that mends each is named.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <algorithm>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/estimator_facts.h"
+#include "core/base/flat_toml.h"
+#include "core/base/text.h"
+#include "core/chain/results/aov.h"
+#include "core/chain/results/debug_view.h"
+#include "core/frame/raw_plane.h"
+#include "core/options/options.h"
+
+namespace alcove {
+
+// Keys of presets.
+
+namespace {
+
+/// The settings in the text of a preset. The rules of presets/input are known to the program: such a preset is its
+/// --source and no more.
+std::vector<FlatEntry> settings_in(const std::string& text) {
+  auto entries = parse_flat_toml(text);
+  if (std::ranges::find(entries, "detect", &FlatEntry::key) != entries.end())
+    std::erase_if(entries, [](const auto& entry) { return entry.key != "source"; });
+  return entries;
+}
+
+/// The row that an entry is for.
+const SettingRow& row_of(const FlatEntry& entry) {
+  const SettingRow& row = row_of_key(entry.key);
+  if (entry.values.empty()) fail(ErrorKind::usage, "{}: the list is empty", entry.key);
+  if (entry.values.size() > 1 && !row.repeats)
+    fail(ErrorKind::usage, "{} takes one value, and the list has {}", entry.key, entry.values.size());
+  return row;
+}
+
+}  // namespace
+
+std::vector<OptionValue> preset_values(const std::string& preset, const std::string& text) {
+  std::vector<OptionValue> values;
+  try {
+    for (const auto& entry : settings_in(text)) values.push_back({&row_of(entry), entry.values, preset});
+  } catch (const Error& error) {
+    fail(error.kind(), "{} (--preset): {}", preset, error.what());
+  }
+  return values;
+}
+
+// Values from several places.
+
+namespace {
+
+using Values = std::vector<OptionValue>;
+
+/// Reads a value, and names its preset in the sentence on a text that is none.
+void read_value(Settings& settings, const OptionValue& value) {
+  try {
+    value.row->read(settings, value.words);
+  } catch (const Error& error) {
+    if (value.is_typed()) throw;
+    fail(error.kind(), "{} (--preset): {}", value.preset, error.what());
+  }
+}
+
+/// The settings with the values that count.
+Settings with_some(Settings settings, const Values& values, const std::vector<bool>& counts) {
+  for (std::size_t i = 0; i < values.size(); i++)
+    if (counts[i]) read_value(settings, values[i]);
+  return settings;
+}
+
+/// The settings of a run that writes all outputs.
+Settings with_all_outputs(Settings settings) {
+  settings.output.composite = settings.output.preview = "all";
+  settings.output.multi_bounce = true;
+  // But for confidence, which would give an effect to what no estimate of the AO takes.
+  for (const auto& name : aov_names())
+    if (name != "confidence") settings.output.aovs += "," + std::string(name);
+  return settings;
+}
+
+/// Tells which values have no effect beside others.
+struct Trial {
+  const Settings& initial;
+  const Values& values;
+  Reader reader;
+
+  /// The objection to each value that counts, "" where there is none, beside the others that count.
+  Words objections(const std::vector<bool>& counts) const {
+    Settings settings = with_some(initial, values, counts);
+    if (reader == Reader::inspect) settings = with_all_outputs(settings);
+    Words objections(values.size());
+    for (std::size_t i = 0; i < values.size(); i++)
+      if (counts[i]) objections[i] = objection(*values[i].row, settings);
+    return objections;
+  }
+
+  /// The same beside no other value than these two.
+  Words objections(std::size_t i, std::size_t j) const {
+    std::vector<bool> counts(values.size());
+    counts[i] = counts[j] = true;
+    return objections(counts);
+  }
+};
+
+/// Fails where two values of a preset have an effect each, but none beside the other.
+void refuse_contradictions(const Trial& trial, const std::string& preset) {
+  std::vector<bool> counts;
+  for (const auto& value : trial.values) counts.push_back(value.preset == preset);
+  const Words objections = trial.objections(counts);
+  for (std::size_t j = 0; j < objections.size(); j++)
+    for (std::size_t i = 0; i < j; i++) {
+      if (objections[i].empty() || objections[j].empty()) continue;
+      const Words of_both = trial.objections(i, j);
+      const bool have_none = !of_both[i].empty() && !of_both[j].empty();
+      if (have_none && trial.objections(i, i)[i].empty() && trial.objections(j, j)[j].empty())
+        fail(ErrorKind::usage, "{} (--preset): {}", preset, of_both[i]);
+    }
+}
+
+/// Leaves out values of presets without effect, one after the other. A value that is left out may be the one beside
+/// which another had no effect, so that those get a second chance. Gives which values count.
+std::vector<bool> with_effects(const Trial& trial) {
+  const std::size_t size = trial.values.size();
+  std::vector<bool> counts(size, true);
+  while (true) {
+    const Words objections = trial.objections(counts);
+    std::size_t idle = 0;
+    while (idle < size && (trial.values[idle].is_typed() || objections[idle].empty())) idle++;
+    if (idle == size) break;
+    counts[idle] = false;
+  }
+  const auto objection_count = [&] { return size - std::size_t(std::ranges::count(trial.objections(counts), "")); };
+  for (std::size_t i = 0; i < size; i++) {
+    if (counts[i]) continue;
+    const std::size_t before = objection_count();
+    counts[i] = true;
+    counts[i] = objection_count() <= before;
+  }
+  return counts;
+}
+
+}  // namespace
+
+Settings with_values(const Settings& initial, std::vector<OptionValue> values, Reader reader) {
+  const Trial trial{initial, values, reader};
+  std::set<std::string> presets;
+  for (const auto& value : values)
+    if (!value.is_typed()) presets.insert(value.preset);
+  for (const auto& preset : presets) refuse_contradictions(trial, preset);
+  const std::vector<bool> counts = with_effects(trial);
+  const Words objections = trial.objections(counts);
+  std::set<const SettingRow*> typed;
+  for (std::size_t i = 0; i < values.size(); i++) {
+    if (!values[i].is_typed()) continue;
+    if (!objections[i].empty()) fail(ErrorKind::usage, "{}", objections[i]);
+    typed.insert(values[i].row);
+  }
+  Settings settings = with_some(initial, values, counts);
+  settings.input.from_presets.clear();
+  for (std::size_t i = 0; i < values.size(); i++)
+    if (counts[i] && !typed.contains(values[i].row)) settings.input.from_presets.push_back(values[i].row->long_name());
+  return settings;
+}
+
+// Contradictions.
+
+namespace {
+
+/// Fails with ErrorKind::usage where a setting that is not the usual one has no effect.
+void require_effects(const Settings& settings) {
+  for (const auto& row : option_table())
+    if (row.is_key() && row.is_given(settings))
+      if (const std::string why = objection(row, settings); !why.empty()) fail(ErrorKind::usage, "{}", why);
+}
+
+// Each scale costs a search and a plane of its own.
+constexpr std::size_t kMostRadii = 8;
+
+/// Only an estimate by its error knows that error.
+void check_tolerance(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (e.tolerance == 0 && wants(settings.output, &FrameOutputs::error))
+    fail(ErrorKind::usage, "--aov error: only an estimate with a --tolerance knows its error");
+}
+
+/// An exact search leaves out no tiles.
+void check_search(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (!searches_exactly(e)) return;
+  for (const auto* view : debug_views_of(settings.output))
+    if (view->source == DebugSource::tiles)
+      fail(ErrorKind::usage, "--set debug=tiles: an exact search leaves out none; --search steps does");
+}
+
+/// A view of what is completed needs something that is.
+void check_completion(const Settings& settings) {
+  const auto& e = settings.estimator;
+  const auto views = debug_views_of(settings.output);
+  const bool is_shown = std::ranges::find(views, DebugSource::completed, &DebugView::source) != views.end();
+  if (!is_shown || completes_anywhere(e)) return;
+  if (e.complete == Completion::none)
+    fail(ErrorKind::usage,
+         "--set debug=completed: with --set complete=none nothing is; border and all complete surfaces");
+  fail(ErrorKind::usage, "--set debug=completed: --estimator {} completes no surfaces; gtao and bitmask do",
+       e.estimator == Estimator::hbao ? "hbao" : "crytek");
+}
+
+/// Whether a view shows how one frame is estimated.
+bool is_of_estimate(DebugSource source) {
+  return source == DebugSource::tiles || source == DebugSource::completed || source == DebugSource::sites ||
+         source == DebugSource::raw_ao || source == DebugSource::denoised_ao;
+}
+
+/// A mean of many frames has no tiles, sites or guesses of one.
+void check_accumulation(const Settings& settings) {
+  if (settings.input.accumulate == 0) {
+    for (const auto* view : debug_views_of(settings.output))
+      if (view->source == DebugSource::count)
+        fail(ErrorKind::usage, "--set debug=count: a frame is its own estimate; --accumulate takes those of others");
+    return;
+  }
+  for (const auto* view : debug_views_of(settings.output))
+    if (is_of_estimate(view->source))
+      fail(ErrorKind::usage,
+           "--set debug={}: it shows the estimate of one frame, and with --accumulate the AO is the mean of many: "
+           "leave one "
+           "of them out",
+           view->name);
+}
+
+/// What shows hidden surfaces needs some that are kept.
+void check_hidden(const Settings& settings) {
+  const auto views = debug_views_of(settings.output);
+  const bool is_drawn = std::ranges::find(views, DebugSource::hidden, &DebugView::source) != views.end();
+  const char* const option = wants(settings.output, &FrameOutputs::hidden) ? "--aov "
+                             : is_drawn                                    ? "--set debug="
+                                                                           : nullptr;
+  if (!option) return;
+  if (settings.estimator.hidden == 0) fail(ErrorKind::usage, "{}hidden: with --set hidden=0 nothing is kept", option);
+  if (!has_hidden_sources(settings.input))
+    fail(ErrorKind::usage, "{}hidden: nothing says what is hidden: --behind, --deep, --around and --set other-views do",
+         option);
+}
+
+/// Several radii make sense once each; bent normals need an estimator that finds open directions.
+void check_scales(const Settings& settings) {
+  const auto& e = settings.estimator;
+  if (wants(settings.output, &FrameOutputs::bent_normal) && !searches_slices(e))
+    fail(ErrorKind::usage, "--aov bent-normal: --estimator {} finds no open directions; gtao and bitmask do",
+         e.estimator == Estimator::hbao ? "hbao" : "crytek");
+  if (e.further_radii.empty()) return;
+  const auto radii = radii_of(e);
+  if (radii.size() > kMostRadii)
+    fail(ErrorKind::usage, "--radius: there are {} of them; a run takes at most {}", radii.size(), kMostRadii);
+  if (const auto twice = std::ranges::adjacent_find(radii); twice != radii.end())
+    fail(ErrorKind::usage, "--radius {} is there twice: give each scale once", *twice);
+}
+
+/// Numbers that have an order, or a range of their own beside others.
+void check_numbers(const EstimatorSettings& e) {
+  if (e.fade_start && e.fade_end && *e.fade_end <= *e.fade_start)
+    fail(ErrorKind::usage, "--set fade-end={} is not beyond --set fade-start={}", *e.fade_end, *e.fade_start);
+  if (e.estimator != Estimator::crytek && e.bias >= 1)
+    fail(ErrorKind::usage, "--set bias={}: of every estimator but crytek it is the sine of an elevation, below 1",
+         e.bias);
+  if (e.falloff_end <= e.falloff_start)
+    fail(ErrorKind::usage, "--set falloff-end={} is not above --set falloff-start={}", e.falloff_end, e.falloff_start);
+}
+
+}  // namespace
+
+void check_settings(const Settings& settings) {
+  if (settings.output.output.empty()) fail(ErrorKind::usage, "no output: name the AO file with -o FILE.exr");
+  if (main_input(settings.input).empty())
+    fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
+  if (!settings.estimator.radius && !settings.estimator.radius_auto && needs_ao(settings.output))
+    fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+  require_effects(settings);
+  check_tolerance(settings);
+  check_search(settings);
+  check_completion(settings);
+  check_accumulation(settings);
+  check_hidden(settings);
+  check_scales(settings);
+  check_numbers(settings.estimator);
+  if (settings.frames.chunk > settings.frames.chunks)
+    fail(ErrorKind::usage, "--chunk {}/{}: there is no such chunk", settings.frames.chunk, settings.frames.chunks);
+}
+
+}  // namespace alcove

@@ -1,0 +1,93 @@
+// Parameters of the kernels that core/chain/estimate/estimate.cpp runs.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_ESTIMATE_H
+#define ALCOVE_ESTIMATE_H
+#include "kernels/hidden/hidden.h"
+ALCOVE_BEGIN
+
+struct BoundsParams {
+  ivec2 size;   // px, of the image
+  uint hidden;  // planes of hidden surfaces
+};
+
+ALCOVE_CONSTANT uint kClassifySkips = 1;  // else every tile is listed, and hidden surfaces count everywhere
+ALCOVE_CONSTANT uint kClassifyWithBent = 2;
+ALCOVE_CONSTANT uint kClassifyWithCompleted = 4;
+// with kClassifySkips: reads the changes, and leaves tiles as they are within whose reach nothing has changed
+ALCOVE_CONSTANT uint kClassifyReuses = 8;
+ALCOVE_CONSTANT uint kClassifySelects = 16;  // with kClassifySkips: other tiles count as sky
+ALCOVE_CONSTANT uint kClassifyLayered = 32;  // surfaces may be hidden: listed tiles say where these may count
+
+// px of the frame beyond the reach: their depths may decide a normal that was reconstructed, or which surface a pixel
+// of a smaller image shows; of hidden surfaces also which ends with the one before it, and closes its solid
+ALCOVE_CONSTANT int kChangeMargin = 8;
+ALCOVE_CONSTANT int kHiddenChangeMargin = kChangeMargin + kEndsReach + kEndsBeyond;
+
+ALCOVE_CONSTANT int kChangeBlock = 32;  // px of the frame a side of the blocks whose changes are known
+
+struct ClassifyParams {
+  View view;
+  float radius;      // scene units: the farthest at which anything blocks
+  uint plane;        // of the AO
+  ivec2 frame_size;  // px; the frame is the image, or `factor` times as large
+  ivec2 overhang;    // px of the first pixel of the image that are outside of the frame
+  int factor;
+  int margin;  // px of the frame beyond the reach whose depths may decide what is within it
+  // px of the image: from and up to where anybody needs estimates; with kClassifySkips tiles outside count as sky
+  ivec2 needed_from, needed_to;
+};
+
+ALCOVE_CONSTANT uint kWithBent = 4;          // a bit beside kFalloff*: bent normals too
+ALCOVE_CONSTANT uint kWithCompleted = 8;     // another one: what completed surfaces take, too
+ALCOVE_CONSTANT uint kThicknessWidth = 0;    // as deep as wide
+ALCOVE_CONSTANT uint kThicknessLength = 1;   // as HorizonParams says
+ALCOVE_CONSTANT uint kThicknessEndless = 2;  // solid as far as the sphere of the radius
+ALCOVE_CONSTANT uint kCompletesBorder = 4;   // a bit beside them: surfaces go on beyond the image's border
+ALCOVE_CONSTANT uint kCompletesHidden = 8;   // another one: they go on behind what is nearer, if not kThicknessEndless
+ALCOVE_CONSTANT uint kInSectors = 16;        // another one: all that blocks is counted in sectors, no horizon is exact
+ALCOVE_CONSTANT uint kHiddenSurface = 32;
+
+struct HorizonParams {
+  View view;
+  float radius;          // scene units
+  float falloff_start;   // scene units, below the radius
+  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
+  vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
+  float bias;            // sine of the elevation above the tangent plane below which nothing blocks
+  float thickness;       // scene units, infinite allowed; 0: as deep as wide
+  uint plane;            // of the output, which has one plane per radius
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
+};
+
+struct HbaoParams {
+  View view;
+  float radius;         // scene units
+  float falloff_start;  // scene units, below the radius
+  float bias;           // sine of the elevation above the tangent plane below which nothing blocks
+  // 1: the horizon's elevation above the surface; 0: of horizon and surface above the plane across the view ray
+  uint from_surface;
+  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
+  vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
+  uint plane;            // of the output, which has one plane per radius
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
+};
+
+ALCOVE_CONSTANT uint kRangeNone = 0;   // every hit counts fully
+ALCOVE_CONSTANT uint kRangeRatio = 1;  // smoothstep(0, 1, radius / dz): fully within the radius, less beyond
+// 1 - smoothstep(0, radius, dz): less from the receiver on, nothing beyond the radius
+ALCOVE_CONSTANT uint kRangeSmoothstep = 2;
+
+struct CrytekParams {
+  View view;
+  float radius;          // scene units
+  float bias;            // scene units: by how much a hit must be nearer to the eye than the sample
+  uint uniform_volume;   // 1: samples even in volume; 0: clustered about the receiver
+  uint range_check;      // one of kRange*
+  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
+  vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
+  uint plane;            // of the output, which has one plane per radius
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
+};
+
+ALCOVE_END
+#endif

@@ -1,0 +1,479 @@
+// Ambient occlusion from every pixel along a slice, cosine weighted, with occluders of finite thickness: one slice of
+// every pixel.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planar depth, view normals, the profiles of the lines of one direction.
+// Out: the sums of blocked and of whole arcs; after the last direction visibility, 1 = open. The same of the mean open
+// direction (see bent.glsl), where it is asked for.
+//
+// What horizon.comp samples, this kernel searches without gaps. A receiver walks from vertex to vertex of the profile
+// of its line (profile.comp), whose strokes hold all pixels in between, until the sphere of the radius is left behind.
+// - Slices are even on the image and shared by all pixels. Each weighs 1 / (ray_length of the line's foot * cosine from
+//   it), the Jacobian to azimuth about the view ray.
+// - The receiver is moved onto its line's plane along its tangent plane, by half a pixel at most: a flat surface stays
+//   flat.
+// - Every stroke is cut to what the sphere holds of it, and blocks from its front to its back, which lies as far along
+//   the eye's ray as its run is wide ("width as thickness"). What goes on from the receiver is its own surface: it
+//   blocks all below its horizon.
+// - Where hidden surfaces are known, the line has a profile in each of several slots. The receiver's own surface goes
+//   on in the slot that it is in; all others add what blocks to the same union. A run there that passes behind the
+//   receiver is cut at the eye's ray. Where a vertex knows how thick its surface's solid is, that counts.
+// - What is blocked is a union of intervals. It is exact for what joins the horizon; all others are counted in 24
+//   sectors (sectors.glsl).
+// - The result is 1 - (sum of blocked arcs) / (sum of whole arcs).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "kernels/estimate/exact_search.h"
+#include "kernels/base/view.glsl"
+#include "kernels/base/normal.glsl"
+#include "kernels/base/arcs.glsl"
+#include "kernels/base/noise.glsl"
+#include "kernels/estimate/bent.glsl"
+#include "kernels/base/tiles.glsl"
+#include "kernels/base/clearance.glsl"
+#include "kernels/estimate/slice.glsl"
+#include "kernels/estimate/sectors.glsl"
+#include "kernels/estimate/lines.glsl"
+#include "kernels/estimate/strokes.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+// 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first, is_last
+layout(constant_id = 0) const uint kListed = 0;
+// 1: surfaces go on as complete has found; 2: and what they block is told apart
+layout(constant_id = 1) const uint kCompletes = 0;
+layout(constant_id = 2) const uint kBentId = 0;  // 1: bent normals too
+layout(constant_id = 3) const uint kSlots = 1;   // of the profile, 1 to 1 + kMostHidden
+// 1: behind the slots' planes is one of the first surfaces, which go on unseen where no slot goes on
+layout(constant_id = 4) const uint kUnseen = 0;
+layout(scalar, push_constant) uniform Push { ExactParams params; };
+readonly buffer Depth { float depth[]; };       // one float per pixel, from prepare
+readonly buffer Normal { uint normal[]; };      // one uint per pixel, from prepare
+readonly buffer Vertex { float vertex[]; };     // from profile
+readonly buffer Mark { uint mark[]; };          // from profile
+readonly buffer Neighbor { uint neighbor[]; };  // from profile
+buffer Whole { float whole_arcs[]; };           // one float per pixel, sum of whole arcs
+// one float per pixel, sum of blocked arcs; after the last slice visibility in [0, 1], 1 = open
+buffer Ao { float ao[]; };
+readonly buffer List { uint list[]; };          // one uint per tile, from converge; only with kListed
+readonly buffer Counts { TileCounts counts; };  // only with kListed
+readonly buffer GoesOn { uint goes_on[]; };     // from complete; only with kCompletes
+readonly buffer Behind { uint behind[]; };      // from complete; only with kCompletes
+// one float per pixel, visibility that completed surfaces took; only where kCompletes is 2
+buffer Completed { float completed[]; };
+// planes x, y, z of the sum of the bent_to() of what is blocked, in view space; after the last slice the mean open
+// direction b as 0.5 + 0.5 b. Only with kBentId.
+buffer Bent { float bent[]; };
+readonly buffer Own { uint own[]; };  // from profile; only with several kSlots
+
+const bool kBent = kBentId != 0u;
+
+const uint kCompletesNothing = 0;
+const uint kCompletesApart = 2;
+
+/// The receiver in the plane of its line, where the profile has its vertices too.
+struct Point {
+  vec2 place, eye;     // eye: unit, towards it
+  vec2 normal;         // the normal's projection; its length is the slice's weight
+  float eye_distance;  // orthographic: infinite
+};
+
+/// One side of a slice.
+struct Search {
+  vec2 across;  // unit, to that side of the eye's ray
+  // unit normal of the eye's ray that touches the sphere of the radius, in (across, toward): what is further along it
+  // is beyond the sphere
+  vec2 leaving;
+  vec2 normal;                     // the normal's projection, in (across, toward)
+  float lowest;                    // slope_of() where blocking begins
+  float least_height, least_rise;  // of what blocks: see clearance.glsl
+  int from;                        // the receiver's step
+  int step;                        // of columns, to that side
+  uint begins, last;               // the flags of vertices to that side
+  float shift;                     // of the sectors' boundaries, in [0, 1): see sectors.glsl
+  float unit;                      // scene units: a power of two near the receiver's depth
+};
+
+/// What is found to block on a side.
+struct Blocked {
+  float own;     // slope_of() up to which the receiver's own surface blocks
+  uint sectors;  // that other runs block
+};
+
+/// The unit vector in the plane of a line that is across the line, away from the eye.
+vec3 away_of(View view, LinePlane plane) {
+  return view.orthographic == 0 ? vec3(plane.foot, -1) / plane.ray_length : vec3(0, 0, -1);
+}
+
+Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
+  const bool perspective = view.orthographic == 0;
+  const vec3 along = vec3(plane.along, 0);
+  const vec3 away = away_of(view, plane);
+  const vec3 across = cross(along, away);
+  const vec3 position = perspective ? z * vec3(tangent, -1) : vec3(tangent - plane.foot, -z);
+  const vec2 in_plane = vec2(dot(normal, along), dot(normal, away));
+  const float beside =
+      dot(position, across) * dot(normal, across) / max(dot(in_plane, in_plane), kLeastWeight * kLeastWeight);
+  Point point;
+  point.normal = in_plane;
+  point.place = vec2(dot(position, along), dot(position, away)) + beside * in_plane;
+  point.eye_distance = perspective ? length(point.place) : kNone;
+  point.eye = perspective ? -point.place / point.eye_distance : vec2(0, -1);
+  return point;
+}
+
+/// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
+/// least: the height above the tangent plane that it must have somewhere. goes_on: from `bend` on it is not seen, or up
+/// to there, and need not be straight with what is; both hang together there, so they block one interval.
+void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, bool goes_on, vec2 bend, float eye_distance,
+           float least, float radius_sq) {
+  const float near_slope = slope_of(stroke.near);
+  const float far_slope = slope_of(stroke.far);
+  float high = max(near_slope, far_slope);
+  float low = min(near_slope, far_slope);
+  float height = max(dot(stroke.near, search.normal), dot(stroke.far, search.normal));
+  const float thickness = kSlots > 1u ? walk.thickness + stroke.parts.y * walk.change : walk.thickness;
+  float back = back_of(stroke.far, eye_distance, thickness, radius_sq);
+  IF_ANY (kSlots > 1u && walk.change != 0.0)
+    back = min(back, back_of(stroke.near, eye_distance, walk.thickness + stroke.parts.x * walk.change, radius_sq));
+  if (kCompletes != kCompletesNothing) {
+    const bool bends = both(goes_on, dot(bend, bend) < radius_sq);
+    const float slope = slope_of(bend), back_of_bend = back_of(bend, eye_distance, thickness, radius_sq);
+    high = bends ? max(high, slope) : high;
+    low = bends ? min(low, slope) : low;
+    height = bends ? max(height, dot(bend, search.normal)) : height;
+    back = bends ? min(back, back_of_bend) : back;
+  }
+  const bool rises = both(min(stroke.near.x, stroke.far.x) > 0.0, high > search.lowest);
+  const float top = both(stroke.is_within, both(rises, height > least)) ? high : -1.0;
+  const float bottom = walk.is_own ? -1.0 : min(low, back);
+  const bool onto_own = bottom <= blocked.own;
+  blocked.sectors |=
+      onto_own || top < bottom ? 0u : sectors_below(top, search.shift) & ~sectors_below(bottom, search.shift);
+  blocked.own = onto_own ? max(blocked.own, top) : blocked.own;
+}
+
+/// What is seen of a vertex, and where its surface goes on to unseen.
+struct Corner {
+  vec2 place, unseen;  // in (across, toward)
+};
+
+Corner corner_at(View view, LinePlane plane, Point point, Search search, int at, int step, float z, bool toward) {
+  Corner corner;
+  const vec2 offset = place_at(view, plane, float(step), z) - point.place;
+  corner.place = vec2(dot(offset, search.across), dot(offset, point.eye));
+  corner.unseen = corner.place;
+  if (kCompletes != kCompletesNothing) {
+    const uint further = goes_on[at];
+    const float until = float(step) + float(toward ? -search.step : search.step) * steps_of_goes_on(further);
+    const vec2 to_unseen = place_at(view, plane, until, z * depths_of_goes_on(further)) - point.place;
+    corner.unseen = vec2(dot(to_unseen, search.across), dot(to_unseen, point.eye));
+  }
+  return corner;
+}
+
+/// The column of the nearest vertex beyond the end of a walk at `at` whose surface goes on towards the receiver behind
+/// that end.
+uint vertex_beyond(View view, Search search, int at) {
+  const uint columns = behind[kSlots > 1u ? at - int(kSlots) * view.size.x * view.size.y : at];
+  return search.step > 0 ? columns >> 16 : columns & kNoVertex;
+}
+
+/// The blocked part of a side's arc integral.
+float arc_of(Side side, Search search, Blocked blocked) {
+  return whole_arc(side) - arc_to(side, place_at(blocked.own)) +
+         arc_of(side, blocked.sectors & ~sectors_below(blocked.own, search.shift));
+}
+
+/// bent_to() over what is blocked. Where the receiver's own surface blocks nothing, it adds exactly 0.
+vec2 bent_of(Side side, Search search, Blocked blocked) {
+  vec2 own = vec2(0);
+  if (blocked.own > slope_of(side.ahead)) {
+    const vec2 top = normalize(place_at(blocked.own));
+    own = bent_to(-side.sin_gamma, side.cos_gamma, side.cos_gamma, side.sin_gamma) -
+          bent_to(top.y, top.x, side.cos_gamma, side.sin_gamma);
+  }
+  return own + bent_of(side, blocked.sectors & ~sectors_below(blocked.own, search.shift));
+}
+
+/// The blocked part of a side's integrals.
+struct BlockedArcs {
+  float arc;
+  float unseen;  // of the arc: what only completed surfaces block; only where kCompletes is kCompletesApart
+  vec2 bent;     // bent_to(), across the eye's ray and towards it; only with kBent
+};
+
+/// The walks along the profiles of a line: one of each slot, and one for what is unseen.
+const int kWalks = int(kSlots + (kUnseen != 0u ? 1u : 0u));
+
+/// Farther away than any step of a line.
+const int kNever = 0x10000;
+
+/// The next vertices of the walks of a side.
+struct Next {
+  int at[kWalks];    // index
+  int away[kWalks];  // steps from the receiver; kNever: there is none
+  float z[kWalks];
+};
+
+void set_next(inout Next next, int walk, int at, int away, float z) {
+  for (int i = 0; i < kWalks; i++) {
+    const bool is_it = i == walk;
+    next.at[i] = is_it ? at : next.at[i];
+    next.away[i] = is_it ? away : next.away[i];
+    next.z[i] = is_it ? z : next.z[i];
+  }
+}
+
+/// The walk whose vertex is the nearest, on the image and then to the eye: so runs are met in one order whichever slots
+/// they have. That for what is unseen comes last.
+int nearest_walk(Next next) {
+  int best = 0;
+  for (int i = 1; i < kWalks; i++) {
+    const bool ties = next.away[i] == next.away[best] && next.z[i] < next.z[best];
+    best = next.away[i] < next.away[best] || ties ? i : best;
+  }
+  return best;
+}
+
+/// Goes on with a walk at an index; ends it with kNoVertex for its column.
+void go_to(inout Next next, Search search, int walk, int at, bool ends) {
+  int away = kNever;
+  float z = 0.0;
+  IF_ANY (!ends) {
+    away = abs(int(mark[at] >> 16) - search.from);
+    z = abs(vertex[at]);
+  }
+  set_next(next, walk, at, away, z);
+}
+
+/// The column of the first vertex on a side; kNoVertex: none.
+uint first_column(Search search, int index) {
+  const uint columns = neighbor[index];
+  return search.step > 0 ? columns >> 16 : columns & kNoVertex;
+}
+
+/// The thickness at a vertex.
+float thickness_at(uint marked) {
+  const float known = unpack_width(marked);
+  return known > 0.0 ? known : min(params.thickness, kNone);
+}
+
+/// A walk that comes to the vertex at an index from the one before, where there are several. A run that passes behind
+/// the receiver is cut beside the eye's ray.
+void come_to(inout Walk walk, View view, LinePlane plane, Point point, Search search, int at, vec2 place) {
+  const float here = thickness_at(mark[at]);
+  walk.thickness = here;
+  walk.change = 0.0;
+  IF_ANY (!walk.starts && (mark[at] & search.begins) == 0u) {
+    const int before = at - search.step, from_step = int(mark[before] >> 16);
+    const vec2 offset = place_at(view, plane, float(from_step), abs(vertex[before])) - point.place;
+    const vec2 from = vec2(dot(offset, search.across), dot(offset, point.eye));
+    const float least = kBesideReceiver * place.x;
+    const bool is_behind = both((from_step - search.from) * search.step <= 0, from.x < least);
+    const float part = is_behind ? (place.x - least) / (place.x - from.x) : 1.0;
+    const float change = here - thickness_at(mark[before]);
+    walk.last = is_behind ? place + part * (from - place) : from;
+    walk.thickness = is_behind ? here - part * change : thickness_at(mark[before]);
+    walk.change = is_behind ? part * change : change;
+  }
+}
+
+/// Whether a walk ends with this vertex: it is the last, or the sphere is left behind.
+bool ends_at(uint marked, Corner corner, Search search) {
+  return (marked & search.last) != 0u || !(dot(corner.place, search.leaving) < params.radius);
+}
+
+/// `row` is the index of the line's column 0 in each plane of the profile, `slot` that of the receiver's own surface.
+BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Search search, int row, int slot) {
+  const int pixels = view.size.x * view.size.y;
+  const float radius = params.radius;
+  const float radius_sq = radius * radius;
+  const float thickness = params.thickness;
+  Next next;
+  bool goes = false;
+  for (int i = 0; i < kWalks; i++) {
+    const int first = i * pixels + row;
+    const uint column = first_column(search, first + search.from);
+    go_to(next, search, i, first + int(column), column == kNoVertex);
+    goes = goes || column != kNoVertex;
+  }
+  if (!goes) return BlockedArcs(0.0, 0.0, vec2(0));
+  Walk walk = Walk(vec2(0), true, true, thickness, 0.0);
+  bool is_own = true, starts = true;  // the walk along the receiver's own slot: where there are several
+  Blocked all = Blocked(slope_of(side.ahead), 0u);
+  Blocked seen = all;
+  int last = kWalks == 1 || next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
+  for (; goes;) {
+    const int i = kWalks == 1 ? 0 : nearest_walk(next);
+    int at = next.at[0];
+    for (int k = 1; k < kWalks; k++) at = k == i ? next.at[k] : at;
+    const bool is_unseen = kUnseen != 0u && i == kWalks - 1;
+    const uint marked = mark[at];
+    const int to = int(marked >> 16), steps = abs(to - search.from);
+    const float stored = vertex[at], z = kCompletes != kCompletesNothing ? abs(stored) : stored;
+    const float scale = view.orthographic != 0 ? 1.0 : z;
+    const float least = search.least_height + scale * search.least_rise * float(steps);
+    const bool begins = (marked & search.begins) != 0u;
+    // The walk for what is unseen has the same vertex where the run begins or ends there too.
+    const int unseen_at = next.at[kWalks - 1];
+    bool is_twin = kUnseen != 0u && !is_unseen && next.away[kWalks - 1] == steps && next.z[kWalks - 1] == z;
+    is_twin = is_twin && ((mark[is_twin ? unseen_at : at] ^ marked) & (kVertexBegins | kVertexEnds)) == 0u;
+    const bool twin_goes_on = is_twin && vertex[is_twin ? unseen_at : at] < 0.0;
+    const Corner corner = corner_at(view, plane, point, search, twin_goes_on ? unseen_at : at, to, z, begins);
+    if (kWalks == 1) {
+      walk.is_own = begins ? false : walk.is_own;
+      walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
+    } else {
+      is_own = i == slot && begins ? false : is_own;
+      walk.is_own = i == slot && is_own;
+      walk.starts = i == slot && starts;
+      starts = i == slot ? false : starts;
+      come_to(walk, view, plane, point, search, at, corner.place);
+    }
+    Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+    if (kCompletes == kCompletesApart && !is_unseen)
+      block(seen, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), false, corner.place, point.eye_distance,
+            least, radius_sq);
+    // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
+    // beyond the sphere, only the former matters.
+    const bool is_first_beyond = both(walk.starts, dot(corner.place, corner.place) > radius_sq);
+    const bool goes_on = kCompletes != kCompletesNothing && (stored < 0.0 || twin_goes_on) && !is_first_beyond;
+    if (kCompletes != kCompletesNothing) {
+      const Stroke whole = with_unseen(stroke, begins, corner.unseen);
+      stroke.from = goes_on ? whole.from : stroke.from;
+      stroke.to = goes_on ? whole.to : stroke.to;
+    }
+    // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
+    IF_ANY (!is_unseen)
+      block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), goes_on, corner.place,
+            point.eye_distance, least, radius_sq);
+    const bool ends = ends_at(marked, corner, search);
+    if (is_unseen || is_twin) last = unseen_at;
+    if (kWalks == 1) last = at;
+    if (kWalks == 1) {
+      next.at[0] = at + search.step;
+      goes = !ends;
+      walk.last = corner.place;
+      walk.starts = false;
+    } else {
+      go_to(next, search, i, at + search.step, ends);
+      if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));
+      goes = false;
+      for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
+    }
+  }
+  const bool looks_beyond = kCompletes != kCompletesNothing && (kSlots == 1u || kUnseen != 0u) && last >= 0;
+  const uint beyond = looks_beyond ? vertex_beyond(view, search, last) : kNoVertex;
+  IF_ANY (beyond != kNoVertex) {
+    const int at = (kWalks - 1) * pixels + row + int(beyond);
+    const uint marked = mark[at];
+    const int to = int(marked >> 16);
+    const float z = abs(vertex[at]), scale = view.orthographic != 0 ? 1.0 : z;
+    const float least = search.least_height + scale * search.least_rise * float(abs(to - search.from));
+    const Corner corner = corner_at(view, plane, point, search, at, to, z, true);
+    walk.is_own = false;
+    walk.thickness = thickness == 0.0 || kWalks > 1 ? thickness_at(marked) : thickness;
+    walk.change = 0.0;
+    const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
+    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), true, corner.place, point.eye_distance,
+          least, radius_sq);
+  }
+  const float arc = arc_of(side, search, all);
+  return BlockedArcs(arc, kCompletes == kCompletesApart ? arc - arc_of(side, search, seen) : 0.0,
+                     kBent ? bent_of(side, search, all) : vec2(0));
+}
+
+/// Adds what a direction blocks to the sum of the pixel's bent_to(), of which the last one makes the mean open
+/// direction.
+void add_bent(int index, int plane, vec3 n, vec3 blocked, float whole) {
+  for (int c = 0; c < 3; c++) {
+    const int at = index + c * plane;
+    const float sum = params.is_first == 0 ? bent[at] + blocked[c] : blocked[c];
+    const float mean = open_bent(n)[c] - (whole > 0.0 ? sum / whole : 0.0);
+    bent[at] = params.is_last != 0 ? stored_bent(vec3(mean)).x : sum;
+  }
+}
+
+void main() {
+  const View view = params.view;
+  const Lines lines = params.lines;
+  const ivec2 extent = extent_of(view, lines);
+  ivec2 at = params.first + params.stride * ivec2(gl_GlobalInvocationID.xy);  // along and across
+  if (kListed != 0u) {
+    const ListedPlace place = listed_place(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
+    if (place.tile >= counts.listed) return;
+    const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin;
+    const ivec2 listed = pixel_of_anchored_tile(unpack_tile(list[place.tile]), place.pixel, origin);
+    if (!inside(view, listed)) return;
+    at = lines.steep != 0 ? listed.yx : listed;
+  }
+  if (at.x >= extent.x || at.y >= extent.y) return;
+  const ivec2 pixel = lines.steep != 0 ? at.yx : at;
+  const int index = index_of(view, pixel);
+  const int pixels = view.size.x * view.size.y;
+  const int ao_index = index + int(params.plane) * pixels;
+  const float z = depth[index];
+  if (z >= kSkyDepth) {
+    ao[ao_index] = 1.0;
+    for (int c = 0; kBent && c < 3; c++) bent[index + c * pixels] = stored_bent(vec3(0)).x;
+    return;
+  }
+  const int line = at.y - shift_at(lines, at.x), row = row_of(lines, line, extent.y) * extent.x;
+  const LinePlane plane = plane_of(view, lines, line);
+  const vec3 n = unpack_normal(normal[index]);
+  const vec2 tangent = tangent_at(view, lines, at + lines.origin);
+  const Point point = point_of(view, plane, tangent, z, n);
+  const float clearance =
+      least_height(params.depth_precision, z, (view.orthographic != 0 ? 0.0 : dot(n.xy, tangent)) - n.z);
+  const float radius = params.radius;
+  const float weight = length(point.normal);
+  const float facing = max(dot(point.normal, point.eye), kLeastWeight);
+  const int slot = kSlots > 1u ? int(own[row + at.x]) : 0;
+  float blocked = 0.0, whole = 0.0, unseen = 0.0;
+  vec2 bent_blocked = vec2(0);  // along the line, and away from the eye
+  if (weight >= kLeastWeight) {
+    const vec2 across_eye = vec2(-point.eye.y, point.eye.x);
+    const float sine = radius / point.eye_distance, cosine = sqrt(max(0.0, 1.0 - sine * sine));
+    const float share = 1.0 / (plane.ray_length * -point.eye.y);
+    const float lift = max(params.bias, kLeastElevation), level = sqrt(1.0 - lift * lift);
+    for (int sign = -1; sign <= 1; sign += 2) {
+      Side side;
+      side.cos_gamma = facing / weight;
+      side.sin_gamma = float(sign) * dot(point.normal, across_eye) / weight;
+      side.gamma = angle_of(side.cos_gamma, side.sin_gamma);
+      side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
+      Search search;
+      search.across = float(sign) * across_eye;
+      search.leaving = sine < 1.0 ? vec2(cosine, sine) : vec2(0);
+      search.lowest = slope_of(
+          vec2(level * side.cos_gamma + lift * side.sin_gamma, lift * side.cos_gamma - level * side.sin_gamma));
+      search.normal = weight * vec2(side.sin_gamma, side.cos_gamma);
+      search.least_height = clearance;
+      search.least_rise = least_rise(view);
+      search.from = at.x;
+      search.unit = power_of_two(z);
+      search.step = sign;
+      search.begins = sign > 0 ? kVertexBegins : kVertexEnds;
+      search.last = sign > 0 ? kVertexLast : kVertexFirst;
+      whole += share * weight * whole_arc(side);
+      search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
+      const BlockedArcs arcs = blocked_arcs(view, plane, point, side, search, row, slot);
+      blocked += share * weight * arcs.arc;
+      unseen += share * weight * arcs.unseen;
+      bent_blocked += share * weight * (arcs.bent.x * search.across + arcs.bent.y * point.eye);
+    }
+  }
+  const float last_whole = params.is_first == 0 ? whole_arcs[index] : 0.0;
+  if (params.is_first == 0) {
+    whole += last_whole;
+    blocked += ao[ao_index];
+  }
+  whole_arcs[index] = whole;
+  if (kCompletes == kCompletesApart && whole > 0.0)
+    completed[index] =
+        clamp((last_whole > 0.0 ? completed[index] * last_whole : 0.0) + unseen, 0.0, max(blocked, 0.0)) / whole;
+  if (kBent)
+    add_bent(index, pixels, n, bent_blocked.x * vec3(plane.along, 0) + bent_blocked.y * away_of(view, plane), whole);
+  if (params.is_last != 0) blocked = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  ao[ao_index] = blocked;
+}

@@ -1,0 +1,59 @@
+// Lists the sites of the listed tiles, and counts them by their lattices.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: the words of tiles, see lattice.glsl, and the tiles that classify has listed.
+// Out: the sites, those of a tile one after the other, and how many there are.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "kernels/estimate/sites.h"
+#include "kernels/base/lattice.glsl"
+#include "kernels/base/tiles.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(scalar, push_constant) uniform Push { ListSitesParams params; };
+readonly buffer Rows { uint rows[]; };    // 8 words per tile, see lattice.glsl
+readonly buffer Tiles { uint tiles[]; };  // one uint per listed tile
+readonly buffer TileCountsBuffer { TileCounts tile_counts; };
+writeonly buffer List { uint list[]; };  // one uint per site of a listed tile, see pack_site; in no order of tiles
+buffer Counts { SiteCounts counts; };    // zeros before
+
+/// How many sites the workgroup lists, where in the list they begin, and how many there are of each lattice.
+shared uint listed_here, begin, of_lattice[kLattices];
+
+void main() {
+  if (gl_LocalInvocationIndex == 0u) listed_here = 0u;
+  if (gl_LocalInvocationIndex < kLattices) of_lattice[gl_LocalInvocationIndex] = 0u;
+  barrier();
+  const uint number =
+      (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * (kGroupX * kGroupY) + gl_LocalInvocationIndex;
+  const bool is_listed = number < tile_counts.listed;
+  const ivec2 tile = is_listed ? unpack_tile(tiles[number]) : ivec2(0);
+  const int words = words_of_tile(tile, tiles_of(params.size));
+  uint site[2] = uint[2](0u, 0u), within[kLattices];
+  for (uint k = 0u; k < kLattices; k++) within[k] = 0u;
+  for (int y = 0; y < kTile && is_listed; y++) {
+    const uint row = rows[words + y] >> kSiteByte;
+    site[y / 4] |= row << uint(y % 4 * kTile);
+    for (uint k = 0u; k < kLattices; k++)
+      within[k] += bitCount(row & lattice_row(tile * kTile + ivec2(0, y) + params.origin, 16 >> k));
+  }
+  uint at = 0u;
+  if (is_listed) at = atomicAdd(listed_here, within[kLattices - 1u]);
+  for (uint k = 0u; k < kLattices; k++)
+    if (is_listed) atomicAdd(of_lattice[k], within[k] - (k > 0u ? within[k - 1u] : 0u));
+  barrier();
+  if (gl_LocalInvocationIndex == 0u) {
+    begin = atomicAdd(counts.listed, listed_here);
+    const uvec2 groups = dispatch_of((begin + listed_here + kGroupX * kGroupY - 1u) / (kGroupX * kGroupY));
+    atomicMax(counts.groups.x, groups.x);
+    atomicMax(counts.groups.y, groups.y);
+    atomicMax(counts.groups.z, 1u);
+  }
+  if (gl_LocalInvocationIndex < kLattices)
+    atomicAdd(counts.of_lattice[gl_LocalInvocationIndex], of_lattice[gl_LocalInvocationIndex]);
+  barrier();
+  at += begin;
+  for (uint half_tile = 0u; half_tile < 2u; half_tile++)
+    for (uint left = site[half_tile]; left != 0u; left &= left - 1u)
+      list[at++] = pack_site(number, 32u * half_tile + uint(findLSB(left)));
+}

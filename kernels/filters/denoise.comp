@@ -1,0 +1,84 @@
+// Smooths the visibility along one axis, over each surface by itself; rows, then columns, make the separable filter.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planes of visibility, depth, normals.
+// Out: as many planes. What is constant stays exactly constant; sky stays 1 and is never mixed in.
+//
+// Two pixels mix as far as they show one surface: see likeness.glsl. That is the same for both of them, so it is
+// computed once per pair.
+//
+// Where only sites have an estimate, `interpolate` runs instead. One invocation computes a run of pixels, so that
+// neighbours share what they load.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "kernels/filters/filters.h"
+#include "kernels/base/view.glsl"
+#include "kernels/base/normal.glsl"
+#include "kernels/base/tiles.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = 0) const int kRadius = 3;    // pixels to each side, 1 to kDenoiseMostRadius
+layout(constant_id = 1) const uint kByDepth = 0;  // 1: weighs by depth_sigma instead of by plane distance
+layout(constant_id = 2) const uint kListed = 0;   // 1: only the runs of the list, not all
+layout(constant_id = 3) const int kPlanes = 1;    // how many planes; they share their weights
+layout(scalar, push_constant) uniform Push { DenoiseParams params; };
+readonly buffer Ao { float ao[]; };           // planes of floats in [0, 1], visibility or the like; each by itself
+readonly buffer Depth { float depth[]; };     // one float per pixel, of the G-buffer of that visibility
+readonly buffer Normal { uint normal[]; };    // one uint per pixel, of the same; not read with a depth sigma
+writeonly buffer Result { float result[]; };  // as many planes, in [0, 1]
+readonly buffer List { uint list[]; };        // one uint per run, from dilate; only if listed
+readonly buffer Counts { RunCounts counts; };
+
+#include "kernels/filters/likeness.glsl"
+
+/// Pixels that one invocation looks at.
+const int kCount = kDenoiseRun + 2 * kRadius;
+
+/// What a pixel holds in the plane that begins at this index; outside 0, since 0 times what was never written may not
+/// be 0.
+float value_at(ivec2 pixel, int plane) {
+  const float value = ao[plane + index_of(params.view, clamp(pixel, ivec2(0), params.view.size - 1))];
+  return inside(params.view, pixel) ? value : 0.0;
+}
+
+void main() {
+  const uint at = (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * kGroupY + gl_LocalInvocationID.y;
+  if (kListed != 0u && at >= counts.listed) return;
+  const ivec2 run = kListed != 0u ? unpack_run(list[at]) : ivec2(gl_WorkGroupID.x, gl_GlobalInvocationID.y);
+  const int line = run.x * int(kGroupX) + int(gl_LocalInvocationID.x);
+  const ivec2 first = line * params.axis.yx + kDenoiseRun * run.y * params.axis;
+  if (any(greaterThanEqual(first, params.view.size))) return;
+
+  const int plane = params.view.size.x * params.view.size.y;
+  Tap taps[kCount];
+  float whole[kCount], values[kPlanes * kCount], change[kPlanes * kCount];  // plane by plane
+  for (int i = 0; i < kCount; i++) {
+    const ivec2 here = first + (i - kRadius) * params.axis;
+    taps[i] = tap_at(here);
+    whole[i] = params.weight[0];
+    for (int p = 0; p < kPlanes; p++) {
+      values[p * kCount + i] = value_at(here, p * plane);
+      change[p * kCount + i] = 0.0;
+    }
+    for (int apart = 1; apart <= kRadius; apart++) {
+      const int j = i - apart;
+      if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius) continue;
+      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart), 0.0);
+      // Changes of a pixel's own visibility, so that what is constant stays so to the bit.
+      for (int p = 0; p < kPlanes * kCount; p += kCount) {
+        change[p + j] += weight * (values[p + i] - values[p + j]);
+        change[p + i] += weight * (values[p + j] - values[p + i]);
+      }
+      whole[j] += weight;
+      whole[i] += weight;
+    }
+    const int done = i - kRadius;
+    const ivec2 pixel = first + (done - kRadius) * params.axis;
+    if (done < kRadius || !inside(params.view, pixel)) continue;
+    for (int p = 0; p < kPlanes; p++) {
+      const float own = values[p * kCount + done];
+      result[index_of(params.view, pixel) + p * plane] =
+          taps[done].z < kSkyDepth ? clamp(own + change[p * kCount + done] / whole[done], 0.0, 1.0) : 1.0;
+    }
+  }
+}

@@ -1,0 +1,60 @@
+// Parameters of the kernels that core/chain/filters/filters.cpp runs.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_FILTERS_H
+#define ALCOVE_FILTERS_H
+#include "kernels/base/shared.h"
+ALCOVE_BEGIN
+
+struct CombineParams {
+  ivec2 size;  // px
+  uint count;  // planes
+};
+
+ALCOVE_CONSTANT uint kDilateAlongColumns = 0;  // runs whose result may be other than 1 or than it was; before the rows
+ALCOVE_CONSTANT uint kDilateAlongRows = 1;     // runs that those read
+ALCOVE_CONSTANT uint kDilateUpsample = 2;      // workgroups of upsample
+
+struct DilateParams {
+  ivec2 size;          // px that the tiles are of
+  int runs, lines;     // runs in a line, and lines of tiles; groups in x and y
+  int runs_in_column;  // of what the columns are
+  ivec2 full_size;     // px of what is upsampled, `factor` times as large
+  ivec2 overhang;      // of these px, as upsample has it
+  int factor;
+};
+
+ALCOVE_CONSTANT int kDenoiseMostRadius = 8;  // px
+ALCOVE_CONSTANT int kDenoiseRun = 12;        // px along the axis that one invocation computes
+
+struct DenoiseParams {
+  View view;
+  ivec2 axis;         // (1, 0): along rows; (0, 1): along columns
+  float depth_sigma;  // of the depth: a step by this part of it weighs 1/e
+  float weight[9];    // by the distance in pixels, 0 to the radius; of any sum
+};
+
+ALCOVE_CONSTANT uint kInterpolateColumns = 1;  // columns, after rows; else rows
+ALCOVE_CONSTANT uint kInterpolateListed = 2;   // only the runs of the list, not all
+ALCOVE_CONSTANT uint kInterpolateByDepth = 4;  // weighs by depth_sigma instead of by plane distance
+ALCOVE_CONSTANT uint kInterpolateLooksUp = 8;  // weighs by `weight` instead of by the parabola
+
+// Sites in reach weigh at least this part of what they weigh at the pixel itself: they may be all that there is.
+ALCOVE_NUMBER kLeastWindow = 1e-6;
+
+struct InterpolateParams {
+  View view;
+  ivec2 axis;         // (1, 0): along rows; (0, 1): along columns
+  float depth_sigma;  // of the depth: a step by this part of it weighs 1/e
+  float missing;      // what a pixel gets that no site is in reach of: 1, or the middle of what a plane holds
+  float narrowness;   // of a parabola: at d pixels 1 - d^2 times this of what it is at 0; at least kLeastWindow
+  float weight[9];    // by the distance in pixels, 0 to the radius; from the radius to the radius their sum is 1
+};
+
+struct UpsampleParams {
+  View view;       // of the pixels
+  ivec2 low_size;  // blocks
+  ivec2 overhang;  // px: how far the first block reaches beyond the left and upper border
+};
+
+ALCOVE_END
+#endif

@@ -1,0 +1,181 @@
+// Gives every pixel of a surface a visibility, from the sites about it, along one axis; rows, then columns, make the
+// separable filter.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planes of visibility at sites, depth, normals, and the words that say which pixels are sites.
+// Out: as many planes. Where all is open it stays exactly 1; sky is 1.
+//
+// Sites count as far as they show the pixel's surface (likeness.glsl), and by a parabola of their distance. Through
+// what they hold the pixel gets the straight line that fits best, and takes its own place on it (W. S. Cleveland,
+// "Robust Locally Weighted Regression and Smoothing Scatterplots", 1979): a mean alone would be pulled to that side of
+// an edge on which there are sites. Rows give every pixel that value and how much the sites weigh together, by which
+// columns then weigh the rows. Rows write nothing where no site is in reach, and say so in a bit per run.
+//
+// One invocation computes a run of pixels, and goes over the sites in reach of it. A subgroup goes on as long as one of
+// its lanes has any: so those beside each other take rows that lie 4 apart, on which a wide lattice has as many.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "kernels/filters/filters.h"
+#include "kernels/base/view.glsl"
+#include "kernels/base/normal.glsl"
+#include "kernels/base/lattice.glsl"
+#include "kernels/base/tiles.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = 0) const int kRadius = 8;  // pixels to each side, 1 to kDenoiseMostRadius
+layout(constant_id = 1) const uint kMode = 0;   // bits of kInterpolate*
+layout(constant_id = 2) const int kPlanes = 1;  // how many planes; they share their weights
+const bool kColumns = (kMode & kInterpolateColumns) != 0u;
+const uint kByDepth = kMode & kInterpolateByDepth;
+layout(scalar, push_constant) uniform Push { InterpolateParams params; };
+// planes of floats in [0, 1], visibility or the like, at sites; of columns: what rows have made, see pack_blocked
+readonly buffer Ao { uint ao[]; };
+readonly buffer Depth { float depth[]; };    // one float per pixel, of the G-buffer of that visibility
+readonly buffer Normal { uint normal[]; };   // one uint per pixel, of the same; not read with a depth sigma
+writeonly buffer Result { uint result[]; };  // as many planes of all pixels, in [0, 1]; of rows: see pack_blocked
+readonly buffer List { uint list[]; };       // one uint per run, from dilate; only if listed
+readonly buffer Counts { RunCounts counts; };
+// a word for each run of a row and 32 rows, with a bit for each that is written; zeros before the rows
+buffer Runs { uint runs[]; };
+readonly buffer Sites { uint rows[]; };  // 8 words per tile, see lattice.glsl; not read along columns
+
+#include "kernels/filters/likeness.glsl"
+
+/// Pixels that one invocation looks at.
+const int kCount = kDenoiseRun + 2 * kRadius;
+
+/// What the slope of the line is held back by, px^2: a spread of the sites this wide halves it. It keeps few sites, and
+/// noisy ones, from a slope of their own.
+const float kLeastSpread = 2.0;
+
+/// Sums over the sites that a pixel has seen: of their weights, times their distance, times its square.
+struct Sums {
+  float whole, along, spread;
+};
+
+/// What is blocked at the pixel, and how much its sites weigh together: what rows hand to columns. A weight that is not
+/// 0 stays so, however small it is: it may be all that there is.
+uint pack_blocked(float blocked, float weight) {
+  const float least = weight > 0.0 ? 1.0 / 65535.0 : 0.0;
+  return packUnorm2x16(vec2(blocked, max(sqrt(weight), least)));
+}
+
+float square(float x) { return x * x; }
+
+/// The sites of a row from this pixel on, as bits.
+uint sites_of_row(ivec2 first) {
+  const ivec2 tiles = tiles_of(params.view.size);
+  const int tile = first.x >> 3, in_tile = first.x & 7;
+  uint bits = 0u;
+  for (int k = 0; k <= (kCount + 6) / 8; k++) {
+    const bool exists = tile + k >= 0 && tile + k < tiles.x;
+    const int at = words_of_tile(ivec2(clamp(tile + k, 0, tiles.x - 1), first.y / kTile), tiles) + first.y % kTile;
+    const uint row = exists ? rows[at] >> kSiteByte : 0u;
+    const int shift = 8 * k - in_tile;
+    if (shift < 32) bits |= shift < 0 ? row >> uint(-shift) : row << uint(shift);
+  }
+  return bits;
+}
+
+/// How a site weighs at a pixel so far away. It depends on nothing but the distance, not even by rounding, so that a
+/// pixel gets the same bits wherever its run begins. A kernel of the user's is looked up.
+float window_at(float away) {
+  if ((kMode & kInterpolateLooksUp) != 0u) return params.weight[min(int(abs(away)), kRadius)];
+  return params.weight[0] * max(kLeastWindow, 1.0 - params.narrowness * (away * away));
+}
+
+/// Makes the pixels of a run from these bits of those that the invocation looks at.
+void interpolate(ivec2 first, uint sites, int plane) {
+  Tap taps[kDenoiseRun];
+  Sums sums[kDenoiseRun];
+  float value[kPlanes * kDenoiseRun], slope[kPlanes * kDenoiseRun];  // sums of what is blocked, and times the distance
+  for (int i = 0; i < kDenoiseRun; i++) {
+    taps[i] = tap_at(first + i * params.axis);
+    sums[i] = Sums(0.0, 0.0, 0.0);
+    for (int p = 0; p < kPlanes; p++) value[p * kDenoiseRun + i] = slope[p * kDenoiseRun + i] = 0.0;
+  }
+  for (uint left = sites; left != 0u; left &= left - 1u) {
+    const int j = findLSB(left) - kRadius;
+    const ivec2 site = first + j * params.axis;
+    const int index = index_of(params.view, site);
+    const float weight = kColumns ? square(unpackUnorm2x16(ao[index]).y) : 1.0;
+    const Tap tap = tap_at(site);
+    float blocked[kPlanes];
+    for (int p = 0; p < kPlanes; p++) {
+      const uint word = ao[index + p * plane];
+      blocked[p] = kColumns ? unpackUnorm2x16(word).x : 1.0 - uintBitsToFloat(word);
+    }
+    for (int i = 0; i < kDenoiseRun; i++) {
+      const float away = float(j - i);
+      const float at = window_at(away);
+      const float alike = similarity(taps[i], tap, away, kLeastSimilarity);
+      const float share = abs(away) <= float(kRadius) ? weight * at * alike : 0.0;
+      sums[i].whole += share;
+      sums[i].along += share * away;
+      sums[i].spread += share * away * away;
+      for (int p = 0; p < kPlanes; p++) {
+        value[p * kDenoiseRun + i] += share * blocked[p];
+        slope[p * kDenoiseRun + i] += share * away * blocked[p];
+      }
+    }
+  }
+  for (int i = 0; i < kDenoiseRun; i++) {
+    const ivec2 pixel = first + i * params.axis;
+    if (!inside(params.view, pixel)) continue;
+    const bool is_known = taps[i].z < kSkyDepth && sums[i].whole > 0.0;
+    const float over = is_known ? 1.0 / sums[i].whole : 0.0;
+    const float away = sums[i].along * over;
+    const float spread = (sums[i].spread + kLeastSpread * sums[i].whole) - sums[i].along * away;
+    // The variance of the line where the pixel is, against that where its sites are: rows of which they lie aside
+    // weigh less in the columns.
+    const float sureness = spread / max(spread + sums[i].along * away, 1e-30);
+    for (int p = 0; p < kPlanes; p++) {
+      const float mean = value[p * kDenoiseRun + i] * over;
+      const float rise = (slope[p * kDenoiseRun + i] - sums[i].along * mean) / max(spread, 1e-30);
+      const float missing = taps[i].z < kSkyDepth ? 1.0 - params.missing : 0.0;
+      const float blocked = is_known ? clamp(mean - rise * away, 0.0, 1.0) : missing;
+      result[index_of(params.view, pixel) + p * plane] =
+          kColumns ? floatBitsToUint(1.0 - blocked) : pack_blocked(blocked, is_known ? sums[i].whole * sureness : 0.0);
+    }
+  }
+}
+
+/// The words of the runs in a row, of which each stands for a run in 32 rows: where it has a site in reach.
+int words_of_runs() { return (params.view.size.x + kDenoiseRun - 1) / kDenoiseRun; }
+
+/// The rows from this pixel on that have a mean near it, as bits.
+uint means_of_column(ivec2 first) {
+  const int word = first.y >> 5, shift = first.y & 31;
+  const int last = (params.view.size.y - 1) >> 5;
+  const int run = min(first.x, params.view.size.x - 1) / kDenoiseRun;
+  const uint low = word >= 0 && word <= last ? runs[word * words_of_runs() + run] : 0u;
+  const uint high = word + 1 >= 0 && word + 1 <= last ? runs[(word + 1) * words_of_runs() + run] : 0u;
+  return low >> uint(shift) | (shift > 0 ? high << uint(32 - shift) : 0u);
+}
+
+void main() {
+  // Of 8 runs in 8 lines, those in every fourth line go together.
+  const uint number = gl_LocalInvocationIndex / kGroupX;
+  const uint lane = gl_LocalInvocationIndex % kGroupX;
+  const uint in_group = kColumns ? number : (number / 4u) * 4u + lane % 4u;
+  const uint in_lines = kColumns ? lane : number % 4u + lane / 4u * 4u;
+  const uint at = (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * kGroupY + in_group;
+  if ((kMode & kInterpolateListed) != 0u && at >= counts.listed) return;
+  const ivec2 run = (kMode & kInterpolateListed) != 0u ? unpack_run(list[at])
+                                                       : ivec2(gl_WorkGroupID.x, gl_WorkGroupID.y * kGroupY + in_group);
+  const int line = run.x * int(kGroupX) + int(in_lines);
+  const ivec2 first = line * params.axis.yx + kDenoiseRun * run.y * params.axis;
+  if (any(greaterThanEqual(first, params.view.size))) return;
+
+  const int plane = params.view.size.x * params.view.size.y;
+  const ivec2 from = first - kRadius * params.axis;
+  const uint sites = (kColumns ? means_of_column(from) : sites_of_row(from)) & ~0u >> uint(32 - kCount);
+  IF_ANY (sites != 0u) interpolate(first, sites, plane);
+  if (!kColumns && sites != 0u) atomicOr(runs[(line >> 5) * words_of_runs() + run.y], 1u << uint(line & 31));
+  IF_ANY (kColumns && sites == 0u)
+    for (int i = 0; i < kDenoiseRun * kPlanes; i++) {
+      const ivec2 pixel = first + i % kDenoiseRun * params.axis;
+      if (inside(params.view, pixel))
+        result[index_of(params.view, pixel) + i / kDenoiseRun * plane] = floatBitsToUint(params.missing);
+    }
+}

@@ -1,0 +1,51 @@
+// Parameters of the kernels that core/chain/geometry/geometry.cpp runs.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_GEOMETRY_H
+#define ALCOVE_GEOMETRY_H
+#include "kernels/base/shared.h"
+ALCOVE_BEGIN
+
+// How raw depth becomes planar depth.
+ALCOVE_CONSTANT uint kDepthLinear = 0;  // z = base + slope * (raw - origin)
+// z = 1 / (base + slope * (raw - origin)): 1/z, and the z-buffer of any perspective projection
+ALCOVE_CONSTANT uint kDepthReciprocal = 1;
+ALCOVE_CONSTANT uint kDepthExponential = 2;  // z = base * (exp(slope * (raw - origin)) - 1)
+ALCOVE_CONSTANT uint kDepthPosition = 3;     // z = base + dot(axis, position); (0, 0, 0) is sky
+
+struct DepthTerms {
+  vec3 axis;                  // scene units per unit of the file, of kDepthPosition
+  uint along_ray;             // 0 or 1: what the form gives is the distance to the eye
+  float origin, base, slope;  // see the forms; z in scene units
+  float sky_below;            // raw depth at or below it is sky
+  float sky_above;            // raw depth at or above it is sky
+  float sky_depth;            // a distance at or beyond it is sky, scene units
+};
+
+ALCOVE_CONSTANT uint kNormalNone = 0;        // all are reconstructed from depth
+ALCOVE_CONSTANT uint kNormalVector = 1;      // x, y, z of any length
+ALCOVE_CONSTANT uint kNormalXy = 2;          // x, y of a unit vector with z >= 0
+ALCOVE_CONSTANT uint kNormalOctahedral = 3;  // two coordinates in [-1, 1]
+ALCOVE_CONSTANT uint kNormalSpheremap = 4;   // two coordinates in [-1, 1]
+
+struct PrepareParams {
+  View view;
+  vec3 view_from_normal_x;  // rows of the rotation from the normals' space to view space
+  vec3 view_from_normal_y;
+  vec3 view_from_normal_z;
+  DepthTerms depth;
+  uint normal_unorm;  // 0 or 1: the file holds 0.5 + 0.5 n
+};
+
+struct ReconstructParams {
+  View view;
+};
+
+struct DownsampleParams {
+  View view;       // of the pixels
+  ivec2 low_size;  // blocks
+  ivec2 overhang;  // px: how far the first block reaches beyond the left and upper border
+  uint hidden;     // planes of hidden surfaces
+};
+
+ALCOVE_END
+#endif

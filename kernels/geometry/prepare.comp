@@ -1,0 +1,89 @@
+// Makes the G-buffer that every later kernel relies on: z > 0 planar or marked sky; unit view-space normals that face
+// the eye, where those that are unusable or clearly face away are left to `reconstruct`; nothing that is not finite.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: raw depth of any kind or positions, raw normals of any encoding in world or view space.
+// Out: planar z, view normals, and counts of what was repaired.
+//
+// Spheremap: the equal-area map about -z (Mittring, "A bit more Deferred - CryEngine 3", 2009). Octahedral: see
+// normal.glsl.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "kernels/geometry/geometry.h"
+#include "kernels/base/finite.glsl"
+#include "kernels/base/view.glsl"
+#include "kernels/base/depth_terms.glsl"
+#include "kernels/base/normal.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+// The forms are specialization constants: a kernel with all of them takes twice as long on lavapipe, which computes
+// both sides of a choice.
+layout(constant_id = 0) const uint kDepthForm = kDepthLinear;    // one of kDepth*
+layout(constant_id = 1) const uint kNormalForm = kNormalVector;  // one of kNormal*
+layout(scalar, push_constant) uniform Push { PrepareParams params; };
+readonly buffer RawDepth { float raw_depth[]; };  // one float per pixel, as in the file; of positions three planes
+// planes of floats, as many as normal_form needs; not read without normals
+readonly buffer RawNormal { float raw_normal[]; };
+writeonly buffer Depth { float depth[]; };  // one float per pixel, planar z > 0 in scene units, kSkyDepth on sky
+// one uint per pixel, see normal.glsl: unit, view space, facing the eye or clearly away; kNoNormal where there is
+// none
+writeonly buffer Normal { uint normal[]; };
+buffer Counts { FrameCounts counts; };             // zeroed before
+writeonly buffer Missing { GroupCount missing; };  // of reconstruct: z becomes 1 where it has work
+
+/// Normals shorter than this are no direction at all (a background of zeros).
+const float kLeastLength = 1e-6;
+
+/// Planar depth in scene units, kSkyDepth where there is no surface.
+float depth_at(ivec2 pixel) {
+  const int index = index_of(params.view, pixel), plane = params.view.size.x * params.view.size.y;
+  vec3 raw = vec3(raw_depth[index], 0, 0);
+  if (kDepthForm == kDepthPosition) raw.yz = vec2(raw_depth[index + plane], raw_depth[index + 2 * plane]);
+  return planar_depth(kDepthForm, params.depth, params.view, pixel, raw);
+}
+
+/// The file's normal as a vector, in its own space and of any length; zero where it is none.
+vec3 decoded_normal(int index) {
+  const int plane = params.view.size.x * params.view.size.y;
+  vec3 raw = vec3(raw_normal[index], raw_normal[index + plane], 0);
+  if (kNormalForm == kNormalVector) raw.z = raw_normal[index + 2 * plane];
+  if (params.normal_unorm != 0) raw = 2.0 * raw - 1.0;
+  const float squared = dot(raw.xy, raw.xy);
+  switch (kNormalForm) {
+    case kNormalXy: return vec3(raw.xy, sqrt(max(1.0 - squared, 0.0)));
+    case kNormalOctahedral: return octahedral_direction(raw.xy);
+    case kNormalSpheremap:
+      return squared <= 1.0 ? vec3(2.0 * sqrt(1.0 - squared) * raw.xy, 2.0 * squared - 1.0) : vec3(0);
+    default: return raw;
+  }
+}
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (!inside(params.view, pixel)) return;
+  const int index = index_of(params.view, pixel);
+
+  const float z = depth_at(pixel);
+  depth[index] = z;
+  if (z >= kSkyDepth) {
+    normal[index] = pack_normal(vec3(0, 0, 1));
+    atomicAdd(counts.sky, 1u);
+    if (is_nan(raw_depth[index]) || raw_depth[index] < params.depth.sky_below) atomicAdd(counts.repaired_depth, 1u);
+    return;
+  }
+
+  vec3 n = vec3(0);
+  if (kNormalForm != kNormalNone) {
+    const vec3 raw = decoded_normal(index);
+    n = vec3(dot(params.view_from_normal_x, raw), dot(params.view_from_normal_y, raw),
+             dot(params.view_from_normal_z, raw));
+  }
+  const float size = length(n);
+  const bool usable = is_finite(size) && size > kLeastLength;
+  const vec3 eye = toward_eye(params.view, position_of(params.view, vec2(pixel) + 0.5, z));
+  n /= size;
+  const bool is_away = dot(n, eye) < -kLeastFacing;  // rounding does not make it face the eye
+  if (!usable || is_away) missing.z = 1u;            // every invocation that writes it writes the same
+  if (!usable && kNormalForm != kNormalNone) atomicAdd(counts.repaired_normals, 1u);
+  normal[index] = !usable ? kNoNormal : pack_normal(is_away ? n : facing(n, eye));
+}

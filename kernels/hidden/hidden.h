@@ -1,0 +1,60 @@
+// Parameters of the kernels that core/chain/hidden/hidden.cpp runs.
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef ALCOVE_HIDDEN_H
+#define ALCOVE_HIDDEN_H
+#include "kernels/geometry/geometry.h"
+ALCOVE_BEGIN
+
+// What a plane holds: depth of surfaces, seen from inside or not; how far the first surface's solid goes on, as depth.
+ALCOVE_CONSTANT uint kBehindSurfaces = 0;
+ALCOVE_CONSTANT uint kBehindBacks = 1;
+ALCOVE_CONSTANT uint kBehindThickness = 2;
+
+struct BehindParams {
+  View view;
+  DepthTerms depth;
+  uint plane;  // of both
+};
+
+ALCOVE_CONSTANT uint kMostHidden = 3;
+
+struct LayersParams {
+  View view;
+  uint planes;           // that were found
+  uint open_planes;      // bit i: surfaces of plane i are of unknown kind
+  uint warped;           // planes from other views
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
+  float separation;      // scene units: surfaces closer than it are one; below 0: by precision and a pixel's slope
+};
+
+/// What is counted over a frame.
+struct LayerCounts {
+  uint surfaces;  // kept behind the first
+  uint dropped;   // behind those that are kept
+  uint before;    // that lie before the first surface, by more than the separation: nothing can be hidden there
+};
+
+ALCOVE_CONSTANT uint kEndsGroup = 32;  // lines of a workgroup
+
+/// The ends of a surface count that are no more pixels away along its row and column. So much and kEndsBeyond more of a
+/// picture around a crop make the crop the same as the whole.
+ALCOVE_CONSTANT int kEndsReach = 64;
+ALCOVE_CONSTANT int kEndsBeyond = 1;
+
+struct EndsParams {
+  View view;
+  uint along_columns;  // 0 or 1
+};
+
+struct PairParams {
+  View view;
+};
+
+struct HiddenPlanesParams {
+  View view;
+  uint known;  // planes that there are
+  uint kept;   // surfaces to write
+};
+
+ALCOVE_END
+#endif

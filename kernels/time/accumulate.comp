@@ -1,0 +1,123 @@
+// Takes the mean of what many frames estimate, each where it sees the same point.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: depth and normals of a frame and of others, what each estimates, and where something moves between them.
+// Out: sums over the frames, and their mean.
+//
+// True AO of what stands still does not change with the camera. So what another frame estimates counts where it shows
+// the same point: each lies in the plane of the other, as exactly as the depth is and half a pixel's slope, and their
+// normals agree; and where nothing within the radius of it moves from the one frame to the other. What a frame cannot
+// tell of a point is left out, so that nothing has to be clamped, and no result is made from an earlier one. All count
+// the same: weights by distance, by the angle or by how sure an estimate is were no nearer to ray tracing.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "kernels/time/accumulate.h"
+#include "kernels/base/reprojection.h"
+#include "kernels/base/view.glsl"
+#include "kernels/base/normal.glsl"
+#include "kernels/base/reprojection.glsl"
+#include "kernels/time/sight.glsl"
+#include "kernels/time/cells.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = 0) const int kPlanes = 1;  // of values
+layout(constant_id = 1) const int kListed = 0;  // frames that the buffer lists, 0 to kMostTaken
+layout(scalar, push_constant) uniform Push { AccumulateParams params; };
+readonly buffer Depth { float depth[]; };    // one float per pixel of the part, planar depth
+readonly buffer Normal { uint normal[]; };   // one uint per pixel of the part, see normal.glsl
+readonly buffer Values { float values[]; };  // planes of floats in [0, 1] over all of the frame: its own estimate
+readonly buffer Others { uint others[]; };   // planes of other frames, as words
+readonly buffer Frames { TakenFrame frames[]; };
+readonly buffer Near { uint near[]; };  // words of cells, from moved
+// planes of floats: how many estimates there are, and for each plane of values the sum of what they are less than 1;
+// not read where they begin
+buffer Sums { float sums[]; };
+writeonly buffer Ao { float ao[]; };          // where the sums end: the first plane of values
+writeonly buffer Scales { float scales[]; };  // those of radii, which follow it
+writeonly buffer Bent { float bent[]; };      // those of the mean open direction, which are the last ones
+
+/// Normals of one point differ by rounding and by how files filter them: as the cosine between them.
+const float kLeastAgreement = 0.9;
+
+/// How far the same surface may lie off a plane, in widths of a pixel: what half of one changes on a slope.
+const float kHalfPixel = 0.5;
+
+int pixels_of(ivec2 size) { return size.x * size.y; }
+
+/// The pixel of another frame that shows the point at this place in the frame's view space, with this normal; -1: none
+/// does. second: the word of its second plane.
+int index_in(TakenFrame other, vec3 here, vec3 n, out uint second) {
+  const View to = other.view;
+  const vec3 position = position_there(other, here), facing = direction_there(other, n);
+  const ivec2 place = pixel_of(to, position), nearest = clamp(place, ivec2(0), to.size - 1);
+  const int index = index_of(to, nearest);
+  const float z = abs(uintBitsToFloat(others[other.first + uint(index)]));
+  const vec3 beside = position_of(to, vec2(nearest) + 0.5, min(z, 1e15)) - position;
+  second = others[other.first + uint(index + pixels_of(to.size))];
+  const vec3 seen = normalize(octahedral_direction(unpackSnorm4x8(second).xy));
+  const float tolerance =
+      kPrecisions * error_at(other.depth_precision, min(z, 1e15)) + kHalfPixel * pixel_width(to, min(z, 1e15));
+  const bool is_same = -position.z > 0.0 && place == nearest && z < kSkyDepth && (second & 0xffffu) != kNoTakenNormal &&
+                       abs(dot(beside, facing)) <= tolerance && abs(dot(beside, seen)) <= tolerance &&
+                       dot(facing, seen) >= kLeastAgreement;
+  return is_same ? index : -1;
+}
+
+/// The first of the planes of the mean open direction, which are the last three where there are any.
+const int kBent = kPlanes > 3 ? kPlanes - 3 : 0;
+
+/// A direction of another frame's view space in this one's, both as 0.5 + 0.5 b.
+vec3 turned_here(TakenFrame other, vec3 encoded) { return 0.5 + 0.5 * direction_here(other, 2.0 * encoded - 1.0); }
+
+void main() {
+  // All is loaded before the condition: see shared.h.
+  const ivec2 invoked = ivec2(gl_GlobalInvocationID.xy), pixel = min(invoked, params.size - 1);
+  const ivec2 in_frame = pixel + params.corner;
+  const int index = pixel.y * params.size.x + pixel.x, plane = pixels_of(params.size);
+  const int whole = index_of(params.view, in_frame);
+  const bool begins = (params.stage & kAccumulateBegins) != 0u, ends = (params.stage & kAccumulateEnds) != 0u;
+  float count = 1.0, blocked[kPlanes];
+  if (!begins) count = sums[index];
+  for (int k = 0; k < kPlanes; k++)
+    blocked[k] = begins ? 1.0 - values[whole + k * pixels_of(params.view.size)] : sums[index + (k + 1) * plane];
+  const float z = depth[index];
+  const uint word = normal[index];
+  const bool is_surface = z < kSkyDepth && word != kNoNormal;
+  const vec3 here = position_of(params.view, vec2(in_frame) + 0.5, min(z, 1e15)), n = unpack_normal(word);
+  const uint moves = near[place_of_cell(cell_of(here, params.radius))];
+  [[unroll]] for (int i = 0; i < kListed; i++) {
+    const bool moved = (moves >> (params.place + uint(i)) & 1u) != 0u;
+    const TakenFrame other = frames[i];
+    uint words[(kPlanes + 2) / 2];
+    const int at = index_in(other, here, n, words[0]), there = pixels_of(other.view.size);
+    const bool is_taken = is_surface && !moved && at >= 0 && uint(i) < params.frames;
+    for (int k = 1; k < (kPlanes + 2) / 2; k++) words[k] = others[other.first + uint(max(at, 0) + (k + 1) * there)];
+    count += is_taken ? 1.0 : 0.0;
+    float theirs[kPlanes + 2];
+    for (int k = 0; k < kPlanes; k++) {
+      const vec2 halves = unpackUnorm2x16(words[(k + 1) / 2]);
+      theirs[k] = k % 2 == 0 ? halves.y : halves.x;
+    }
+    if (params.scales + 1 < kPlanes) {
+      const vec3 turned = turned_here(other, vec3(theirs[kBent], theirs[kBent + 1], theirs[kBent + 2]));
+      theirs[kBent] = turned.x;
+      theirs[kBent + 1] = turned.y;
+      theirs[kBent + 2] = turned.z;
+    }
+    for (int k = 0; k < kPlanes; k++) blocked[k] += is_taken ? 1.0 - theirs[k] : 0.0;
+  }
+  if (any(greaterThanEqual(invoked, params.size))) return;
+  sums[index] = count;
+  for (int k = 0; k < kPlanes; k++) {
+    const float value = 1.0 - blocked[k] / count;
+    if (!ends)
+      sums[index + (k + 1) * plane] = blocked[k];
+    else if (k == 0)
+      ao[index] = value;
+    else if (k <= params.scales)
+      scales[index + (k - 1) * plane] = value;
+    else
+      bent[index + (k - 1 - params.scales) * plane] = value;
+  }
+}
