@@ -51,7 +51,7 @@ struct OutputSettings {
   std::string append_ao;  // a channel of the composite that the AO becomes, or its layer; empty: none
   // of the AO in `output`: its channel, or with rgb its layer; empty: Y, or R, G, B
   std::string ao_name;
-  // names of core/chain/results/debug_view.h with commas: a picture of each beside `output`
+  // names of core/chain/results/debug.h with commas: a picture of each beside `output`
   std::string debug;
   OutputType type = OutputType::half_float;  // of all channels of `output` but depth, which is float
   std::string compression = "zip";           // of the AO file: none, rle, zips, zip or piz

@@ -10,13 +10,12 @@
 #include <unordered_set>
 
 #include "core/base/error.h"
-#include "core/base/estimator_facts.h"
 #include "core/base/file.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/chain/chain.h"
-#include "core/chain/results/aov.h"
+#include "core/chain/results/outputs.h"
 #include "core/chain/warm_up.h"
 #include "core/formats/color.h"
 #include "core/options/options.h"

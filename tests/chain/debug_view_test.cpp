@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "core/chain/results/debug_view.h"
+#include "core/chain/results/debug.h"
 #include "tests/support/command_line.h"
 #include "tests/support/whole_picture.h"
 

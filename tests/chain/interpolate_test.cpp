@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <random>
 
-#include "core/base/estimator_facts.h"
+#include "core/chain/estimate/sites.h"
 #include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"

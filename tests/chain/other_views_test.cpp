@@ -5,7 +5,8 @@
 #include <array>
 #include <random>
 
-#include "core/chain/geometry/margin.h"
+#include "core/chain/filters/filters.h"
+#include "core/chain/geometry/geometry.h"
 #include "kernels/base/reprojection.h"
 #include "tests/support/chain.h"
 #include "tests/support/seen_views.h"

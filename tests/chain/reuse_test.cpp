@@ -6,7 +6,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "core/base/estimator_facts.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/formats/exr.h"
 #include "core/run/frame_run.h"
 #include "tests/support/chain.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "core/base/estimator_facts.h"
+#include "core/chain/estimate/sites.h"
 #include "core/formats/exr.h"
 #include "core/run/resume.h"
 #include "tests/support/chain.h"

@@ -5,8 +5,8 @@
 
 #include <set>
 
-#include "core/base/estimator_facts.h"
 #include "core/chain/estimate/estimate.h"
+#include "core/chain/estimate/sites.h"
 #include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"

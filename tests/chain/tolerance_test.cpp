@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "core/chain/estimate/estimate.h"
+#include "core/chain/estimate/exact.h"
 #include "kernels/estimate/estimate.h"
-#include "kernels/estimate/exact_search.h"
+#include "kernels/estimate/exact.h"
 #include "tests/support/chain.h"
 
 namespace alcove {

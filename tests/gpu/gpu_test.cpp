@@ -12,7 +12,7 @@
 #include "core/chain/compute.h"
 #include "kernels/estimate/estimate.h"
 #include "kernels/geometry/geometry.h"
-#include "kernels/results/shading.h"
+#include "kernels/results/results.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
-#include "core/chain/hidden/warp.h"
+#include "core/chain/hidden/hidden.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 
@@ -150,7 +150,7 @@ std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
 
 std::set<std::string> kernels_there_are() {
   std::set<std::string> names{"horizon_layers"};  // made of horizon.comp
-  for (const auto& entry : std::filesystem::directory_iterator(ALCOVE_SOURCE_DIR "/kernels"))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(ALCOVE_SOURCE_DIR "/kernels"))
     if (entry.path().extension() == ".comp") names.insert(entry.path().stem().string());
   return names;
 }

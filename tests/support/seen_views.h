@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/chain/hidden/warp.h"
+#include "core/chain/hidden/hidden.h"
 #include "kernels/hidden/hidden.h"
-#include "kernels/hidden/warp.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
 

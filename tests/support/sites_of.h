@@ -26,7 +26,7 @@ inline bool is_on_lattice(int x, int y, int spacing) {
 
 /// The sites of a G-buffer.
 struct SiteMap {
-  std::vector<uint> rows;  // 8 words per tile, see kernels/base/lattice.glsl; none: every pixel is a site
+  std::vector<uint> rows;  // 8 words per tile, see kernels/base/tiles.glsl; none: every pixel is a site
   int tile_columns = 0;
 
   bool is_site(int x, int y) const {

@@ -19,8 +19,8 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/estimator_facts.h"
 #include "core/chain/compute.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_estimators.h"
 #include "tests/bench/stability/cases.h"

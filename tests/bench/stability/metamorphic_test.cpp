@@ -8,8 +8,8 @@
 #include <iterator>
 #include <numbers>
 
-#include "core/base/estimator_facts.h"
 #include "core/chain/compute.h"
+#include "core/chain/estimate/estimate.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
