@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/estimator_facts.h"
 #include "core/base/option_words.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/frame/evidence.h"
 #include "core/frame/radius.h"
 #include "core/frame/settle.h"

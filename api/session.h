@@ -15,7 +15,7 @@
 #include "core/base/settings.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
-#include "core/chain/results/aov.h"
+#include "core/chain/results/outputs.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"

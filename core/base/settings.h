@@ -206,7 +206,7 @@ struct OutputSettings {
   std::string append_ao;  // a channel of the composite that the AO becomes, or its layer; empty: none
   // name of the AO in `output`: of its channel, or with rgb of its layer; empty: Y, or R, G, B
   std::string ao_name;
-  // debug views, names of core/chain/results/debug_view.h with commas: a picture of each beside `output`
+  // debug views, names of core/chain/results/debug.h with commas: a picture of each beside `output`
   std::string debug;
   OutputType type = OutputType::half_float;  // of all channels of `output`; depth is always float
   std::string compression = "zip";           // of the AO file: none, rle, zips, zip or piz

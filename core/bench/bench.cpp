@@ -12,11 +12,11 @@
 #include <tuple>
 
 #include "core/base/error.h"
-#include "core/base/estimator_facts.h"
 #include "core/base/option_words.h"
 #include "core/base/system.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/formats/exr.h"
 #include "core/frame/evidence.h"
 #include "core/frame/gbuffer.h"

@@ -8,8 +8,8 @@
 #include <map>
 #include <numbers>
 
-#include "core/base/estimator_facts.h"
 #include "core/chain/compute.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/frame/radius.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_scene.h"

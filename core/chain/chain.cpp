@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/chain.h"
 
-#include "core/base/estimator_facts.h"
-#include "core/chain/estimate/completion.h"
-#include "core/chain/geometry/margin.h"
+#include <vector>
+
+#include "core/chain/filters/filters.h"
 #include "core/chain/geometry/matte.h"
-#include "core/chain/geometry/occluders.h"
 #include "core/chain/hidden/hidden.h"
-#include "core/chain/hidden/warp.h"
 #include "core/chain/open_sky.h"
 #include "core/chain/results/confidence.h"
 #include "core/chain/results/debug.h"
@@ -19,28 +17,139 @@
 namespace alcove {
 namespace {
 
-FrameOutputs downloaded(gpu::Recorder& gpu, const FrameOutputs& out) {
-  for (const auto* result : {out.counts, out.layer_counts, out.view_counts, out.tiles, out.sites, out.squares,
-                             out.completion, out.count, out.color_ao, out.composite})
-    if (result) gpu.download(*result);
-  for (const auto& row : kAovs)
-    if (out.*row.planes) gpu.download(*(out.*row.planes));
-  for (const auto& plane : out.debug) gpu.download(*plane.values);
+/// What a frame shows.
+struct Surfaces {
+  GBuffer frame;
+  GBuffer wide;  // with the margin in which other frames and views show more; else the same
+};
+
+/// The visibility of a frame's pixels, and what led to it. Null: nobody asked for it.
+struct Seen {
+  Visibility visibility;  // before any shaping
+  Matte matte;
+  Estimate estimate;  // of its own; none of a mean over frames
+  gpu::Buffer* completion = nullptr;
+  gpu::Buffer* error = nullptr;  // of the frame's pixels
+  gpu::Buffer* count = nullptr;  // of a mean: a plane of how many frames each pixel's visibility is the mean
+  DebugStages stages;
+};
+
+/// All surfaces of the frame, with unit normals that face the eye.
+Surfaces surfaces_of(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings) {
+  const Layering layering = layering_of(settings);
+  const GBuffer prepared = prepare(gpu, frame);
+  reconstruct(gpu, prepared);
+  const GBuffer warped = warp(gpu, prepared, frame, layering);
+  const GBuffer wide = layers(gpu, warped, frame, layering);
+  return {cut(gpu, frame, wide, prepared), wide};
+}
+
+/// The frame's own estimate, smoothed.
+Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
+                    const EstimatorSettings& settings, const Wanted& wanted) {
+  const FrameInputs inputs = with_margin(frame);
+  Seen seen;
+  seen.matte = matte(gpu, frame);
+  const GBuffer counted = occluders(gpu, surfaces.wide, frame);
+  const GBuffer blocks = downsample(gpu, counted, block_grid(inputs, int(settings.resolution)));
+  const GBuffer work = needed(gpu, blocks, inputs, seen.matte, filter_reach_of(settings));
+  const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn));
+  const bool with_completed = wanted.completed && completes_anywhere(settings);
+  seen.estimate = estimate(gpu, work, chosen, inputs, settings, needs_bent(settings, wanted), with_completed);
+  seen.completion = completion(gpu, work, seen.estimate, chosen);
+  const Denoiser denoiser = denoiser_of(settings);
+  const Visibility noisy = combine(gpu, work, seen.estimate, wanted.has(&FrameOutputs::scales));
+  const FilterRuns runs = dilate(gpu, work, seen.estimate.listed, denoiser);
+  const Visibility smooth =
+      chosen.rows ? interpolate(gpu, work, noisy, chosen, denoiser, runs) : denoise(gpu, work, noisy, denoiser, runs);
+  seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smooth, runs));
+  if (wanted.has(&FrameOutputs::error)) seen.error = cut(gpu, frame, seen.estimate.error, "error");
+  seen.stages = {work, noisy.ao, chosen, smooth.ao, seen.estimate.completed, seen.estimate.listed.kinds};
+  return seen;
+}
+
+/// The mean of what many frames have estimated.
+Seen mean_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
+                     const EstimatorSettings& settings, const Wanted& wanted) {
+  const std::size_t radii = radii_of(settings).size();
+  const std::size_t scales = wanted.has(&FrameOutputs::scales) && radii > 1 ? radii : 0;
+  Seen seen;
+  seen.matte = matte(gpu, frame);
+  const Accumulation mean =
+      accumulate(gpu, surfaces.frame, frame.estimates, settings, scales, needs_bent(settings, wanted));
+  seen.visibility = mean.visibility;
+  seen.count = mean.count;
+  seen.stages.count = mean.count;
+  return seen;
+}
+
+Seen visibility_of(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
+                   const EstimatorSettings& settings, const Wanted& wanted) {
+  if (!wanted.visibility && !frame[RawPlane::beauty]) return {};
+  return frame.estimates.values ? mean_visibility(gpu, frame, surfaces, settings, wanted)
+                                : own_visibility(gpu, frame, surfaces, settings, wanted);
+}
+
+/// What the passes have counted on their way.
+FrameOutputs counts_of(const Surfaces& surfaces, const Seen& seen) {
+  return {.counts = surfaces.frame.counts,
+          .layer_counts = surfaces.frame.layer_counts,
+          .view_counts = surfaces.frame.view_counts,
+          .tiles = seen.estimate.listed.counts,
+          .sites = seen.estimate.listed.site_counts,
+          .squares = seen.estimate.squares,
+          .completion = seen.completion,
+          .completed = seen.estimate.completed,
+          .count = seen.count};
+}
+
+/// What the frame hands to others.
+FrameOutputs handed_out(const Surfaces& surfaces, const Seen& seen) {
+  FrameOutputs out = counts_of(surfaces, seen);
+  out.own = OwnEstimate{surfaces.frame, seen.visibility};
   return out;
 }
 
-/// The planes of radii that a visibility has beside their mean.
-std::size_t scales_of(const EstimatorSettings& settings, const Wanted& wanted) {
-  const std::size_t radii = radii_of(settings).size();
-  return wanted.has(&FrameOutputs::scales) && radii > 1 ? radii : 0;
+/// All that is wanted.
+FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces, const Seen& seen,
+                        const EstimatorSettings& settings, const Wanted& wanted) {
+  const GBuffer& gbuffer = surfaces.frame;
+  const gpu::Buffer& open = bent_normal(gpu, gbuffer, seen.visibility.bent);
+  const Visibility visibility =
+      shape(gpu, gbuffer, seen.visibility, shaping_of(settings), frame[RawPlane::material_ao], seen.matte);
+  FrameOutputs out = counts_of(surfaces, seen);
+  out.ao = visibility.ao;
+  out.error = seen.error;
+  if (wanted.has(&FrameOutputs::scales)) out.scales = visibility.scales ? visibility.scales : visibility.ao;
+  if (wanted.has(&FrameOutputs::normal))
+    out.normal = &directions(gpu, gbuffer, *gbuffer.normal, "normal planes", frame.aov_from_view);
+  if (wanted.has(&FrameOutputs::bent_normal))
+    out.bent_normal = &directions(gpu, gbuffer, open, "bent normal planes", frame.aov_from_view);
+  if (wanted.has(&FrameOutputs::depth)) out.depth = gbuffer.depth;
+  if (wanted.has(&FrameOutputs::hidden)) out.hidden = &hidden_planes(gpu, gbuffer, layering_of(settings));
+  if (wanted.has(&FrameOutputs::confidence))
+    out.confidence = cut(gpu, frame, &confidence(gpu, surfaces.wide, with_margin(frame), settings), "confidence");
+  if (wanted.has(&FrameOutputs::specular_occlusion))
+    out.specular_occlusion = &specular_occlusion(gpu, gbuffer, open, *visibility.ao, settings.roughness);
+  if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
+  out = reduce(gpu, frame, wanted.filter, out);
+  out.composite = composite(gpu, gbuffer, out.color_ao ? out.color_ao : out.ao, frame, wanted.look);
+  for (const auto* view : wanted.debug_views) out.debug.push_back(debug(gpu, *view, gbuffer, seen.stages, frame));
+  return out;
 }
 
-/// Downloads what the frame hands to others.
-FrameOutputs handed_out(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, FrameOutputs out) {
-  out.own = OwnEstimate{gbuffer, visibility};
-  for (const auto* part : {gbuffer.depth, gbuffer.normal, visibility.ao, visibility.scales, visibility.bent})
-    if (part) gpu.download(*part);
-  return downloaded(gpu, out);
+FrameOutputs downloaded(gpu::Recorder& gpu, const FrameOutputs& out) {
+  std::vector<const gpu::Buffer*> results{out.counts,  out.layer_counts, out.view_counts, out.tiles,    out.sites,
+                                          out.squares, out.completion,   out.count,       out.color_ao, out.composite};
+  for (const auto& row : kAovs) results.push_back(out.*row.planes);
+  for (const auto& plane : out.debug) results.push_back(plane.values);
+  if (out.own)
+    for (const auto* part : {out.own->gbuffer.depth, out.own->gbuffer.normal, out.own->visibility.ao,
+                             out.own->visibility.scales, out.own->visibility.bent})
+      results.push_back(part);
+  for (const auto* result : results)
+    if (result) gpu.download(*result);
+  return out;
 }
 
 }  // namespace
@@ -49,75 +158,10 @@ FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const Estim
                        const Wanted& wanted) {
   if (is_open_sky(frame, settings, wanted)) return open_sky(gpu, frame, settings);
   upload(gpu, frame);
-
-  const Layering layering = layering_of(settings);
-  const FrameInputs inputs = with_margin(frame);
-  const GBuffer prepared = prepare(gpu, frame);
-  reconstruct(gpu, prepared);
-  const GBuffer warped = warp(gpu, prepared, frame, layering);
-  const GBuffer wide = layers(gpu, warped, frame, layering);
-  const GBuffer gbuffer = cut(gpu, frame, wide, prepared);
-  FrameOutputs out;
-  out.counts = gbuffer.counts;
-  out.layer_counts = gbuffer.layer_counts;
-  out.view_counts = wide.view_counts;
-  Visibility visibility;
-  const gpu::Buffer* open_directions = gbuffer.normal;
-  DebugStages stages;
-  if (wanted.visibility || frame[RawPlane::beauty]) {
-    const Matte wanted_at = matte(gpu, frame);
-    const bool with_bent = needs_bent(settings, wanted);
-    Visibility whole;
-    if (!frame.estimates.values) {
-      const GBuffer counted = occluders(gpu, wide, frame);
-      const GBuffer blocks = downsample(gpu, counted, block_grid(inputs, int(settings.resolution)));
-      const GBuffer work = needed(gpu, blocks, inputs, wanted_at, filter_reach_of(settings));
-      const bool with_completed = wanted.completed && completes_anywhere(settings);
-      const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn));
-      const Estimate estimated = estimate(gpu, work, chosen, inputs, settings, with_bent, with_completed);
-      const Denoiser denoiser = denoiser_of(settings);
-      out.completion = completion(gpu, work, estimated, chosen);
-      const Visibility noisy = combine(gpu, work, estimated, wanted.has(&FrameOutputs::scales));
-      const FilterRuns runs = dilate(gpu, work, estimated.listed, denoiser);
-      const Visibility smooth = chosen.rows ? interpolate(gpu, work, noisy, chosen, denoiser, runs)
-                                            : denoise(gpu, work, noisy, denoiser, runs);
-      whole = cut(gpu, frame, upsample(gpu, wide, work, smooth, runs));
-      stages = {work, noisy.ao, chosen, smooth.ao, estimated.completed, estimated.listed.kinds};
-      out.tiles = estimated.listed.counts;
-      out.sites = estimated.listed.site_counts;
-      out.squares = estimated.squares;
-      out.completed = estimated.completed;
-      if (wanted.has(&FrameOutputs::error)) out.error = cut(gpu, frame, estimated.error, "error");
-    } else {
-      const std::size_t scales = scales_of(settings, wanted);
-      const Accumulation mean = accumulate(gpu, gbuffer, frame.estimates, settings, scales, with_bent);
-      whole = mean.visibility;
-      stages.count = mean.count;
-      out.count = mean.count;
-    }
-    if (wanted.only_own) return handed_out(gpu, gbuffer, whole, out);
-    open_directions = &bent_normal(gpu, gbuffer, whole.bent);
-    visibility = shape(gpu, gbuffer, whole, shaping_of(settings), frame[RawPlane::material_ao], wanted_at);
-  }
-
-  out.ao = visibility.ao;
-  if (wanted.has(&FrameOutputs::scales)) out.scales = visibility.scales ? visibility.scales : visibility.ao;
-  if (wanted.has(&FrameOutputs::normal))
-    out.normal = &directions(gpu, gbuffer, *gbuffer.normal, "normal planes", frame.aov_from_view);
-  if (wanted.has(&FrameOutputs::bent_normal))
-    out.bent_normal = &directions(gpu, gbuffer, *open_directions, "bent normal planes", frame.aov_from_view);
-  if (wanted.has(&FrameOutputs::depth)) out.depth = gbuffer.depth;
-  if (wanted.has(&FrameOutputs::hidden)) out.hidden = &hidden_planes(gpu, gbuffer, layering);
-  if (wanted.has(&FrameOutputs::confidence))
-    out.confidence = cut(gpu, frame, &confidence(gpu, wide, inputs, settings), "confidence");
-  if (wanted.has(&FrameOutputs::specular_occlusion))
-    out.specular_occlusion = &specular_occlusion(gpu, gbuffer, *open_directions, *visibility.ao, settings.roughness);
-  if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
-  out = reduce(gpu, frame, wanted.filter, out);
-  if (frame[RawPlane::beauty])
-    out.composite = &composite(gpu, gbuffer, *(out.color_ao ? out.color_ao : out.ao), frame, wanted.look);
-  for (const auto* view : wanted.debug_views) out.debug.push_back(debug(gpu, *view, gbuffer, stages, frame));
-  return downloaded(gpu, out);
+  const Surfaces surfaces = surfaces_of(gpu, frame, settings);
+  const Seen seen = visibility_of(gpu, frame, surfaces, settings, wanted);
+  return downloaded(
+      gpu, wanted.only_own ? handed_out(surfaces, seen) : results_of(gpu, frame, surfaces, seen, settings, wanted));
 }
 
 }  // namespace alcove

@@ -4,7 +4,6 @@
 
 #include "core/base/settings.h"
 #include "core/chain/base/frame_inputs.h"
-#include "core/chain/results/aov.h"
 #include "core/chain/results/outputs.h"
 
 namespace alcove {

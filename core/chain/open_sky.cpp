@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "core/base/estimator_facts.h"
-#include "core/chain/base/pass_common.h"
+#include "core/chain/base/planes.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/chain/geometry/geometry.h"
 #include "kernels/estimate/estimate.h"
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/chain/base/pass_common.h"
+#include "core/chain/base/planes.h"
 #include "kernels/estimate/estimate.h"
 
 namespace alcove {

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/chain/results/aov.h"
+#include "core/chain/results/outputs.h"
 #include "core/gpu/device.h"
 
 namespace alcove {

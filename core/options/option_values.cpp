@@ -6,11 +6,11 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/estimator_facts.h"
 #include "core/base/flat_toml.h"
 #include "core/base/text.h"
-#include "core/chain/results/aov.h"
-#include "core/chain/results/debug_view.h"
+#include "core/chain/estimate/estimate.h"
+#include "core/chain/results/debug.h"
+#include "core/chain/results/outputs.h"
 #include "core/frame/raw_plane.h"
 #include "core/options/options.h"
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/base/text.h"
-#include "core/chain/results/aov.h"
-#include "core/chain/results/debug_view.h"
+#include "core/chain/results/debug.h"
+#include "core/chain/results/outputs.h"
 #include "core/options/options.h"
 #include "core/options/reasons.h"
 

@@ -8,9 +8,11 @@
 #include <array>
 #include <vector>
 
-#include "core/base/estimator_facts.h"
 #include "core/base/option_words.h"
 #include "core/base/text.h"
+#include "core/chain/estimate/estimate.h"
+#include "core/chain/estimate/sites.h"
+#include "core/chain/results/confidence.h"
 #include "core/frame/input_rules.h"
 
 namespace alcove {

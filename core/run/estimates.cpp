@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/estimator_facts.h"
 #include "core/base/image.h"
 #include "core/base/text.h"
 #include "core/chain/chain.h"

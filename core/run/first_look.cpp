@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/text.h"
-#include "core/chain/results/aov.h"
+#include "core/chain/results/outputs.h"
 #include "core/formats/sequence.h"
 #include "core/frame/radius.h"
 #include "core/frame/settle.h"

@@ -10,14 +10,13 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/estimator_facts.h"
 #include "core/base/image.h"
-#include "core/chain/results/aov.h"
-#include "core/chain/results/debug_view.h"
+#include "core/chain/estimate/estimate.h"
+#include "core/chain/results/debug.h"
+#include "core/chain/results/outputs.h"
 #include "core/frame/settle.h"
 #include "core/run/memory.h"
 #include "kernels/hidden/hidden.h"
-#include "kernels/hidden/warp.h"
 
 namespace alcove {
 

@@ -6,16 +6,16 @@
 #include <unordered_map>
 
 #include "core/base/error.h"
-#include "core/base/estimator_facts.h"
 #include "core/base/system.h"
 #include "core/chain/chain.h"
-#include "core/chain/geometry/margin.h"
+#include "core/chain/estimate/estimate.h"
+#include "core/chain/geometry/geometry.h"
 #include "core/formats/exr.h"
 #include "core/frame/channels.h"
 #include "core/run/frame_files.h"
 #include "core/run/shot.h"
 #include "kernels/estimate/estimate.h"
-#include "kernels/estimate/exact_search.h"
+#include "kernels/estimate/exact.h"
 #include "kernels/time/accumulate.h"
 
 namespace alcove {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/chain/results/aov.h"
+#include "core/chain/results/outputs.h"
 #include "core/frame/gbuffer.h"
 #include "core/gpu/device.h"
 #include "core/run/plan.h"

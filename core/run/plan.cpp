@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
-#include "core/chain/results/debug_view.h"
+#include "core/chain/results/debug.h"
 #include "core/formats/sequence.h"
 
 namespace alcove {

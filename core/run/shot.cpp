@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/chain/geometry/geometry.h"
-#include "core/chain/hidden/warp.h"
+#include "core/chain/hidden/hidden.h"
 #include "core/frame/channels.h"
 #include "core/frame/motion.h"
 #include "core/frame/settle.h"

@@ -14,8 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "core/chain/base/other_views.h"
-#include "core/chain/base/seen_estimates.h"
+#include "core/chain/base/frame_inputs.h"
 #include "core/gpu/recorder.h"
 #include "core/run/frame_files.h"
 #include "core/run/plan.h"

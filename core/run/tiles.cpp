@@ -8,16 +8,17 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/estimator_facts.h"
 #include "core/base/image.h"
 #include "core/base/system.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/chain/results/aov.h"
+#include "core/chain/filters/filters.h"
+#include "core/chain/results/confidence.h"
+#include "core/chain/results/outputs.h"
 #include "core/chain/results/reduce.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
-#include "kernels/estimate/exact_search.h"
-#include "kernels/geometry/occluders.h"
+#include "kernels/estimate/exact.h"
+#include "kernels/geometry/geometry.h"
 #include "kernels/hidden/hidden.h"
 
 namespace alcove {

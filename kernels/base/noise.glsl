@@ -4,7 +4,7 @@
 // Slices turn by a lattice over the image: a number that grows by the same fraction of a turn from pixel to pixel. What
 // an estimate errs by is then, on a plain surface, a sum of waves: harmonic (k, l) of the two numbers is a wave of k
 // times the first one's frequency and l times the second one's, less whole ones. The fractions are chosen so that on
-// every lattice of lattice.glsl the harmonics that weigh most are waves so short that the filters take them away. The
+// every lattice of tiles.glsl the harmonics that weigh most are waves so short that the filters take them away. The
 // weights were measured: on plain surfaces of rendered scenes seven tenths of the variance is the first harmonic of the
 // slices' direction, and hardly any is the steps'. See docs/lab.md.
 

@@ -1,8 +1,9 @@
 // Types that mean the same in C++ and in GLSL, so that a kernel's parameters are written once.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// STEM.h beside it declares with these names the parameters of the kernels that core/chain/STEM.cpp runs; the kernels
-// and their host functions both include it. Layout is scalar: every member is aligned to 4 bytes, in C++ as in GLSL.
+// The headers of the folders beside it declare with these names the parameters of kernels. A kernel and its host
+// function, in the folder of the same name in core/chain, both include one. Layout is scalar: every member is aligned
+// to 4 bytes, in C++ as in GLSL.
 #ifndef ALCOVE_SHARED_H
 #define ALCOVE_SHARED_H
 
@@ -102,7 +103,7 @@ struct TileCounts {
 // How far from a pixel others decide whether it is a site, in px: 3 for each of the four passes of sites.comp, and the
 // neighbours that links.comp looks at.
 ALCOVE_CONSTANT int kSiteReach = 13;
-ALCOVE_CONSTANT uint kLattices = 5;  // of one pixel of 16, 8, 4, 2 and 1: see lattice.glsl
+ALCOVE_CONSTANT uint kLattices = 5;  // of one pixel of 16, 8, 4, 2 and 1: see tiles.glsl
 
 /// How many sites are listed: pixels that are to be estimated.
 struct SiteCounts {

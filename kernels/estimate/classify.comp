@@ -16,7 +16,6 @@
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/clearance.glsl"
-#include "kernels/base/lattice.glsl"
 #include "kernels/base/tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -43,7 +42,7 @@ writeonly buffer Bent { float bent[]; };
 writeonly buffer Completed { float completed[]; };
 // one uint per tile, from needed: not 0 where estimates are needed; only with kClassifySelects
 readonly buffer Needed { uint wanted[]; };
-readonly buffer Rows { uint rows[]; };     // 8 words per tile, see lattice.glsl; only if sparse
+readonly buffer Rows { uint rows[]; };     // 8 words per tile, see tiles.glsl; only if sparse
 writeonly buffer Kinds { uint kinds[]; };  // one uint per tile: kTileOpen, kTileListed or kTileKept
 
 /// Where a sphere reaches nearer to the eye than this part of its box's depth, all of the image counts. Down to

@@ -20,7 +20,7 @@
 //   to so many, behind the last of others that have as many; else behind the first of others.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/estimate/exact_search.h"
+#include "kernels/estimate/exact.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/estimate/lines.glsl"

@@ -7,9 +7,8 @@
 // bits do not depend on the order of invocations; the host adds up the tiles.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/estimate/completion.h"
+#include "kernels/estimate/estimate.h"
 #include "kernels/base/view.glsl"
-#include "kernels/base/lattice.glsl"
 #include "kernels/base/tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;

@@ -11,7 +11,7 @@
 // the root of its mean square over a tile of 8 x 8 pixels is taken.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/estimate/exact_search.h"
+#include "kernels/estimate/exact.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/tiles.glsl"
 

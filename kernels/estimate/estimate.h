@@ -1,9 +1,27 @@
-// Parameters of the kernels that core/chain/estimate/estimate.cpp runs.
+// Parameters of the kernels that choose sites and tiles, of the estimators that take samples, and of completion.
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_ESTIMATE_H
 #define ALCOVE_ESTIMATE_H
 #include "kernels/hidden/hidden.h"
 ALCOVE_BEGIN
+
+struct LinksParams {
+  View view;
+  ivec2 origin;  // px from the display window's corner to the image's
+};
+
+ALCOVE_CONSTANT int kSitesTiles = 3;  // in a row, that one invocation decides
+
+struct SitesParams {
+  ivec2 size;    // px
+  ivec2 origin;  // px from the display window's corner to the image's
+  int spacing;   // of the lattice that sites are added from, 1 to 8
+};
+
+struct ListSitesParams {
+  ivec2 size;    // px
+  ivec2 origin;  // px from the display window's corner to the image's
+};
 
 struct BoundsParams {
   ivec2 size;   // px, of the image
@@ -87,6 +105,13 @@ struct CrytekParams {
   vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
   uint plane;            // of the output, which has one plane per radius
   vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
+};
+
+struct CompletionParams {
+  View view;
+  ivec2 origin;  // px from the display window's corner to the image's
+  int spacing;   // of the widest lattice of sites: see tiles.glsl; 1: all pixels have an estimate
+  uint plane;    // of the visibility
 };
 
 ALCOVE_END

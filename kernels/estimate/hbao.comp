@@ -22,16 +22,14 @@
 #include "kernels/base/normal.glsl"
 #include "kernels/base/noise.glsl"
 #include "kernels/base/tiles.glsl"
-#include "kernels/estimate/falloff.glsl"
 #include "kernels/base/arcs.glsl"
-#include "kernels/estimate/bent.glsl"
 #include "kernels/base/clearance.glsl"
 #include "kernels/estimate/slice.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kSlices = 3;              // lines through a pixel, each searched to both sides
 layout(constant_id = 1) const uint kSteps = 6;               // steps to each side
-layout(constant_id = 2) const uint kFalloff = kFalloffNone;  // one of kFalloff* of falloff.glsl, the attenuation W
+layout(constant_id = 2) const uint kFalloff = kFalloffNone;  // one of kFalloff* of slice.glsl, the attenuation W
 layout(constant_id = 3) const uint kSparse = 0;              // 1: only the sites of the list are estimated
 layout(scalar, push_constant) uniform Push { HbaoParams params; };
 readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare

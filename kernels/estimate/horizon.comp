@@ -33,7 +33,6 @@
 #include "kernels/base/arcs.glsl"
 #include "kernels/base/noise.glsl"
 #include "kernels/base/tiles.glsl"
-#include "kernels/estimate/falloff.glsl"
 #include "kernels/estimate/bent.glsl"
 #include "kernels/base/clearance.glsl"
 #include "kernels/estimate/slice.glsl"
@@ -42,7 +41,7 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kSlices = 3;           // slices per pixel
 layout(constant_id = 1) const uint kSteps = 6;            // steps to each side of a slice
-layout(constant_id = 2) const uint kMode = kFalloffNone;  // one of kFalloff* of falloff.glsl, and kWith* or not
+layout(constant_id = 2) const uint kMode = kFalloffNone;  // one of kFalloff* of slice.glsl, and kWith* or not
 // one of kThickness*, of what is not connected to the receiver, kCompletes* and kInSectors or not, and
 // kHiddenSurface times as many surfaces as a pixel may have behind the first
 layout(constant_id = 4) const uint kSolid = kThicknessWidth;
@@ -68,7 +67,402 @@ readonly buffer Hidden { float hidden[]; };  // planes of hidden surfaces that m
 // this file, since drivers take long over code that is left out by a specialization constant alone.
 const int kSurfaces = ALCOVE_SURFACES;
 
-#include "kernels/estimate/horizon.glsl"
+const uint kFalloff = kMode & ~(kWithBent | kWithCompleted);
+const bool kBent = (kMode & kWithBent) != 0u;
+const bool kTellsCompleted = (kMode & kWithCompleted) != 0u;
+const uint kThickness = kSolid & 3u;
+const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
+const bool kBehindOthers = (kSolid & kCompletesHidden) != 0u;
+const bool kAllInSectors = (kSolid & kInSectors) != 0u;
+
+/// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the
+/// samples before and behind it.
+const float kGapShare = 0.5;
+
+/// All that is endless is one surface. Two samples of it on either side of the sphere are neighbours if their squared
+/// distances are within this factor of its.
+const float kSameSurface = 1.44;
+
+#include "kernels/estimate/pieces.glsl"
+#include "kernels/estimate/surfaces.glsl"
+
+/// A run of samples that is not the receiver's own surface. Angles go by slope_of(); where far > near nothing of it
+/// blocks.
+struct Run {
+  vec2 start, end;  // its outer samples
+  float gap;        // steps from the sample before it
+  float share;      // of its width that it is thick
+  float near, far;  // largest and smallest of the samples that block
+};
+
+/// What is blocked: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors of
+/// runs.
+struct Blocked {
+  float near, far;
+  uint sectors;
+};
+
+/// arc_to() and, with bent normals, bent_to().
+vec3 arcs_to(Side side, vec2 place) {
+  const vec2 direction = place * inversesqrt(dot(place, place));
+  return vec3(arc_to(side, place), kBent ? bent_to(direction.y, direction.x, side.cos_gamma, side.sin_gamma) : vec2(0));
+}
+
+/// These integrals over a set of sectors.
+vec3 arcs_of(Side side, uint sectors) { return vec3(arc_of(side, sectors), kBent ? bent_of(side, sectors) : vec2(0)); }
+
+/// These integrals over what is blocked.
+vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
+  const float plane = slope_of(side.ahead), far = max(blocked.far, plane);
+  const bool is_exact = !kAllInSectors && blocked.near > far;
+  const vec3 own = is_exact ? arcs_to(side, place_at(far)) - arcs_to(side, place_at(blocked.near)) : vec3(0);
+  if (kThickness == kThicknessEndless && kSurfaces == 1 && !kAllInSectors) return own;
+  uint others;
+  if (kAllInSectors) {
+    const uint joined = sectors_below(blocked.near, shift) & ~sectors_below(blocked.far, shift);
+    others = (blocked.sectors | joined) & ~sectors_below(plane, shift);
+  } else if (kThickness == kThicknessEndless) {
+    const uint joined = sectors_below(max(blocked.near, plane), shift) & ~sectors_below(far, shift);
+    others = blocked.sectors & ~(joined | sectors_below(plane, shift));
+  } else {
+    others = blocked.sectors & ~sectors_below(max(blocked.near, plane), shift);
+  }
+  return own + arcs_of(side, others);
+}
+
+/// What a run blocks that is `gap_behind` steps wide of the sample behind it. is_open: samples of it know no back.
+uint sectors_of(Receiver r, Reach reach, Run run, bool is_open, float z, float gap_behind, float shift) {
+  const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
+  const float width = run.share * (length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind)));
+  // What is as deep as wide is not clipped to the sphere: no difference in the error, and it takes a tenth off the
+  // time.
+  const float back = slope_of(kThickness == kThicknessWidth ? run.start + width * away_from_eye(r, run.start)
+                                                            : back_of(r, run.start, reach.thickness, reach.radius));
+  const float far = is_open ? min(back, run.far) : run.far;
+  return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(far, shift) : 0u;
+}
+
+/// The slopes that a sample blocks, largest and smallest: its own where it `blocks`, and where the surface from the
+/// sample before it crosses the sphere in between, that `crossing`.
+vec2 slopes_of(Sample s, bool crosses, float crossing) {
+  const bool blocks = both(s.above, s.within);
+  return vec2(max(blocks ? s.slope : -1.0, crosses ? crossing : -1.0),
+              min(blocks ? s.slope : 1.0, crosses ? crossing : 1.0));
+}
+
+const bool kHard = kFalloff == kFalloffNone;
+
+/// What a search has found to be blocked.
+struct Found {
+  Blocked blocked;
+  Blocked completed;    // without falloff: by completed surfaces
+  vec3 sum, last_arcs;  // with falloff: the weighed integrals, and those of all that is blocked so far
+  float completed_sum;  // with falloff: what completed surfaces added to the sum
+};
+
+/// Adds what lies between two slopes, the larger one first, to what is blocked.
+void block(inout Blocked blocked, vec2 slopes, float shift) {
+  const bool exists = slopes.x >= slopes.y;
+  if (kThickness == kThicknessEndless) {
+    blocked.near = exists ? max(blocked.near, slopes.x) : blocked.near;
+    blocked.far = exists ? min(blocked.far, slopes.y) : blocked.far;
+  } else {
+    blocked.sectors |= sectors_between(slopes, shift);
+  }
+}
+
+/// With falloff: adds what is new of what is blocked, by the distance of a place, and returns that part of the arc.
+float add_faded(inout Found found, Side side, Reach reach, Draw draw, vec2 place) {
+  const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
+  const float weight = falloff_weight(kFalloff, length(place), reach.falloff_start, reach.radius);
+  const vec3 added = weight * (arcs - found.last_arcs);
+  found.sum += added;
+  found.last_arcs = arcs;
+  return added.x;
+}
+
+/// Adds what a completed surface blocks.
+void add_completed(inout Found found, Side side, Reach reach, Draw draw, Piece piece) {
+  if (kHard) {
+    block(found.completed, slopes_of(piece), draw.shift);
+    return;
+  }
+  block(found.blocked, slopes_of(piece), draw.shift);
+  found.completed_sum += add_faded(found, side, reach, draw, 0.5 * (piece.near + piece.far));
+}
+
+/// Adds what goes on behind something nearer. behind_last: the sample after the last one.
+void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count,
+                     Interruptions interrupted, int behind_last) {
+  for (uint left = interrupted.jumps; left != 0u; left &= left - 1u) {
+    const Piece piece =
+        piece_behind(r, side, reach, draw, count, interrupted, interrupted.first + findLSB(left), behind_last);
+    add_completed(found, side, reach, draw, piece);
+  }
+}
+
+/// Adds what the image's border cuts, and what goes on of it beyond the border.
+void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
+  const Sample border = sample_at(r, side, reach, floor(side.reach));
+  const Piece piece = piece_beyond(r, side, reach, border);
+  block(found.blocked, slopes_at_border(r, reach, border), draw.shift);
+  if (!kHard) add_faded(found, side, reach, draw, border.place);
+  add_completed(found, side, reach, draw, piece);
+}
+
+/// What is known of solids at the last sample, where occluders are endless otherwise.
+struct Solids {
+  float z[kMostSurfaces];
+  vec2 slopes[kMostSurfaces];
+};
+
+/// Adds what the surfaces of a sample block where occluders are endless: those whose backs are known from front to
+/// back, and hidden ones as far as the sphere.
+void add_layers(inout Found found, inout Solids last, Receiver r, Side side, Reach reach, Draw draw, Surfaces here,
+                float gap) {
+  for (int i = 0; i < kSurfaces; i++) {
+    const Sample s = here.at[i];
+    const bool joins = both(same_surface(r, reach, s.z, last.z[i], gap), last.slopes[i].x >= last.slopes[i].y);
+    const vec2 solid = here.has_back[i] ? here.solid[i] : vec2(-1, 1);
+    const bool exists = solid.x >= solid.y;
+    const vec2 joined = joins ? vec2(max(solid.x, last.slopes[i].x), min(solid.y, last.slopes[i].y)) : solid;
+    found.blocked.sectors |= exists ? sectors_between(joined, draw.shift) : 0u;
+    last.z[i] = exists ? s.z : kNoLastSurface;
+    last.slopes[i] = solid;
+    const bool blocks = both(both(i > 0 && !here.has_back[i], here.exists[i]), both(s.above, s.within));
+    const float back = slope_of(back_of(r, s.place, reach.thickness, reach.radius));
+    found.blocked.near = max(found.blocked.near, blocks ? s.slope : -1.0);
+    found.blocked.far = min(found.blocked.far, blocks ? min(s.slope, back) : 1.0);
+    if (!kHard && here.exists[i]) add_faded(found, side, reach, draw, s.place);
+  }
+}
+
+/// Searches a side where occluders are solid as far as the sphere of the radius: they block one interval. Solids whose
+/// backs are known have their own.
+void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
+  const int plane = params.view.size.x * params.view.size.y;
+  Sample last = receiver_sample(r);
+  Solids solids;
+  for (int i = 0; i < kSurfaces; i++) solids.z[i] = kNoLastSurface;
+  for (int i = 0; i < kSurfaces; i++) solids.slopes[i] = vec2(-1, 1);
+  for (int k = 0; k < count; k++) {
+    const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter);
+    Sample s;
+    bool has_back = false;
+    if (kSurfaces == 1) {
+      s = sample_at(r, side, reach, offset);
+    } else {
+      const Surfaces here = surfaces_at(r, side, reach, offset, plane);
+      add_layers(found, solids, r, side, reach, draw, here, offset - last.offset);
+      s = here.at[0];
+      has_back = here.has_back[0];
+    }
+    const bool connected = both(max(s.distance_sq, last.distance_sq) < kSameSurface * reach.radius_sq,
+                                min(s.distance_sq, last.distance_sq) * kSameSurface > reach.radius_sq);
+    const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
+    const vec2 slopes = slopes_of(
+        s, crosses, mix(s.slope, last.slope, (reach.radius_sq - s.distance_sq) / (last.distance_sq - s.distance_sq)));
+    const float back = slope_of(back_of(r, s.place, reach.thickness, reach.radius));
+    found.blocked.near = max(found.blocked.near, has_back ? -1.0 : slopes.x);
+    found.blocked.far = min(found.blocked.far, has_back                  ? 1.0
+                                               : both(s.above, s.within) ? min(slopes.y, back)
+                                                                         : slopes.y);
+    if (!kHard) add_faded(found, side, reach, draw, s.place);
+    last = s;
+    last.distance_sq = s.above ? s.distance_sq : kNone;
+  }
+}
+
+/// The same where occluders are as thick as they are wide, or as the user says: the receiver's own surface, and runs.
+void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
+  bool own = true;
+  Sample last = receiver_sample(r);
+  Run run = Run(vec2(0), vec2(0), 0.0, 1.0, -1.0, 1.0);
+  Interruptions interrupted = Interruptions(0, 0u, 0u);
+  for (int k = 0; k < count; k++) {
+    const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
+    const float gap = s.offset - last.offset;
+    const bool connected = same_surface(r, reach, s.z, last.z, gap);
+    // A run that crosses the sphere between two samples blocks half way to the one beyond.
+    const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
+    const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
+    if (kBehindOthers) take_down(interrupted, k, s, last, connected, connected, reach);
+    if (connected) run.end = s.place;
+    if (!connected || !s.above) {
+      if (kHard) found.blocked.sectors |= sectors_of(r, reach, run, true, last.z, gap, draw.shift);
+      run = Run(s.place, s.place, gap, 1.0, -1.0, 1.0);
+      own = !s.above;
+    }
+    if (own) {
+      found.blocked.near = max(found.blocked.near, slopes.x);
+    } else {
+      run.near = max(run.near, slopes.x);
+      run.far = min(run.far, slopes.y);
+    }
+    if (!kHard) {
+      found.blocked.sectors |= sectors_of(r, reach, run, true, s.z, 1.0, draw.shift);
+      add_faded(found, side, reach, draw, s.place);
+    }
+    last = s;
+    IF_ANY (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
+      complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
+      interrupted = Interruptions(k + 1, 0u, 0u);
+    }
+  }
+  if (kHard) found.blocked.sectors |= sectors_of(r, reach, run, true, last.z, 1.0, draw.shift);
+  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
+}
+
+/// A run is so much of its width thick where it is known what lies behind it within reach: its width stands in for what
+/// is hidden, too.
+const float kKnownShare = 0.6;
+
+// Of a surface of the last sample and of its run, as bits.
+const uint kSlotAbove = 1u, kSlotWithin = 2u;
+const uint kSlotOwn = 4u;   // the receiver's surface
+const uint kSlotOpen = 8u;  // samples of the run that block have no known back
+const uint kSlotKnows = 16u;
+
+/// A surface of the last sample, and the run that it belongs to. Of the run `share` is told by kSlotKnows.
+struct Slot {
+  float z;  // kNoLastSurface: there is none
+  float slope;
+  uint bits;
+  Run run;
+};
+
+Slot chosen(Slot a, Slot b, bool second) {
+  Slot s;
+  s.z = second ? b.z : a.z;
+  s.slope = second ? b.slope : a.slope;
+  s.bits = second ? b.bits : a.bits;
+  s.run.start = second ? b.run.start : a.run.start;
+  s.run.end = second ? b.run.end : a.run.end;
+  s.run.gap = second ? b.run.gap : a.run.gap;
+  s.run.share = 1.0;
+  s.run.near = second ? b.run.near : a.run.near;
+  s.run.far = second ? b.run.far : a.run.far;
+  return s;
+}
+
+/// sectors_of() the run of a slot.
+uint sectors_of(Receiver r, Reach reach, Slot slot, float gap_behind, float shift) {
+  Run run = slot.run;
+  run.share = (slot.bits & kSlotKnows) != 0u ? kKnownShare : 1.0;
+  return sectors_of(r, reach, run, (slot.bits & kSlotOpen) != 0u, slot.z, gap_behind, shift);
+}
+
+/// sectors_of() the runs of those slots whose bits are set; most of the time it is none or one.
+uint sectors_of_ending(Receiver r, Reach reach, Slot slots[kMostSurfaces], uint ending, float gap_behind, float shift) {
+  uint sectors = 0u;
+  for (int j = 0; j < kSurfaces; j++)
+    sectors |= (ending >> j & 1u) != 0u ? sectors_of(r, reach, slots[j], gap_behind, shift) : 0u;
+  return sectors;
+}
+
+/// search_runs() where a pixel has several surfaces: as many runs at a time.
+void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
+  const int plane = params.view.size.x * params.view.size.y;
+  Sample last = receiver_sample(r);
+  const Run nothing = Run(vec2(0), vec2(0), 0.0, 1.0, -1.0, 1.0);
+  Slot slots[kMostSurfaces];
+  for (int i = 0; i < kSurfaces; i++)
+    slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
+  Interruptions interrupted = Interruptions(0, 0u, 0u);
+  for (int k = 0; k < count; k++) {
+    const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
+    const Surfaces here = surfaces_at(r, side, reach, offset, plane);
+    float last_z[kMostSurfaces];
+    for (int j = 0; j < kSurfaces; j++) last_z[j] = slots[j].z;
+    const int from[kMostSurfaces] = links_of(r, reach, here, last_z, gap);
+    if (kBehindOthers) {
+      const bool goes_on = here.at[0].z > last.z ? from[0] >= 0 : is_taken(from, 0);
+      take_down(interrupted, k, here.at[0], last, same_surface(r, reach, here.at[0].z, last.z, gap), goes_on, reach);
+    }
+    // Runs end that no surface continues, and those of surfaces that sink below the tangent plane.
+    uint ending = 0u;
+    for (int j = 0; j < kSurfaces && kHard; j++) {
+      bool ends = slots[j].run.near >= slots[j].run.far;
+      for (int i = 0; i < kSurfaces; i++) {
+        const bool linked = from[i] == j;
+        slots[j].run.end = linked ? here.at[i].place : slots[j].run.end;
+        ends = both(linked, here.at[i].above) ? false : ends;
+      }
+      ending |= ends ? 1u << j : 0u;
+    }
+    found.blocked.sectors |= sectors_of_ending(r, reach, slots, ending, gap, draw.shift);
+    Slot now[kMostSurfaces];
+    for (int i = 0; i < kSurfaces; i++) {
+      const Sample s = here.at[i];
+      Slot slot = slots[0];
+      for (int j = 1; j < kSurfaces; j++) slot = chosen(slot, slots[j], from[i] == j);
+      const bool connected = from[i] >= 0, was_above = (slot.bits & kSlotAbove) != 0u;
+      const bool was_within = (slot.bits & kSlotWithin) != 0u;
+      const bool crosses = kHard ? both(both(s.above, was_above), both(connected, s.within != was_within)) : false;
+      const vec2 open = slopes_of(s, crosses, mix(s.slope, slot.slope, 0.5));
+      const vec2 slopes = here.has_back[i] ? here.solid[i] : open;
+      const bool begins = both(connected, s.above) ? false : true;
+      slot.run.start = begins ? s.place : slot.run.start;
+      slot.run.gap = begins ? gap : slot.run.gap;
+      slot.run.near = begins ? -1.0 : slot.run.near;
+      slot.run.far = begins ? 1.0 : slot.run.far;
+      slot.run.end = s.place;
+      const bool own = begins ? !s.above : (slot.bits & kSlotOwn) != 0u;
+      const bool counts = both(here.exists[i], !own);
+      found.blocked.near = max(found.blocked.near, both(here.exists[i], own) ? open.x : -1.0);
+      slot.run.near = max(slot.run.near, counts ? slopes.x : -1.0);
+      slot.run.far = min(slot.run.far, counts ? slopes.y : 1.0);
+      const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
+      slot.bits = (begins ? 0u : slot.bits & (kSlotOpen | kSlotKnows)) | (s.above ? kSlotAbove : 0u) |
+                  (s.within ? kSlotWithin : 0u) | (own ? kSlotOwn : 0u) | (knows ? kSlotKnows : 0u) |
+                  (both(counts, !here.has_back[i]) ? kSlotOpen : 0u);
+      slot.z = here.exists[i] ? s.z : kNoLastSurface;
+      slot.slope = s.slope;
+      now[i] = slot;
+      if (!kHard && here.exists[i]) {
+        found.blocked.sectors |= sectors_of(r, reach, slot, 1.0, draw.shift);
+        add_faded(found, side, reach, draw, s.place);
+      }
+    }
+    slots = now;
+    last = here.at[0];
+    IF_ANY (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
+      complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
+      interrupted = Interruptions(k + 1, 0u, 0u);
+    }
+  }
+  if (kHard) found.blocked.sectors |= sectors_of_ending(r, reach, slots, (1u << kSurfaces) - 1u, 1.0, draw.shift);
+  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
+}
+
+/// The blocked part of a side's integrals, and what of its arc completed surfaces block.
+vec4 search(Receiver r, Side side, Reach reach, Draw draw) {
+  const int count = min(int(kSteps), int(side.reach));
+  const Blocked nothing = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
+  Found found = Found(nothing, nothing, vec3(0), vec3(0), 0.0);
+  if (kThickness == kThicknessEndless)
+    search_endless(found, r, side, reach, draw, count);
+  else if (kSurfaces > 1)
+    search_layers(found, r, side, reach, draw, count);
+  else
+    search_runs(found, r, side, reach, draw, count);
+  IF_ANY (kBeyondBorder && side.is_cut && side.reach >= 1.0) complete_beyond(found, r, side, reach, draw);
+  if (!kHard) return vec4(found.sum, found.completed_sum);
+  const Blocked all =
+      Blocked(max(found.blocked.near, found.completed.near), min(found.blocked.far, found.completed.far),
+              found.blocked.sectors | found.completed.sectors);
+  const vec3 arcs = blocked_arcs(side, all, draw.shift);
+  return vec4(arcs, kTellsCompleted ? arcs.x - blocked_arcs(side, found.blocked, draw.shift).x : 0.0);
+}
+
+/// Random numbers of a side, from those of its pixel. The boundaries of the sectors move by the fraction of a multiple
+/// of the steps' jitter. Of a number that is even in [0, 1), the fraction of m times it is even too, and their
+/// correlation is 1 / m: here 9 %.
+Draw draw_of(vec2 noise, uint slice, uint side) {
+  const float jitter = fract(noise.y + kGolden * float(2u * slice + side));
+  return Draw(jitter, fract(11.0 * jitter));
+}
+
 #include "kernels/estimate/receivers.glsl"
 
 void write_bent(int index, int plane, vec3 b) {

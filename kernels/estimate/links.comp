@@ -2,17 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals.
-// Out: the words of every tile of 8 x 8 pixels, see lattice.glsl.
+// Out: the words of every tile of 8 x 8 pixels, see tiles.glsl.
 //
 // Two neighbours are one surface if each lies in the plane of the other, by the distance that the filters take; and
 // without a bend if it lies there so nearly that pixels further on do, too. An
 // invocation computes a tile, row by row, so that each pixel is read once.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/estimate/sites.h"
+#include "kernels/estimate/estimate.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
-#include "kernels/base/lattice.glsl"
 #include "kernels/base/tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -22,7 +21,7 @@ layout(constant_id = 1) const uint kAdaptive = 1;
 layout(scalar, push_constant) uniform Push { LinksParams params; };
 readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
 readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
-writeonly buffer Rows { uint rows[]; };     // 8 words per tile, see lattice.glsl
+writeonly buffer Rows { uint rows[]; };     // 8 words per tile, see tiles.glsl
 // the same, of which two bytes are written: linked without a bend; only if adaptive
 writeonly buffer Flat { uint flat_rows[]; };
 

@@ -1,17 +1,16 @@
 // Lists the sites of the listed tiles, and counts them by their lattices.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: the words of tiles, see lattice.glsl, and the tiles that classify has listed.
+// In: the words of tiles, see tiles.glsl, and the tiles that classify has listed.
 // Out: the sites, those of a tile one after the other, and how many there are.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/estimate/sites.h"
-#include "kernels/base/lattice.glsl"
+#include "kernels/estimate/estimate.h"
 #include "kernels/base/tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ListSitesParams params; };
-readonly buffer Rows { uint rows[]; };    // 8 words per tile, see lattice.glsl
+readonly buffer Rows { uint rows[]; };    // 8 words per tile, see tiles.glsl
 readonly buffer Tiles { uint tiles[]; };  // one uint per listed tile
 readonly buffer TileCountsBuffer { TileCounts tile_counts; };
 writeonly buffer List { uint list[]; };  // one uint per site of a listed tile, see pack_site; in no order of tiles

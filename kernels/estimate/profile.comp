@@ -25,7 +25,7 @@
 //   behind others.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/estimate/exact_search.h"
+#include "kernels/estimate/exact.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/arcs.glsl"
 #include "kernels/estimate/bent.glsl"

@@ -10,7 +10,7 @@
 // seldom as small as a tile, and where one tile goes on and the next does not, both know what lies at their border.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/estimate/exact_search.h"
+#include "kernels/estimate/exact.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/tiles.glsl"
 #include "kernels/base/normal.glsl"

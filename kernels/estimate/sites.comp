@@ -1,7 +1,7 @@
 // Makes those pixels of a lattice sites that have too few sites of their own surface about them.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: the words of tiles, see lattice.glsl, with the sites of the next wider lattice.
+// In: the words of tiles, see tiles.glsl, with the sites of the next wider lattice.
 // Out: the same with those of this one.
 //
 // A pixel does without an estimate if the filters can give it one: if in three of the four quadrants about it a site
@@ -13,13 +13,12 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "kernels/estimate/sites.h"
-#include "kernels/base/lattice.glsl"
+#include "kernels/estimate/estimate.h"
 #include "kernels/base/tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { SitesParams params; };
-readonly buffer Rows { uint rows[]; };  // 8 words per tile, see lattice.glsl
+readonly buffer Rows { uint rows[]; };  // 8 words per tile, see tiles.glsl
 // links over which a path may lead, as `rows` or without a bend, from links
 readonly buffer Links { uint linked_rows[]; };
 writeonly buffer Result { uint result[]; };  // as `rows`, with more sites

@@ -18,7 +18,6 @@
 #include "kernels/filters/filters.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
-#include "kernels/base/lattice.glsl"
 #include "kernels/base/tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -37,7 +36,7 @@ readonly buffer List { uint list[]; };       // one uint per run, from dilate; o
 readonly buffer Counts { RunCounts counts; };
 // a word for each run of a row and 32 rows, with a bit for each that is written; zeros before the rows
 buffer Runs { uint runs[]; };
-readonly buffer Sites { uint rows[]; };  // 8 words per tile, see lattice.glsl; not read along columns
+readonly buffer Sites { uint rows[]; };  // 8 words per tile, see tiles.glsl; not read along columns
 
 #include "kernels/filters/likeness.glsl"
 

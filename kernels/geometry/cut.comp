@@ -5,7 +5,7 @@
 // Out: those of the frame.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/geometry/margin.h"
+#include "kernels/geometry/geometry.h"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { CutParams params; };

@@ -1,4 +1,4 @@
-// Parameters of the kernels that core/chain/geometry/geometry.cpp runs.
+// Parameters of the kernels that the sources of core/chain/geometry run.
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_GEOMETRY_H
 #define ALCOVE_GEOMETRY_H
@@ -45,6 +45,48 @@ struct DownsampleParams {
   ivec2 low_size;  // blocks
   ivec2 overhang;  // px: how far the first block reaches beyond the left and upper border
   uint hidden;     // planes of hidden surfaces
+};
+
+ALCOVE_CONSTANT uint kWidenEmpty = 0;   // the margin is left open: all that other views see is behind it
+ALCOVE_CONSTANT uint kWidenFilled = 1;  // the margin alone is written, with what was found
+
+struct WidenParams {
+  View view;
+  View wide;
+  ivec2 margin;  // px that `wide` has to the left of `view` and above it
+};
+
+struct CutParams {
+  ivec2 size;    // px, of the frame
+  ivec2 wide;    // px, of the frame with its margin
+  ivec2 margin;  // px to the left of the frame and above it
+  uint planes;
+};
+
+ALCOVE_CONSTANT uint kMatteCoverage = 0;  // one plane of it
+ALCOVE_CONSTANT uint kMatteNumbers = 1;   // one plane of objects
+ALCOVE_CONSTANT uint kMatteRanked = 2;    // pairs of planes: an object, and its coverage
+
+struct MatteParams {
+  ivec2 size;    // px
+  uint objects;  // that are meant
+};
+
+struct NeededParams {
+  ivec2 size;        // px of the image: its blocks
+  ivec2 frame_size;  // px
+  ivec2 offset;      // px from the frame's corner to that of the image's first block
+  int reach;         // px of the image about a receiver whose estimates it needs
+};
+
+// px: pixels that objects share look so far for one that tells them apart
+ALCOVE_CONSTANT int kOccludersReach = 2;
+
+struct OccludersParams {
+  View view;
+  uint ignores;    // 1: what the matte takes is no occluder; 0: what it does not take
+  uint keeps;      // 1: where nothing is known behind such a surface, it stays
+  uint lists_all;  // 1: a pixel with fewer hidden surfaces has no more: see GBuffer::hides_no_more
 };
 
 ALCOVE_END

@@ -5,7 +5,7 @@
 // Out: how much of each pixel the matte takes, 0 to 1. What is no number takes nothing.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/geometry/matte.h"
+#include "kernels/geometry/geometry.h"
 #include "kernels/base/finite.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;

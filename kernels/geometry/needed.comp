@@ -6,7 +6,7 @@
 // frame's, and which may be larger than the frame.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/geometry/matte.h"
+#include "kernels/geometry/geometry.h"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const int kFactor = 1;  // px of a block in x and in y

@@ -9,7 +9,7 @@
 // is that of the neighbour which is one object's alone and lies nearest to its plane, and it to the neighbour's.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/geometry/occluders.h"
+#include "kernels/geometry/geometry.h"
 #include "kernels/hidden/hidden.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"

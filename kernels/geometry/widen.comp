@@ -8,7 +8,7 @@
 // border's completion begins at the margin's border then.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/geometry/margin.h"
+#include "kernels/geometry/geometry.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/keys.glsl"

@@ -9,7 +9,7 @@
 // where each shows something farther.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/hidden/warp.h"
+#include "kernels/hidden/hidden.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/reprojection.glsl"

@@ -8,7 +8,7 @@
 // the left or right, or none above or below, may hang in mid-air: files with smooth edges have such pixels.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/hidden/warp.h"
+#include "kernels/hidden/hidden.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/reprojection.glsl"

@@ -9,7 +9,7 @@
 // around it, which are all of them as long as it is no more than two pixels wide here.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/hidden/warp.h"
+#include "kernels/hidden/hidden.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/keys.glsl"

@@ -8,7 +8,7 @@
 // lifted onto the plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/results/shading.h"
+#include "kernels/results/results.h"
 #include "kernels/base/normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;

@@ -12,7 +12,7 @@
 // (Beer and Lambert's law): the fog before a surface is not in its corners.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/results/shading.h"
+#include "kernels/results/results.h"
 #include "kernels/base/finite.glsl"
 #include "kernels/base/view.glsl"
 

@@ -16,7 +16,7 @@
 //   the height that two depths' errors can feign, in radii.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/results/confidence.h"
+#include "kernels/results/results.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/clearance.glsl"

@@ -8,11 +8,10 @@
 // An edge is where a neighbour lies off the pixel's tangent plane: the denoisers and the upsampling stop there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/results/debug.h"
+#include "kernels/results/results.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/arcs.glsl"
-#include "kernels/base/lattice.glsl"
 #include "kernels/base/tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -22,7 +21,7 @@ readonly buffer Normal { uint normal[]; };  // one uint per pixel, unit vector i
 // one float per pixel (kDebugValue) or a second set of normals (kDebugNormalAngle), or the kinds of tiles
 // (kDebugTile), or what is hidden (kDebugHidden); not read by others
 readonly buffer Values { uint values[]; };
-readonly buffer Rows { uint rows[]; };        // 8 words per tile, see lattice.glsl; only if sparse
+readonly buffer Rows { uint rows[]; };        // 8 words per tile, see tiles.glsl; only if sparse
 writeonly buffer Result { float result[]; };  // one float per pixel
 
 /// How far the farthest of the four neighbours lies off the tangent plane, as part of the pixel's depth; 1 at the sky.

@@ -10,7 +10,7 @@
 // visibility. At visibility 1 the cubic misses by up to 0.0004: what is open stays 1.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/results/shading.h"
+#include "kernels/results/results.h"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { MultiBounceParams params; };

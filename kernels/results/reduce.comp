@@ -8,7 +8,7 @@
 // beyond the planes take no part, and the others then count for more.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/results/reduce.h"
+#include "kernels/results/results.h"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { ReduceParams params; };

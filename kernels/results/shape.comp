@@ -9,7 +9,7 @@
 // alone: what a material's own AO holds is as true far away as nearby.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/results/shading.h"
+#include "kernels/results/results.h"
 #include "kernels/base/finite.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;

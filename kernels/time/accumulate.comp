@@ -18,7 +18,6 @@
 #include "kernels/base/normal.glsl"
 #include "kernels/base/reprojection.glsl"
 #include "kernels/time/sight.glsl"
-#include "kernels/time/cells.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const int kPlanes = 1;  // of values

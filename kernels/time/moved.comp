@@ -19,7 +19,6 @@
 #include "kernels/base/tiles.glsl"
 #include "kernels/base/reprojection.glsl"
 #include "kernels/time/sight.glsl"
-#include "kernels/time/cells.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const int kVectors = 0;  // 1: some frame has depths below 0

@@ -1,4 +1,5 @@
-// Where another frame looks for a surface of one. Pure: no bindings. After accumulate.h and reprojection.glsl.
+// Where another frame looks for a surface of one, and cells of space near which things have moved. Pure: no bindings.
+// After accumulate.h and reprojection.glsl.
 // SPDX-License-Identifier: BSD-3-Clause
 
 const float kLifted = 0.5;  // pixels' widths that what is seen through a surface is behind it at least
@@ -29,4 +30,16 @@ Sight sight_of(View view, vec3 position, vec3 error) {
   const bool is_seen = -position.z > 0.0 && all(greaterThan(place, ivec2(0))) && all(lessThan(place, view.size - 1));
   const float same = kPrecisions * error_at(error, -position.z) - position.z;
   return Sight(clamp(place, ivec2(0), view.size - 1), is_seen, same, pixel_width(view, -position.z));
+}
+
+// Cells of a frame's view space have words in a table that some of them share (Teschner et al., "Optimized Spatial
+// Hashing for Collision Detection of Deformable Objects", 2003).
+
+/// The cell in which a position lies.
+ivec3 cell_of(vec3 position, float radius) { return ivec3(floor(clamp(position / (kMovedCell * radius), -1e9, 1e9))); }
+
+/// Where its word is.
+uint place_of_cell(ivec3 cell) {
+  const uvec3 product = uvec3(cell) * uvec3(73856093u, 19349663u, 83492791u);
+  return (product.x ^ product.y ^ product.z) & (kMovedCells - 1u);
 }

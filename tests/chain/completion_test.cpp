@@ -1,7 +1,6 @@
 // What completed surfaces take of the visibility: who asks for it, its sums, its picture, and what is said of it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/estimate/completion.h"
-#include "core/base/estimator_facts.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/reuse.h"
 #include "core/run/frame_run.h"
@@ -53,7 +52,7 @@ class CompletedPlanes : public testing::Test {
   int width() const { return frame.data.width; }
   int height() const { return frame.data.height; }
 
-  /// Whether a pixel is on the lattice of that spacing: see kernels/base/lattice.glsl.
+  /// Whether a pixel is on the lattice of that spacing: see kernels/base/tiles.glsl.
   static bool is_receiver(int x, int y, int spacing) { return is_on_lattice(x + 3, y + 5, spacing); }
 
   Sites sites_of(int spacing) const { return sites(recorder(), gbuffer, {spacing, false}); }
@@ -169,7 +168,7 @@ TEST_F(CompletedPlanes, are_0_in_tiles_that_are_left_out_and_else_as_they_were) 
     Estimate out;
     out.ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
     out.completed = &plane("completed of a test", std::vector<float>(frame.data.pixels(), kBefore));
-    const TileList list = classify(recorder(), gbuffer, nullptr, skipping, radius, sites_of(spacing), out, 0);
+    const TileList list = classify(recorder(), gbuffer, skipping, radius, sites_of(spacing), out);
     recorder().download(*list.kinds);
     recorder().download(*out.ao);
     const std::vector<float> completed = finished(*out.completed);

@@ -1,7 +1,7 @@
 // The debug views: a picture each that says its scale, whole or not at all, and right where what it must show is
 // known.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/results/debug_view.h"
+#include "core/chain/results/debug.h"
 #include "tests/support/command_line.h"
 #include "tests/support/whole_picture.h"
 

@@ -1,6 +1,5 @@
 // What the filters leave out because of what tiles hold: the result has the bits of the whole.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/estimator_facts.h"
 #include "core/chain/estimate/sites.h"
 #include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"

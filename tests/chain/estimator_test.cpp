@@ -1,7 +1,7 @@
 // HBAO and Crytek's estimator against expected values of their own, whose derivations stand beside the tests, and
 // against slow versions of themselves. docs/testing.md says which mistake of such designs which test finds.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/estimator_facts.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/reference/reference.h"
 #include "tests/support/block_scene.h"
 #include "tests/support/chain.h"

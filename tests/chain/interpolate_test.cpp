@@ -1,6 +1,6 @@
 // The filter that gives all pixels theirs from the sites: against its formulas written out slowly, and what it keeps.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/estimator_facts.h"
+#include "core/chain/estimate/sites.h"
 #include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"

@@ -1,6 +1,7 @@
 // What other frames and views show behind the first surface lies where it is in the world, and stands still.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/geometry/margin.h"
+#include "core/chain/filters/filters.h"
+#include "core/chain/geometry/geometry.h"
 #include "kernels/base/reprojection.h"
 #include "tests/support/chain.h"
 #include "tests/support/seen_views.h"

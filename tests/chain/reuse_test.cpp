@@ -1,7 +1,8 @@
 // What a frame has in common with the one before it is not computed again, and has the bits of what is; so has an
 // adaptive density, of which neighbours decide.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/estimator_facts.h"
+#include "core/chain/estimate/estimate.h"
+#include "core/formats/exr.h"
 #include "core/run/frame_run.h"
 #include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"

@@ -1,6 +1,7 @@
 // Several radii in one run: each is the run with it alone, and the AO their mean.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/estimator_facts.h"
+#include "core/chain/estimate/sites.h"
+#include "core/formats/exr.h"
 #include "core/run/resume.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"

@@ -1,7 +1,7 @@
 // Which pixels have an estimate of their own: the kernels against their rule written out slowly, and what follows from
 // it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/estimator_facts.h"
+#include "core/chain/estimate/sites.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"

@@ -1,6 +1,6 @@
 // What is left out has the bits of what is computed.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/estimator_facts.h"
+#include "core/chain/estimate/estimate.h"
 #include "tests/support/chain.h"
 #include "tests/support/random_scenes.h"
 #include "tests/support/site_frames.h"

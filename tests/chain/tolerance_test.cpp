@@ -1,8 +1,9 @@
 // Estimates by their error: as many directions as the tolerance takes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/estimate/estimate.h"
+#include "core/chain/estimate/exact.h"
 #include "kernels/estimate/estimate.h"
-#include "kernels/estimate/exact_search.h"
+#include "kernels/estimate/exact.h"
 #include "tests/support/chain.h"
 
 namespace alcove::tolerance_test {

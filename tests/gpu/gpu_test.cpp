@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kernels/estimate/estimate.h"
 #include "kernels/geometry/geometry.h"
-#include "kernels/results/shading.h"
+#include "kernels/results/results.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 

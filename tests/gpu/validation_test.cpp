@@ -2,7 +2,8 @@
 // asks it to.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/chain.h"
-#include "core/chain/hidden/warp.h"
+#include "core/chain/compute.h"
+#include "core/chain/hidden/hidden.h"
 #include "tests/support/device.h"
 #include "tests/support/single_pass.h"
 
@@ -142,7 +143,7 @@ std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
 
 std::set<std::string> kernels_there_are() {
   std::set<std::string> names{"horizon_layers"};  // made of horizon.comp
-  for (const auto& entry : fs::directory_iterator(ALCOVE_SOURCE_DIR "/kernels"))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(ALCOVE_SOURCE_DIR "/kernels"))
     if (entry.path().extension() == ".comp") names.insert(entry.path().stem().string());
   return names;
 }

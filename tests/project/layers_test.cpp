@@ -173,7 +173,7 @@ TEST(Layers, both_halves_of_a_pass_lie_in_folders_of_one_name) {
 std::string rooms_markdown() {
   static const std::vector<std::pair<const char*, const char*>> kAnswers = {
       {"kernels",
-       "What does the device compute? One `.comp` per pass; one `.h` per source of `chain`, shared by GLSL and C++; "
+       "What does the device compute? One `.comp` per pass; one `.h` per family, shared by GLSL and C++; "
        "mathematics without bindings in `.glsl`. Its folders bear the names of `chain`'s."},
       {"core/base", "What does everything stand on? Errors, texts, files, settings."},
       {"core/gpu", "What is the device? Memory, kernels checked against their own SPIR-V, recording."},
@@ -230,8 +230,10 @@ std::string chain_source() {
   std::string chain = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/chain.cpp");
   for (const auto& [file, type, name] :
        {std::array{"estimate/sites", "Sites", "sites"}, std::array{"estimate/estimate", "Estimate", "estimate"},
-        std::array{"hidden/hidden", "GBuffer", "layers"}, std::array{"hidden/warp", "GBuffer", "warp"},
-        std::array{"hidden/warp", "void", "surfels"}, std::array{"time/accumulate", "Accumulation", "accumulate"}}) {
+        std::array{"estimate/estimate", "void", "estimate_sampled"},
+        std::array{"estimate/exact", "void", "estimate_exact"}, std::array{"hidden/hidden", "GBuffer", "layers"},
+        std::array{"hidden/hidden", "GBuffer", "warp"}, std::array{"hidden/hidden", "void", "surfels"},
+        std::array{"time/accumulate", "Accumulation", "accumulate"}}) {
     const std::string source = read_bytes(std::string(ALCOVE_SOURCE_DIR "/core/chain/") + file + ".cpp");
     std::smatch choice;
     const std::regex body(std::string("\\n") + type + " " + name + R"(\([^]*?\n\})");
@@ -297,18 +299,15 @@ TEST(Presets, each_of_ours_has_limits_on_every_frame_of_the_suite) {
   }
 }
 
-/// A header that several kernels include: its GLSL stands beside it.
-bool is_shared(const std::string& header) {
-  const fs::path glsl = fs::path(ALCOVE_SOURCE_DIR) / fs::path(header).replace_extension(".glsl");
-  return header == "kernels/base/shared.h" || fs::exists(glsl);
-}
-
-TEST(Kernels, every_header_belongs_to_a_source_of_the_chain_or_to_glsl) {
-  for (const auto& file : product())
-    if (file.is_in("kernels") && file.name.ends_with(".h") && !is_shared(file.name)) {
-      const std::string source = "core/chain/" + fs::path(file.name).replace_extension(".cpp").string().substr(8);
-      EXPECT_TRUE(fs::exists(ALCOVE_SOURCE_DIR "/" + source)) << file.name;
-    }
+TEST(Kernels, every_header_belongs_to_its_folder_to_a_source_of_the_chain_or_to_glsl) {
+  for (const auto& file : product()) {
+    if (!file.is_in("kernels") || !file.name.ends_with(".h") || file.name == "kernels/base/shared.h") continue;
+    const fs::path header = ALCOVE_SOURCE_DIR "/" + file.name;
+    const std::string source = ALCOVE_SOURCE_DIR "/core/chain" + file.name.substr(7, file.name.size() - 9) + ".cpp";
+    EXPECT_TRUE(header.stem() == header.parent_path().filename() || fs::exists(source) ||
+                fs::exists(fs::path(header).replace_extension(".glsl")))
+        << file.name;
+  }
 }
 
 TEST(Kernels, the_page_lists_the_passes_in_the_order_of_the_chain) {

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/chain/hidden/warp.h"
+#include "core/chain/hidden/hidden.h"
 #include "kernels/hidden/hidden.h"
-#include "kernels/hidden/warp.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/base/frame_inputs.h"
 
-#include "core/chain/base/pass_common.h"
+#include "core/chain/base/planes.h"
 
 namespace alcove {
 namespace {

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
-#include "core/chain/base/other_views.h"
-#include "core/chain/base/seen_estimates.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"
 #include "kernels/geometry/geometry.h"
+#include "kernels/time/accumulate.h"
 
 namespace alcove {
 
@@ -24,6 +25,44 @@ struct LayerTerms {
 struct Margin {
   ivec2 before{};  // to the left and above
   ivec2 after{};   // to the right and below
+};
+
+/// What another frame of the shot, or another view of the same instant, sees: its prepared depth and normals.
+struct OtherView {
+  View view{};
+  // its view space -> this frame's: x' = dot(row.xyz, x) + row.w, scene units
+  std::array<std::array<float, 4>, 3> to_here{};
+  vec3 depth_precision{};               // of planar depth: see DepthPrecision
+  const gpu::Buffer* depth = nullptr;   // a plane: planar, kSkyDepth for sky
+  const gpu::Buffer* normal = nullptr;  // a plane of packed normals, in its own view space
+  // a plane of uints, not 0 where it shows what moves or may move; null: nothing does
+  const gpu::Buffer* moving = nullptr;
+  std::uint64_t content = 0;  // a hash of all three planes; 0: nobody has made it
+};
+
+/// Other frames, in upload buffers.
+struct SeenGroup {
+  const gpu::Buffer* planes = nullptr;  // of all of them, as words
+  const gpu::Buffer* frames = nullptr;  // TakenFrame each
+  uint count = 0;
+  // Entries of the table. Kernels are made for their number, so that it is the same where fewer frames count, at cuts
+  // and beside missing ones: those beyond `count` repeat the first one and count nowhere.
+  uint listed = 0;
+};
+
+/// The estimates that a frame takes the mean of.
+struct EstimateSet {
+  // Its own, over all of it, in upload buffers: planar depth as of a TakenFrame, normals as of a GBuffer, and values:
+  // the visibility, then that of each radius where it is asked for, then the mean open direction where that is. Null:
+  // it is its own estimate.
+  const gpu::Buffer* depth = nullptr;
+  const gpu::Buffer* normal = nullptr;
+  const gpu::Buffer* values = nullptr;
+  View view{};                    // of all of it
+  bool has_moving = false;        // some frame has pixels that move by motion vectors
+  std::vector<SeenGroup> groups;  // of the others
+  ivec2 corner{};                 // px from the whole frame's corner to that of the part that is computed
+  bool is_further_part = false;   // of the frame of the part before, by the same recorder: what has moved is known
 };
 
 struct FrameInputs {
@@ -47,7 +86,7 @@ struct FrameInputs {
   EstimateSet estimates;                // of which its AO is the mean
   int turn = 0;                         // of its sites, see site_rule_of()
   int supersampling = 1;                // px of the frame for each of its picture, in x and in y
-  Margin margin{};                      // where others show what lies around the frame; see margin.h
+  Margin margin{};                      // where others show what lies around the frame: see margin_of()
   MatteReading matte;                   // how its planes are read
   MatteReading occluders;               // the same of RawPlane::occluders
   std::vector<AmbientReading> ambient;  // how those of RawPlane::indirect are read

@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/estimate/estimate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "core/base/estimator_facts.h"
-#include "core/chain/base/pass_common.h"
-#include "core/chain/estimate/sites.h"
+#include "core/chain/base/planes.h"
+#include "core/chain/estimate/exact.h"
+#include "core/chain/filters/filters.h"
 #include "kernels/estimate/estimate.h"
-#include "kernels/estimate/exact_search.h"
 
 namespace alcove {
 namespace {
@@ -77,7 +77,39 @@ std::vector<gpu::Binding> buffers_of(const GBuffer& gbuffer, const Estimate& out
           {"Sites", out.listed.sites}, {"SiteCountsBuffer", out.listed.site_counts}};
 }
 
+double samples_of_a_radius(const EstimatorSettings& settings) {
+  return settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
+}
+
 }  // namespace
+
+std::vector<double> radii_of(const EstimatorSettings& settings) {
+  std::vector<double> radii = settings.further_radii;
+  radii.push_back(settings.radius.value());
+  std::ranges::sort(radii);
+  return radii;
+}
+
+bool searches_exactly(const EstimatorSettings& settings) {
+  return settings.estimator == Estimator::gtao && (settings.search != SliceSearch::steps || settings.tolerance > 0);
+}
+
+bool searches_slices(const EstimatorSettings& settings) {
+  return settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
+}
+
+bool completes(const EstimatorSettings& settings) {
+  return searches_slices(settings) && settings.complete == Completion::all &&
+         settings.thickness != ThicknessKind::infinite;
+}
+
+bool completes_anywhere(const EstimatorSettings& settings) {
+  return searches_slices(settings) && settings.complete != Completion::none;
+}
+
+double samples_per_estimate(const EstimatorSettings& settings) {
+  return searches_exactly(settings) ? 0 : samples_of_a_radius(settings) * double(1 + settings.further_radii.size());
+}
 
 gpu::Extent estimate_extent(const TileList& list) {
   if (!list.sites) return list_extent(list);
@@ -108,16 +140,6 @@ Sampling sampling_of(const EstimatorSettings& settings, int frame) {
   return {settings.slices, settings.steps, noise_shift(settings.noise == Noise::animated ? frame : 0, settings.seed)};
 }
 
-int filter_reach_of(const EstimatorSettings& settings) {
-  const int denoised = denoise_reach_of(settings);
-  const int refined = settings.tolerance > 0 ? kRefineReach : 0;
-  return int(settings.resolution) * (denoised + refined + (settings.resolution == Resolution::full ? 0 : 2));
-}
-
-int site_reach_of(const EstimatorSettings& settings) {
-  return is_adaptive(settings) ? int(settings.resolution) * kSiteReach : 0;
-}
-
 Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame, const BlockGrid& grid) {
   return {!settings.no_skip, settings.no_skip ? nullptr : frame.changes,
           without_margin(frame, grid, filter_reach_of(settings))};
@@ -125,57 +147,49 @@ Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
                   const EstimatorSettings& settings, bool with_bent, bool with_completed) {
+  const std::size_t plane = plane_bytes(gbuffer.view);
+  Estimate result{&gpu.buffer("ao", radii_of(settings).size() * plane)};
+  if (with_bent) result.bent = &gpu.buffer("bent", 3 * plane);
+  if (with_completed) result.completed = &gpu.buffer("completed", plane);
+  if (!searches_exactly(settings))
+    estimate_sampled(gpu, gbuffer, sites, frame, settings, result);
+  else
+    estimate_exact(gpu, gbuffer, settings, result);
+  return result;
+}
+
+Estimate of_radius(const Estimate& all, uint plane, std::size_t radii) {
+  const bool is_largest = plane + 1 == radii;
+  Estimate out{all.ao, plane};
+  if (is_largest) out.bent = all.bent;
+  if (is_largest) out.completed = all.completed;
+  return out;
+}
+
+void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
+                      const EstimatorSettings& settings, Estimate& result) {
   const auto radii = radii_of(settings);
   const Sampling sampling = sampling_of(settings, frame.frame);
-  const Skipping skipping = skipping_of(settings, frame, gbuffer.grid);
-  const SearchDirections directions = search_directions(settings);
   const VolumeSamples volume{settings.samples, settings.sample_kernel, settings.range_check};
-  const bool is_exact = searches_exactly(settings);
-  Estimate result;
-  result.ao = &gpu.buffer("ao", radii.size() * plane_bytes(gbuffer.view));
-  gpu::Buffer* bent = with_bent ? &gpu.buffer("bent", 3 * plane_bytes(gbuffer.view)) : nullptr;
-  gpu::Buffer* completed = with_completed ? &gpu.buffer("completed", plane_bytes(gbuffer.view)) : nullptr;
+  Skipping skipping = skipping_of(settings, frame, gbuffer.grid);
   // Tiles that are as in the frame before keep what it found in them.
-  if (completed && (is_exact || !skipping.changes)) gpu.clear(*completed);
-
-  const gpu::Buffer* hidden = is_exact ? nullptr : bounds(gpu, gbuffer, skipping);
+  if (result.completed && !skipping.changes) gpu.clear(*result.completed);
+  skipping.bounds = bounds(gpu, gbuffer, skipping);
   for (uint plane = 0; plane < radii.size(); plane++) {
     const Reach reach = reach_of(settings, radii[plane]);
-    const bool is_largest = plane + 1 == radii.size();
-    Estimate out{result.ao, is_largest ? bent : nullptr};
-    out.completed = is_largest ? completed : nullptr;
-    result.bent = out.bent;
-    result.completed = out.completed;
-    if (!is_exact) {
-      out.listed = classify(gpu, gbuffer, hidden, skipping, reach.radius, sites, out, plane);
-      list_sites(gpu, gbuffer, sites, out.listed);
-    }
-    result.listed = out.listed;
+    Estimate out = of_radius(result, plane, radii.size());
+    out.listed = classify(gpu, gbuffer, skipping, reach.radius, sites, out);
+    list_sites(gpu, gbuffer, sites, out.listed);
     switch (settings.estimator) {
       case Estimator::gtao:
-      case Estimator::bitmask:
-        if (!is_exact) horizon(gpu, gbuffer, reach, sampling, out, plane);
-        for (int i = 0; is_exact && settings.tolerance == 0 && i < directions.count; i++) {
-          Profile lines = profile(gpu, gbuffer, directions, i, reach);
-          complete(gpu, gbuffer, lines, reach);
-          exact(gpu, gbuffer, lines, directions, reach, out, plane);
-        }
-        if (settings.tolerance > 0) {
-          Convergence search = convergence(gpu, gbuffer, settings, out, plane, uint(radii.size()));
-          for (const int count : kComparedDirections) {
-            search_until(gpu, gbuffer, reach, search, count);
-            converge(gpu, gbuffer, search, result, count);
-            refine(gpu, gbuffer, search, result, count);
-          }
-        }
-        break;
-      case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out, plane); break;
-      case Estimator::crytek: crytek(gpu, gbuffer, reach, sampling, volume, out, plane); break;
+      case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
+      case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out); break;
+      case Estimator::crytek: crytek(gpu, gbuffer, reach, sampling, volume, out); break;
     }
+    result.listed = out.listed;
   }
   // What is left out at the largest radius may be computed at another.
   result.listed.skips_surfaces = result.listed.skips_surfaces && radii.size() == 1;
-  return result;
 }
 
 const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping) {
@@ -187,8 +201,8 @@ const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skip
   return &result;
 }
 
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bounds, const Skipping& skipping,
-                  float radius, const Sites& sites, const Estimate& out, uint plane, const std::string& prefix) {
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, float radius,
+                  const Sites& sites, const Estimate& out, const std::string& prefix) {
   const gpu::Extent tiles = tile_extent(gbuffer.view);
   const gpu::Extent blocks = block_extent(gbuffer.view);
   TileList list;
@@ -203,7 +217,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer*
                     (selects ? kClassifySelects : 0) | (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
   const ClassifyParams params{gbuffer.view,
                               radius,
-                              plane,
+                              out.plane,
                               gbuffer.grid.frame_size,
                               gbuffer.grid.overhang,
                               gbuffer.grid.factor,
@@ -211,7 +225,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer*
                               skipping.needed.from,
                               skipping.needed.to};
   gpu.dispatch("classify", params,
-               {{"Bounds", bounds},
+               {{"Bounds", skipping.bounds},
                 {"Changes", skipping.changes},
                 {"Needed", gbuffer.needed},
                 {"Depth", gbuffer.depth},
@@ -228,7 +242,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer*
 }
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-             const Estimate& out, uint plane) {
+             const Estimate& out) {
   HorizonParams params{};
   params.view = gbuffer.view;
   params.radius = reach.radius;
@@ -237,7 +251,7 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   params.noise_shift = sampling.noise_shift;
   params.thickness = reach.thickness;
   params.bias = reach.bias;
-  params.plane = plane;
+  params.plane = out.plane;
   params.depth_precision = gbuffer.depth_precision;
   std::vector<gpu::Binding> buffers = buffers_of(gbuffer, out);
   buffers.insert(buffers.end(), {{"Bent", out.bent}, {"Completed", out.completed}});
@@ -252,7 +266,7 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
 }
 
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,
-          const Estimate& out, uint plane) {
+          const Estimate& out) {
   HbaoParams params{};
   params.view = gbuffer.view;
   params.radius = reach.radius;
@@ -261,14 +275,14 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const 
   params.from_surface = elevation == Elevation::surface ? 1 : 0;
   params.noise_origin = gbuffer.grid.origin;
   params.noise_shift = sampling.noise_shift;
-  params.plane = plane;
+  params.plane = out.plane;
   params.depth_precision = gbuffer.depth_precision;
   gpu.dispatch("hbao", params, buffers_of(gbuffer, out), estimate_extent(out.listed),
                {uint(sampling.slices), uint(sampling.steps), uint(reach.falloff), out.listed.sites ? 1u : 0u});
 }
 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-            const VolumeSamples& samples, const Estimate& out, uint plane) {
+            const VolumeSamples& samples, const Estimate& out) {
   CrytekParams params{};
   params.view = gbuffer.view;
   params.radius = reach.radius;
@@ -277,10 +291,25 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, cons
   params.range_check = range_check_of(samples.range_check);
   params.noise_origin = gbuffer.grid.origin;
   params.noise_shift = sampling.noise_shift;
-  params.plane = plane;
+  params.plane = out.plane;
   params.depth_precision = gbuffer.depth_precision;
   gpu.dispatch("crytek", params, buffers_of(gbuffer, out), estimate_extent(out.listed),
                {uint(samples.count), out.listed.sites ? 1u : 0u});
+}
+
+gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, const Sites& sites) {
+  if (!estimate.completed) return nullptr;
+  const View& view = gbuffer.view;
+  const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
+  gpu::Buffer& sums = gpu.buffer("completion", sizeof(vec2) * tiles.x * tiles.y);
+  gpu.dispatch("completion",
+               CompletionParams{view,
+                                {gbuffer.grid.origin.x + sites.shift.x, gbuffer.grid.origin.y + sites.shift.y},
+                                sites.spacing,
+                                planes_in(*estimate.ao, view) - 1},
+               {{"Depth", gbuffer.depth}, {"Ao", estimate.ao}, {"Completed", estimate.completed}, {"Sums", sums}},
+               tiles);
+  return &sums;
 }
 
 }  // namespace alcove

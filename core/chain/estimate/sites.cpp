@@ -5,10 +5,9 @@
 #include <array>
 #include <bit>
 
-#include "core/base/estimator_facts.h"
-#include "core/chain/base/pass_common.h"
+#include "core/chain/base/planes.h"
 #include "core/chain/estimate/estimate.h"
-#include "kernels/estimate/sites.h"
+#include "kernels/estimate/estimate.h"
 
 namespace alcove {
 namespace {
@@ -44,7 +43,26 @@ const gpu::Buffer& flat_links(gpu::Recorder& gpu, const View& view, const std::s
   return gpu.buffer(prefix + "flat links", rows_bytes(view));
 }
 
+/// From so many slices on an estimate is meant to be better than what fewer pixels can tell.
+constexpr int kManySlices = 5;
+
 }  // namespace
+
+int spacing_of(const EstimatorSettings& settings) {
+  if (searches_exactly(settings)) return 1;
+  if (settings.stride > 0) return settings.stride;
+  if (settings.denoise != Denoise::bilateral || settings.resolution != Resolution::full) return 1;
+  if (settings.density == Density::adaptive && searches_slices(settings)) return settings.slices < kManySlices ? 16 : 2;
+  return settings.slices <= 2 && settings.estimator == Estimator::gtao ? 4 : 1;
+}
+
+bool is_adaptive(const EstimatorSettings& settings) {
+  return settings.density == Density::adaptive && searches_slices(settings) && spacing_of(settings) > 1;
+}
+
+int site_reach_of(const EstimatorSettings& settings) {
+  return is_adaptive(settings) ? int(settings.resolution) * kSiteReach : 0;
+}
 
 SiteRule site_rule_of(const EstimatorSettings& settings, int turn) {
   return {spacing_of(settings), is_adaptive(settings), kShifts[std::size_t(turn) % kShifts.size()]};

@@ -9,9 +9,20 @@
 
 namespace alcove {
 
+/// How many pixels share one estimate, at most where the density is adaptive: 1, 2, 4, 8 or 16. Where the settings
+/// leave it open, it is 1 unless the bilateral denoiser gives the others theirs at full resolution. Then it is 16, or 2
+/// from 5 slices on, for an adaptive density, and 4 with up to 2 slices for gtao with a uniform one.
+int spacing_of(const EstimatorSettings& settings);
+
+/// Whether surfaces that show few pixels have more estimates than spacing_of() says.
+bool is_adaptive(const EstimatorSettings& settings);
+
+/// How far depths count for where estimates are made, in px of the frame: see sites.comp.
+int site_reach_of(const EstimatorSettings& settings);
+
 /// The sites of a G-buffer: pixels with an estimate, from which the filters make that of the others.
 struct Sites {
-  const gpu::Buffer* rows = nullptr;  // 8 words per tile, see lattice.glsl; null: every pixel has an estimate
+  const gpu::Buffer* rows = nullptr;  // 8 words per tile, see tiles.glsl; null: every pixel has an estimate
   int spacing = 1;                    // one pixel of so many is a site at least
   ivec2 shift{};                      // px of their lattice to the left and up
 };

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/base/estimator_facts.h"
-#include "core/chain/base/pass_common.h"
+#include "core/chain/base/planes.h"
+#include "core/chain/estimate/sites.h"
+#include "kernels/estimate/exact.h"
 #include "kernels/filters/filters.h"
 
 namespace alcove {
@@ -84,6 +85,21 @@ gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& liste
 
 }  // namespace
 
+int denoise_radius_of(const EstimatorSettings& settings) {
+  if (settings.denoise_radius > 0) return settings.denoise_radius;
+  return spacing_of(settings) > 1 ? 8 : 4;
+}
+
+int denoise_reach_of(const EstimatorSettings& settings) {
+  // What has an estimated error is not mixed with its neighbours.
+  if (settings.denoise == Denoise::none || settings.tolerance > 0) return 0;
+  if (settings.denoise == Denoise::box) return 2;
+  const auto& kernel = settings.denoise_kernel;
+  const int radius = kernel.empty() ? denoise_radius_of(settings) : int(kernel.size()) - 1;
+  if (spacing_of(settings) == 1) return radius;
+  return std::max(radius, is_adaptive(settings) ? 3 : 8);
+}
+
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales) {
   const uint radii = planes_in(*estimate.ao, gbuffer.view);
   if (radii == 1) return {estimate.ao, nullptr, estimate.bent};
@@ -91,6 +107,12 @@ Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& e
   gpu.dispatch("combine", CombineParams{gbuffer.view.size, radii}, {{"Scales", estimate.ao}, {"Ao", mean}},
                extent_of(gbuffer.view));
   return {&mean, keeps_scales ? estimate.ao : nullptr, estimate.bent};
+}
+
+int filter_reach_of(const EstimatorSettings& settings) {
+  const int denoised = denoise_reach_of(settings);
+  const int refined = settings.tolerance > 0 ? kRefineReach : 0;
+  return int(settings.resolution) * (denoised + refined + (settings.resolution == Resolution::full ? 0 : 2));
 }
 
 Denoiser denoiser_of(const EstimatorSettings& settings) {

@@ -1,10 +1,11 @@
-// The passes that make the G-buffer: what every later pass relies on.
+// The passes that make the G-buffer, which every later pass relies on, and those that put a margin around it.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <string>
 
 #include "core/chain/base/frame_inputs.h"
+#include "core/chain/base/planes.h"
 
 namespace alcove {
 
@@ -54,12 +55,6 @@ struct GBuffer {
 const gpu::Buffer& occluder_depth_of(const GBuffer& gbuffer);
 const gpu::Buffer* occluder_hidden_of(const GBuffer& gbuffer);
 
-/// How much of each pixel wants AO.
-struct Matte {
-  gpu::Buffer* plane = nullptr;  // coverage, 0 to 1, over the frame; null: all want it
-  double outside = 1;            // the AO where it is 0
-};
-
 /// Makes the G-buffer from the raw planes. `prefix` stands before the names of its buffers where there is another
 /// G-buffer already.
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string& prefix = "");
@@ -69,5 +64,28 @@ GBuffer reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 
 /// Makes the G-buffer of the blocks of a grid, or returns the same one where each block is a pixel. `prefix`: as above.
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& grid, const std::string& prefix = "");
+
+// The margin shows what lies around the picture, as other frames and other views see it: receivers at the border need
+// it.
+
+/// The margin of a part of a frame, or of the whole: on each side on which it ends with the frame an eighth of the
+/// frame's width, for which other views of it usually have something to show. It does not depend on how a frame is cut.
+Margin margin_of(const Window& part, const Window& frame);
+
+/// The frame as it is with its margin; the same one where it has none. Its planes stay those of the frame.
+FrameInputs with_margin(const FrameInputs& frame);
+
+/// The G-buffer with an empty margin: all that others show there is behind it.
+GBuffer widen(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& wide);
+/// Fills the margin of `wide` with the nearest surfaces that others show there, the first plane of `found`, and gives
+/// it normals. Those of the frame are there already: at its border the margin must not change them.
+void widen(gpu::Recorder& gpu, const GBuffer& prepared, const GBuffer& wide, const FrameInputs& frame,
+           const gpu::Buffer& found);
+
+/// Cuts the margin off planes, or returns the same ones where there is none; null stays null.
+gpu::Buffer* cut(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Buffer* planes, const std::string& name);
+Visibility cut(gpu::Recorder& gpu, const FrameInputs& frame, const Visibility& wide);
+/// The same for a G-buffer whose first surface `prepared` has.
+GBuffer cut(gpu::Recorder& gpu, const FrameInputs& frame, const GBuffer& wide, const GBuffer& prepared);
 
 }  // namespace alcove

@@ -1,10 +1,16 @@
-// Where AO is wanted: the matte as a plane, and the tiles that its receivers need.
+// What mattes say of pixels: where AO is wanted, and which surfaces may block.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include "core/chain/geometry/geometry.h"
 
 namespace alcove {
+
+/// How much of each pixel wants AO.
+struct Matte {
+  gpu::Buffer* plane = nullptr;  // coverage, 0 to 1, over the frame; null: all want it
+  double outside = 1;            // the AO where it is 0
+};
 
 /// A matte, or that of RawPlane::occluders, as one plane of coverage over the frame; none where the frame has none.
 Matte matte(gpu::Recorder& gpu, const FrameInputs& frame, RawPlane which = RawPlane::matte);
@@ -13,5 +19,16 @@ Matte matte(gpu::Recorder& gpu, const FrameInputs& frame, RawPlane which = RawPl
 /// the same one where there is none. `wide` is the frame with its
 /// margin: see with_margin().
 GBuffer needed(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& wide, const Matte& matte, int reach);
+
+/// What stands for the surfaces that nobody knows behind one that is no occluder.
+enum class Unknown {
+  open,     // nothing
+  blocked,  // the surface in front of them: nothing that they may be blocks more
+};
+
+/// The G-buffer with its occluders, where the frame says that some surfaces are none; else the same one. Receivers, and
+/// all that is decided by what is seen, stay as they are.
+GBuffer occluders(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                  Unknown unknown = Unknown::open);
 
 }  // namespace alcove

@@ -4,12 +4,11 @@
 
 #include <limits>
 
-#include "core/base/estimator_facts.h"
-#include "core/chain/base/pass_common.h"
+#include "core/chain/base/planes.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/filters/filters.h"
-#include "core/chain/geometry/occluders.h"
-#include "kernels/results/confidence.h"
+#include "core/chain/geometry/matte.h"
+#include "kernels/results/results.h"
 
 namespace alcove {
 namespace {
@@ -19,15 +18,24 @@ constexpr double kThin = 0.02;
 
 }  // namespace
 
+EstimatorSettings bracket_of(const EstimatorSettings& settings) {
+  EstimatorSettings bracket = settings;
+  bracket.estimator = Estimator::gtao;
+  bracket.search = SliceSearch::steps;
+  bracket.tolerance = 0;
+  bracket.resolution = Resolution::full;
+  return bracket;
+}
+
 gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
                         const EstimatorSettings& settings) {
   const EstimatorSettings bracket = bracket_of(settings);
   const double radius = radii_of(settings).back();
   const Sampling sampling = sampling_of(bracket, frame.frame);
-  const Skipping skipping = skipping_of(bracket, frame, gbuffer.grid);
+  Skipping skipping = skipping_of(bracket, frame, gbuffer.grid);
   const Denoiser denoiser = denoiser_of(bracket);
   const Sites chosen = sites(gpu, gbuffer, site_rule_of(bracket), "bracket ");
-  const gpu::Buffer* hidden = bounds(gpu, gbuffer, skipping);
+  skipping.bounds = bounds(gpu, gbuffer, skipping);
   const GBuffer least = occluders(gpu, gbuffer, frame), most = occluders(gpu, gbuffer, frame, Unknown::blocked);
   const auto visibility = [&](const GBuffer& counted, float thickness, Completion complete,
                               const std::string& prefix) -> const gpu::Buffer& {
@@ -35,9 +43,9 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
     reach.thickness = thickness;
     reach.complete = complete;
     Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view))};
-    out.listed = classify(gpu, gbuffer, hidden, skipping, reach.radius, chosen, out, 0, prefix);
+    out.listed = classify(gpu, gbuffer, skipping, reach.radius, chosen, out, prefix);
     list_sites(gpu, gbuffer, chosen, out.listed, prefix);
-    horizon(gpu, counted, reach, sampling, out, 0);
+    horizon(gpu, counted, reach, sampling, out);
     return chosen.rows ? interpolate(gpu, gbuffer, *out.ao, chosen, denoiser, prefix)
                        : denoise(gpu, gbuffer, *out.ao, denoiser, prefix);
   };

@@ -7,6 +7,10 @@
 
 namespace alcove {
 
+/// The settings of the estimates by slices and steps at full resolution between which --aov confidence takes the AO to
+/// lie, whatever estimates it.
+EstimatorSettings bracket_of(const EstimatorSettings& settings);
+
 /// Makes a plane in [0, 1], for the largest radius, whatever the estimator: see confidence.comp.
 gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
                         const EstimatorSettings& settings);

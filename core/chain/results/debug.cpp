@@ -1,12 +1,46 @@
-// Host side of debug.comp: what each view takes beside the G-buffer.
+// The table of debug views, and the pass that makes their numbers; core/run/frame_files.cpp draws the pictures.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/results/debug.h"
 
-#include "core/chain/base/pass_common.h"
-#include "kernels/results/debug.h"
+#include <algorithm>
+#include <array>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "kernels/results/results.h"
 
 namespace alcove {
 namespace {
+
+constexpr std::array kViews{
+    DebugView{"raw-depth", "raw depth: the channel as the file holds it", kDebugValue, DebugSource::raw_depth,
+              DebugScale::percentile, 0, 0, false},
+    DebugView{"linear-depth", "linear depth: distance along the optical axis, scene units", kDebugPlanarDepth,
+              DebugSource::none, DebugScale::percentile, 0, 0, false},
+    DebugView{"view-z", "view z: z in view space, scene units (logarithmic)", kDebugViewZ, DebugSource::none,
+              DebugScale::percentile_logarithmic, 0, 0, false},
+    DebugView{"view-normal-z", "view normal z: 1 faces along the optical axis", kDebugNormalZ, DebugSource::none,
+              DebugScale::fixed, -1, 1, false},
+    DebugView{"reconstruction", "reconstruction: degrees between the normals and those from depth; 30 and more are one",
+              kDebugNormalAngle, DebugSource::normals_from_depth, DebugScale::fixed, 0, 30, false},
+    DebugView{"raw-ao", "raw AO: as estimated, at its own resolution; 1 is open", kDebugValue, DebugSource::raw_ao,
+              DebugScale::fixed, 0, 1, true},
+    DebugView{"denoised-ao", "denoised AO: before upsampling and shaping; 1 is open", kDebugValue,
+              DebugSource::denoised_ao, DebugScale::fixed, 0, 1, true},
+    DebugView{"completed", "completed: visibility that surfaces take where they are only guessed to go on", kDebugValue,
+              DebugSource::completed, DebugScale::fixed, 0, 1, true},
+    DebugView{"density",
+              "density: share of the pixels with an estimate of their own, in squares of 4 x 4 (logarithmic)",
+              kDebugDensity, DebugSource::sites, DebugScale::fixed_logarithmic, 1.0f / 16, 1, false},
+    DebugView{"tiles", "tiles: 1 is estimated, 0 as in the frame before or not needed", kDebugTile, DebugSource::tiles,
+              DebugScale::fixed, 0, 1, false},
+    DebugView{"hidden", "hidden: surfaces behind the first; half a one more where any of them closes a solid",
+              kDebugHidden, DebugSource::hidden, DebugScale::fixed, 0, 3.5f, false},
+    DebugView{"count", "count: frames whose estimates the AO is the mean of (logarithmic)", kDebugValue,
+              DebugSource::count, DebugScale::fixed_logarithmic, 1, 33, false},
+    DebugView{"edges", "edges: a neighbour's distance from the tangent plane, part of the depth (logarithmic)",
+              kDebugEdge, DebugSource::none, DebugScale::fixed_logarithmic, 1e-4f, 1, false},
+};
 
 /// The normals that the frame would have without any of its own.
 const gpu::Buffer* normals_from_depth(gpu::Recorder& gpu, FrameInputs frame) {
@@ -15,6 +49,32 @@ const gpu::Buffer* normals_from_depth(gpu::Recorder& gpu, FrameInputs frame) {
 }
 
 }  // namespace
+
+std::span<const DebugView> debug_view_table() { return kViews; }
+
+std::vector<std::string> debug_view_names() {
+  std::vector<std::string> names;
+  std::ranges::transform(kViews, std::back_inserter(names), &DebugView::name);
+  return names;
+}
+
+std::vector<const DebugView*> debug_views_of(const OutputSettings& settings) {
+  std::vector<const DebugView*> views;
+  if (settings.debug.empty()) return views;
+  for (const auto& name : split(settings.debug)) {
+    const auto found = std::ranges::find(kViews, name, &DebugView::name);
+    if (found == kViews.end())
+      fail(ErrorKind::usage, "--set debug: there is no view \"{}\"{}; there is {}", name,
+           suggestion(name, debug_view_names()), list_of(debug_view_names()));
+    if (std::ranges::find(views, &*found) == views.end()) views.push_back(&*found);
+  }
+  return views;
+}
+
+std::string debug_path(const OutputSettings& settings, const DebugView& view) {
+  const std::string& output = settings.output;
+  return (output.ends_with(".exr") ? output.substr(0, output.size() - 4) : output) + "." + view.name + ".png";
+}
 
 DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages,
                  const FrameInputs& frame) {

@@ -1,26 +1,24 @@
-// What the chain gives: buffers that the host reads after the recorder has run, and ONE table of the AOVs among them.
+// The results of the chain: buffers that the host reads after the recorder has run, ONE table of the AOVs among them,
+// and what a run asks for.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "core/chain/results/own_estimate.h"
-#include "kernels/base/shared.h"
+#include "core/base/settings.h"
+#include "core/chain/base/planes.h"
+#include "core/chain/results/debug.h"
+#include "core/frame/camera.h"
 
 namespace alcove {
 
-namespace gpu {
-class Buffer;
-}
-struct DebugView;  // core/chain/results/debug_view.h
-
-/// One number per pixel for a debug view; kSkyDepth for sky.
-struct DebugPlane {
-  const DebugView* view;
-  ivec2 size;  // px
-  gpu::Buffer* values;
+/// A frame's own estimate, which it hands to others: buffers that the host reads after the recorder has run.
+struct OwnEstimate {
+  GBuffer gbuffer;
+  Visibility visibility;  // of all its pixels, before any shaping
 };
 
 /// Null: not asked for.
@@ -49,9 +47,9 @@ struct FrameOutputs {
   gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
   gpu::Buffer* color_ao = nullptr;            // planes r, g, b: the visibility with multi-bounce
   gpu::Buffer* composite = nullptr;           // the beauty's planes
-  gpu::Buffer* count = nullptr;    // a plane and more: of how many frames' estimates it is the mean; null: its own
-  std::optional<OwnEstimate> own;  // with wanted.only_own: then nothing else is made of it
-  std::vector<DebugPlane> debug;
+  gpu::Buffer* count = nullptr;      // a plane and more: of how many frames' estimates it is the mean; null: its own
+  std::optional<OwnEstimate> own{};  // with wanted.only_own: then nothing else is made of it
+  std::vector<DebugPlane> debug{};
 };
 
 /// What an AOV is made from; each needs what stands before it, too.
@@ -77,5 +75,59 @@ inline constexpr std::array kAovs{
     AovRow{"error", "error.Y", &FrameOutputs::error, AovSource::visibility},
     AovRow{"specular-occlusion", "specular.Y", &FrameOutputs::specular_occlusion, AovSource::open_directions},
 };
+
+/// An AOV that a run asks for: a row of kAovs, with the channels and planes that the other outputs' settings give it.
+struct Aov {
+  std::string name;
+  std::vector<std::string> channels;
+  gpu::Buffer* FrameOutputs::*planes;
+  AovSource source;
+  bool is_float;
+};
+std::vector<std::string> aov_names();
+
+/// The AOVs that the settings ask for, each once, in their order. Fails with ErrorKind::usage on a name that is not in
+/// the table, listing the names that are.
+std::vector<Aov> aovs_of(const OutputSettings& settings);
+
+/// How many planes of values an AOV has: ao-scales one for each radius, hidden two for each surface that is kept.
+std::size_t planes_of(const Aov& aov, const EstimatorSettings& settings);
+/// The channels of an AOV that has so many planes: scale1.Y of the smallest radius, hidden1.Z of the nearest surface.
+std::vector<std::string> channels_of(const Aov& aov, std::size_t planes);
+
+/// Whether an AOV that the settings ask for lies in these planes.
+bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes);
+
+/// What the outputs ask of the chain: their names, parsed once. Settings convert to it, so they may be passed in its
+/// place.
+struct Wanted {
+  /// Fails with ErrorKind::usage on names that are in no table.
+  Wanted(const OutputSettings& settings);
+  Wanted() : Wanted(OutputSettings{}) {}
+
+  /// Whether an AOV lies in these planes.
+  bool has(gpu::Buffer* FrameOutputs::*planes) const;
+  /// Whether nothing is asked for but AO that is made from depth and normals alone.
+  bool is_only_visibility() const;
+
+  std::vector<Aov> aovs;
+  std::vector<const DebugView*> debug_views;
+  bool visibility = false;       // AO, or what is made from it
+  bool open_directions = false;  // what is made from them, of an estimator that finds them
+  bool completed = false;        // what completed surfaces took of the visibility
+  bool only_own = false;         // the estimate alone, for other frames
+  bool multi_bounce = false;
+  PixelFilter filter;
+  CompositeLook look;
+};
+
+/// Whether the directions that are given to the host are in world space.
+bool in_world(const Camera& camera, const OutputSettings& settings);
+
+/// Whether any output is AO or made from it.
+bool needs_ao(const OutputSettings& output);
+
+/// Whether any output is made from open directions, by an estimator that finds them.
+bool needs_bent(const EstimatorSettings& settings, const Wanted& wanted);
 
 }  // namespace alcove

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/chain/base/pass_common.h"
-#include "kernels/results/reduce.h"
+#include "core/chain/base/planes.h"
+#include "kernels/results/results.h"
 
 namespace alcove {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "core/chain/base/pass_common.h"
-#include "kernels/results/shading.h"
+#include "core/chain/base/planes.h"
+#include "kernels/results/results.h"
 
 namespace alcove {
 
@@ -41,7 +41,7 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
 Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
                  const gpu::Buffer* material_ao, const Matte& matte) {
   const bool changes = shaping.intensity != 1 || shaping.power != 1 || shaping.fade_end || material_ao || matte.plane;
-  if (!changes) return visibility;
+  if (!visibility.ao || !changes) return visibility;
   Visibility result = visibility;
   result.ao = &shape(gpu, gbuffer, *visibility.ao, shaping, material_ao, matte);
   if (visibility.scales)
@@ -84,8 +84,9 @@ gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu:
   return result;
 }
 
-gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame,
+gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* ao, const FrameInputs& frame,
                        const CompositeLook& look) {
+  if (!frame[RawPlane::beauty]) return nullptr;
   const gpu::Buffer& beauty = *frame[RawPlane::beauty];
   const gpu::Buffer* light = frame[RawPlane::indirect];
   const gpu::Buffer* color = frame[RawPlane::diffuse_color];
@@ -100,7 +101,7 @@ gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Bu
   params.view = frame.view;
   params.has_alpha = planes_in(beauty, frame.view) == 4 ? 1 : 0;
   params.lights = light ? uint(frame.ambient.size()) : 0;
-  params.has_color = planes_in(ao, frame.view) == 3 ? 1 : 0;
+  params.has_color = planes_in(*ao, frame.view) == 3 ? 1 : 0;
   params.fog_density = float(look.fog_density);
   params.gain = float(look.gain);
   params.mix = float(look.mix);
@@ -115,7 +116,7 @@ gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Bu
                 {"Counts", gbuffer.counts},
                 {"Depth", gbuffer.depth}},
                extent_of(frame.view));
-  return result;
+  return &result;
 }
 
 }  // namespace alcove

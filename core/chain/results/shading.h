@@ -6,7 +6,8 @@
 #include <string>
 
 #include "core/base/settings.h"
-#include "core/chain/filters/filters.h"
+#include "core/chain/base/planes.h"
+#include "core/chain/geometry/matte.h"
 
 namespace alcove {
 
@@ -19,8 +20,8 @@ struct Shaping {
 };
 Shaping shaping_of(const EstimatorSettings& settings);
 
-/// Shapes the AO and the planes of the radii; the input where nothing asks for any shaping. material_ao may be
-/// null.
+/// Shapes the AO and the planes of the radii; the input where there is none, or nothing asks for any shaping.
+/// material_ao may be null.
 Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
                  const gpu::Buffer* material_ao, const Matte& matte = {});
 /// The same for one buffer of planes. What it repairs is counted with the first one of a frame, whose prefix is empty.
@@ -42,9 +43,9 @@ gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, cons
 /// Visibility for each of red, green and blue.
 gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
 
-/// The beauty's planes, for the host. `ao` has one plane, or three with multi-bounce. What it dims is as
-/// frame.ambient says; the whole beauty without.
-gpu::Buffer& composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame,
+/// The beauty's planes, for the host; null if the frame has no beauty. `ao` has one plane, or three with multi-bounce.
+/// It dims the lights of frame.ambient; without any, the whole beauty.
+gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* ao, const FrameInputs& frame,
                        const CompositeLook& look);
 
 }  // namespace alcove

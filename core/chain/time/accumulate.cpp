@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "core/base/estimator_facts.h"
-#include "core/chain/base/pass_common.h"
+#include "core/chain/base/planes.h"
+#include "core/chain/estimate/estimate.h"
 #include "kernels/time/accumulate.h"
 
 namespace alcove {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/chain/base/seen_estimates.h"
+#include "core/chain/base/frame_inputs.h"
 #include "core/chain/filters/filters.h"
 
 namespace alcove {

@@ -15,7 +15,8 @@
 // the radius, the reference by the mean of that plane and of the line through 4 pixels. The exact search joins pixels
 // to strokes first. Where most of the sphere is beyond the border, a bound of its own says how far they may differ.
 
-#include "core/base/estimator_facts.h"
+#include "core/chain/compute.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/reference/reference.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"

@@ -7,10 +7,12 @@
 
 #include <iostream>
 
-#include "core/base/estimator_facts.h"
-#include "core/chain/base/pass_common.h"
+#include "core/chain/base/planes.h"
 #include "core/chain/chain.h"
+#include "core/chain/compute.h"
 #include "core/chain/estimate/estimate.h"
+#include "core/chain/estimate/exact.h"
+#include "core/chain/estimate/sites.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
@@ -152,7 +154,7 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         const std::size_t pixels = made.frame.data.pixels();
         gpu::Buffer& planes = gpu.buffer("three planes", 3 * pixels * sizeof(float), gpu::Use::device);
         gpu.clear(planes);
-        Estimate out{&planes};
+        Estimate out{&planes, 1};
         const Reach reach = reach_of(settings, *settings.radius);
         const Sampling sampling = sampling_of(settings, 0);
         const Skipping skipping = skipping_of(settings, inputs, gbuffer.grid);
@@ -161,17 +163,17 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
           for (int direction = 0; direction < directions.count; direction++) {
             Profile lines = profile(gpu, gbuffer, directions, direction, reach);
             complete(gpu, gbuffer, lines, reach);
-            exact(gpu, gbuffer, lines, directions, reach, out, 1);
+            exact(gpu, gbuffer, lines, directions, reach, out);
           }
         } else {
-          out.listed = classify(gpu, gbuffer, nullptr, skipping, reach.radius, Sites{}, out, 1);
+          out.listed = classify(gpu, gbuffer, skipping, reach.radius, Sites{}, out);
           switch (settings.estimator) {
             case Estimator::gtao:
-            case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out, 1); break;
-            case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out, 1); break;
+            case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
+            case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out); break;
             case Estimator::crytek:
               crytek(gpu, gbuffer, reach, sampling, {settings.samples, settings.sample_kernel, settings.range_check},
-                     out, 1);
+                     out);
               break;
           }
         }

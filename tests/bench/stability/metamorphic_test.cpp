@@ -2,7 +2,8 @@
 // darker. Other units and crops: tests/chain/property_test.cpp; kinds of depth and marks of sky:
 // tests/frame/inputs_test.cpp.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/estimator_facts.h"
+#include "core/chain/compute.h"
+#include "core/chain/estimate/estimate.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/chain.h"
 

@@ -1,13 +1,13 @@
 // Host side of the exact search: straight strokes of depth along lines, what they block, and how many directions of
 // lines an estimate by its error takes.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/estimate/exact.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/chain/base/pass_common.h"
-#include "core/chain/estimate/estimate.h"
-#include "kernels/estimate/exact_search.h"
+#include "core/chain/base/planes.h"
 
 namespace alcove {
 namespace {
@@ -120,14 +120,36 @@ void draw_profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirect
 
 }  // namespace
 
+void estimate_exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings, Estimate& result) {
+  const auto radii = radii_of(settings);
+  const SearchDirections directions = search_directions(settings);
+  if (result.completed) gpu.clear(*result.completed);
+  for (uint plane = 0; plane < radii.size(); plane++) {
+    const Reach reach = reach_of(settings, radii[plane]);
+    const Estimate out = of_radius(result, plane, radii.size());
+    for (int i = 0; settings.tolerance == 0 && i < directions.count; i++) {
+      Profile lines = profile(gpu, gbuffer, directions, i, reach);
+      complete(gpu, gbuffer, lines, reach);
+      exact(gpu, gbuffer, lines, directions, reach, out);
+    }
+    if (settings.tolerance == 0) continue;
+    Convergence search = convergence(gpu, gbuffer, settings, out, uint(radii.size()));
+    for (const int count : kComparedDirections) {
+      search_until(gpu, gbuffer, reach, search, count);
+      converge(gpu, gbuffer, search, result, count);
+      refine(gpu, gbuffer, search, result, count);
+    }
+  }
+}
+
 SearchDirections search_directions(const EstimatorSettings& settings) {
   const int takers = settings.denoise == Denoise::none ? 1 : 4;
   return {settings.slices * takers, takers, settings.search == SliceSearch::every_pixel};
 }
 
 Convergence convergence(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings,
-                        const Estimate& result, uint plane, uint planes) {
-  Convergence search{settings.tolerance, settings.search == SliceSearch::every_pixel, plane, planes, {}};
+                        const Estimate& result, uint planes) {
+  Convergence search{settings.tolerance, settings.search == SliceSearch::every_pixel, result.plane, planes, {}};
   search.sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view));
   search.sums.bent = result.bent;
   search.sums.completed = result.completed;
@@ -142,7 +164,7 @@ void search_until(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach
   for (int i = before; i < directions; i++) {
     Profile lines = profile(gpu, gbuffer, all, bit_reversed(i), reach, sums.listed.lines);
     complete(gpu, gbuffer, lines, reach, sums.listed.lines);
-    exact(gpu, gbuffer, lines, all, reach, sums, 0);
+    exact(gpu, gbuffer, lines, all, reach, sums);
   }
 }
 
@@ -247,7 +269,7 @@ void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, cons
 }
 
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,
-           const Reach& reach, const Estimate& out, uint plane) {
+           const Reach& reach, const Estimate& out) {
   const Lines& lines = profile.lines;
   const int takers = directions.takers;
   const bool is_listed = out.listed.counts != nullptr;
@@ -267,7 +289,7 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   params.thickness = reach.thickness;
   params.bias = reach.bias;
   params.depth_precision = gbuffer.depth_precision;
-  params.plane = plane;
+  params.plane = out.plane;
   const ivec2 size = gbuffer.view.size;
   const auto columns = uint((size.x + params.stride - 1) / params.stride);
   const auto rows = uint((size.y + params.stride - 1) / params.stride);

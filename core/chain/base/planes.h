@@ -1,4 +1,4 @@
-// What the host functions of kernels share: sizes of planes, and counts of workgroups.
+// Planes of a frame's pixels: their sizes, the workgroups over them, and those of the visibility.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,5 +19,12 @@ inline uint planes_in(const gpu::Buffer& buffer, const View& view) { return uint
 inline gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint(view.size.y)}; }
 inline uint groups_of(int pixels, uint size) { return (uint(pixels) + size - 1) / size; }
 inline vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
+
+/// The visibility on its way.
+struct Visibility {
+  gpu::Buffer* ao = nullptr;      // a plane; of several radii the mean
+  gpu::Buffer* scales = nullptr;  // a plane for each radius; null: there is one radius, or nobody asked for them
+  gpu::Buffer* bent = nullptr;    // planes x, y, z of the mean open direction; null: nobody asked for it
+};
 
 }  // namespace alcove

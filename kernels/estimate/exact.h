@@ -1,7 +1,7 @@
-// Parameters of the kernels that core/chain/estimate/exact_search.cpp runs.
+// Parameters of the kernels that core/chain/estimate/exact.cpp runs.
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef ALCOVE_EXACT_SEARCH_H
-#define ALCOVE_EXACT_SEARCH_H
+#ifndef ALCOVE_EXACT_H
+#define ALCOVE_EXACT_H
 #include "kernels/base/shared.h"
 ALCOVE_BEGIN
 

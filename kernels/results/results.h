@@ -1,7 +1,7 @@
-// Parameters of the kernels that core/chain/results/shading.cpp runs.
+// Parameters of the kernels that the sources of core/chain/results run.
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef ALCOVE_SHADING_H
-#define ALCOVE_SHADING_H
+#ifndef ALCOVE_RESULTS_H
+#define ALCOVE_RESULTS_H
 #include "kernels/base/shared.h"
 ALCOVE_BEGIN
 
@@ -59,6 +59,40 @@ struct CompositeParams {
   float gain;         // factor on the occlusion, >= 0
   float mix;          // of the composite and the beauty, 0 to 1
   vec3 tint;          // what occlusion makes of white light, 0 to 1
+};
+
+struct ConfidenceParams {
+  View view;
+  float radius;          // scene units
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
+};
+
+struct ReduceParams {
+  ivec2 size;    // px
+  ivec2 offset;  // px of the upper left block that lie left of the planes and above them
+  int factor;    // px of a block in x and in y
+  int first;     // px from a block's corner to the first pixel that counts for it, at most 0
+  int count;     // weights, of which those of the block's own pixels are not all 0
+  uint planes;
+};
+
+ALCOVE_CONSTANT uint kDebugValue = 0;        // the values as they are
+ALCOVE_CONSTANT uint kDebugPlanarDepth = 1;  // scene units
+ALCOVE_CONSTANT uint kDebugViewZ = 2;        // z in view space, scene units, below 0
+ALCOVE_CONSTANT uint kDebugNormalZ = 3;      // z of the normal in view space
+ALCOVE_CONSTANT uint kDebugNormalAngle = 4;  // degrees between the two sets of normals
+ALCOVE_CONSTANT uint kDebugEdge = 5;         // distance of a neighbour from the tangent plane, part of the depth
+ALCOVE_CONSTANT uint kDebugDensity = 7;      // share of the pixels of a square of 4 x 4 that are sites
+ALCOVE_CONSTANT uint kDebugTile = 6;         // share of the directions that are searched, of the pixel's tile
+
+ALCOVE_CONSTANT uint kDebugHidden = 8;  // surfaces behind the first, and half a one where any closes a solid
+
+struct DebugParams {
+  View view;
+  uint kind;     // one of kDebug*
+  uint sparse;   // of kDebugValue and kDebugDensity: 1: only sites have a value
+  ivec2 origin;  // px from the display window's corner to the image's
+  uint hidden;   // of kDebugHidden: planes of surfaces behind the first
 };
 
 ALCOVE_END

@@ -1,12 +1,12 @@
 // The search in the table, and what follows from what is found.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/results/aov.h"
+#include "core/chain/results/outputs.h"
 
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/estimator_facts.h"
 #include "core/base/text.h"
+#include "core/chain/estimate/estimate.h"
 
 namespace alcove {
 namespace {
