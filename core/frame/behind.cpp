@@ -46,14 +46,14 @@ T said_of(const std::vector<T>& all, std::size_t file, T otherwise) {
 
 /// The pixels of a plane are those of the depth.
 void require_same_pixels(const FrameSource& source, const ChannelRef& ref) {
-  const ChannelRef& depth = source[RawPlane::depth][0];
+  const ChannelRef& depth = source.channels[RawPlane::depth][0];
   const ExrFile &file = file_of(source, ref), &own = file_of(source, depth);
-  if (file.display() != source.display)
+  if (file.display() != source.reading.display)
     fail(ErrorKind::input,
          "{}: its display window is {}, and that of the depth in {} is {}: both must show the same pixels (--behind)",
-         file.path(), to_string(file.display()), own.path(), to_string(source.display));
+         file.path(), to_string(file.display()), own.path(), to_string(source.reading.display));
   require_same_picture(source, {ref}, "depth", "--behind");
-  const std::string theirs = view_in(file, source.view), ours = view_in(own, source.view);
+  const std::string theirs = view_in(file, source.channels.view), ours = view_in(own, source.channels.view);
   if (!theirs.empty() && !ours.empty() && !same_name(theirs, ours))
     fail(ErrorKind::input,
          "{}: its view is {}, and that of the depth in {} is {}: give the same of both (--behind, "
@@ -81,10 +81,10 @@ bool is_same_camera(const Camera& a, const Camera& b) {
 void note_other_camera(FrameSource& source, const ChannelRef& ref) {
   const auto camera_of = [&](const ChannelRef& channel) {
     const ExrFile& file = file_of(source, channel);
-    return header_camera(file.attribute_texts(channel.part), source.display, source.file_data, source.pixel_aspect,
-                         source.layer_of(channel));
+    return header_camera(file.attribute_texts(channel.part), source.reading.display, source.reading.data,
+                         source.reading.pixel_aspect, source.layer_of(channel));
   };
-  const auto theirs = camera_of(ref), ours = camera_of(source[RawPlane::depth][0]);
+  const auto theirs = camera_of(ref), ours = camera_of(source.channels[RawPlane::depth][0]);
   if (theirs && ours && !is_same_camera(theirs->camera, ours->camera))
     source.notes.push_back({NoteCode::said_otherwise,
                             fmt::format("the camera in the header of {} is another than that in the header of {}: are "
@@ -94,9 +94,9 @@ void note_other_camera(FrameSource& source, const ChannelRef& ref) {
 
 /// The one channel of a file.
 ChannelRef find_channel(FrameSource& source, ChannelSearch& search, std::size_t file, const std::string& chosen) {
-  const ChannelRef& depth = source[RawPlane::depth][0];
+  const ChannelRef& depth = source.channels[RawPlane::depth][0];
   const bool is_alone = file != depth.file;
-  auto found = search.find_by_rules(file, behind_names(), chosen, source.rules->depth).channels;
+  auto found = search.find_by_rules(file, behind_names(), chosen, source.program.rules->depth).channels;
   if (found.empty()) found = search.require(file, behind_names(), chosen, is_alone, "Z");
   if (found[0] == depth)
     fail(ErrorKind::input,
@@ -120,11 +120,11 @@ void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings
     const ChannelRef ref =
         find_channel(source, search, file, said_of<std::string>(settings.behind_channels, number, ""));
     require_same_pixels(source, ref);
-    if (ref.file != source[RawPlane::depth][0].file) note_other_camera(source, ref);
+    if (ref.file != source.channels[RawPlane::depth][0].file) note_other_camera(source, ref);
     const BehindKind kind = said_of(settings.behind_kinds, number, BehindKind::surfaces);
-    source[RawPlane::behind].push_back(ref);
-    source.behind.push_back({.kind = kind, .is_half = source.is_half(ref)});
-    if (source.behind.back().is_half && !source.depth_is_half)
+    source.channels[RawPlane::behind].push_back(ref);
+    source.reading.behind.push_back({.kind = kind, .is_half = source.is_half(ref)});
+    if (source.reading.behind.back().is_half && !source.reading.depth_is_half)
       source.suspicious.push_back(
           {NoteCode::half_depth, fmt::format("{} of {} is stored as half float, and the depth is not: what lies behind "
                                              "is off by up to a 2048th of its depth; write it as float",
@@ -135,9 +135,10 @@ void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings
 
 std::string hidden_sources_text(const FrameSource& source) {
   std::vector<std::string> sources;
-  for (std::size_t i = 0; i < source[RawPlane::behind].size(); i++) {
-    const ChannelRef& ref = source[RawPlane::behind][i];
-    sources.push_back(fmt::format("{} {} {}", base_name(source, ref), ref.channel, word_of(source.behind[i].kind)));
+  for (std::size_t i = 0; i < source.channels[RawPlane::behind].size(); i++) {
+    const ChannelRef& ref = source.channels[RawPlane::behind][i];
+    sources.push_back(
+        fmt::format("{} {} {}", base_name(source, ref), ref.channel, word_of(source.reading.behind[i].kind)));
   }
   std::ranges::sort(sources);
   return fmt::format("{}", fmt::join(sources, "; "));
@@ -159,13 +160,13 @@ constexpr double kLeastOtherwise = 0.05;       // share of the oblique surfaces
 constexpr std::size_t kFarMoreOtherwise = 10;  // times as many as read as it is
 
 std::string name_of(const FrameSource& source, std::size_t plane) {
-  const ChannelRef& ref = source[RawPlane::behind][plane];
+  const ChannelRef& ref = source.channels[RawPlane::behind][plane];
   return fmt::format("{}: {}", source.files[ref.file].path(), ref.channel);
 }
 
 /// Whether a plane of RawPlane::behind comes from samples.
 bool is_deep_plane(const FrameSource& source, std::size_t plane) {
-  const ChannelRef& ref = source[RawPlane::behind][plane];
+  const ChannelRef& ref = source.channels[RawPlane::behind][plane];
   return source.part_of(ref).deep.has_value();
 }
 
@@ -227,17 +228,17 @@ Notes BehindSample::notes(const FrameSource& source) const {
       new_surfaces += planes_[plane].surfaces - planes_[plane].before - planes_[plane].same;
     else
       add_new(notes, notes_of(source, plane));
-  if (source.deep && !planes_.empty() && new_surfaces == 0)
+  if (source.channels.deep && !planes_.empty() && new_surfaces == 0)
     notes.push_back({NoteCode::nothing_hidden,
                      fmt::format("{} holds no surface behind the first one: its elements were rendered in one go; give "
                                  "--deep all elements that were rendered apart, or give peels to --behind",
-                                 source.files[*source.deep].path())});
+                                 source.files[source.channels.deep->file].path())});
   return notes;
 }
 
 Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) const {
   const Plane& plane = planes_[number];
-  const BehindPlane& said = source.behind[number];
+  const BehindPlane& said = source.reading.behind[number];
   const std::string name = name_of(source, number);
   const auto pixels = std::size_t(std::ranges::count(taken_, true));
   if (said.kind == BehindKind::thickness && plane.negative > 0)
@@ -256,7 +257,7 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
                          name, percent(plane.as_deep, plane.surfaces))}};
   }
 
-  const bool along_ray = behind_map_of(source, said).along_ray;
+  const bool along_ray = behind_map_of(source.reading, said).along_ray;
   if (double(plane.otherwise) > kLeastOtherwise * double(plane.oblique) &&
       plane.otherwise > kFarMoreOtherwise * plane.as_read)
     fail(ErrorKind::input,
@@ -315,13 +316,12 @@ bool is_half(const ExrFile& file, const std::vector<int>& parts) {
 
 /// Takes a file's samples for the frame, and those of all other files of --deep.
 void choose(FrameSource& source, ChannelSearch& search, std::size_t file, const InputSettings& settings) {
-  source.deep = file;
-  source.deep_parts = deep_parts_of(source.files[file], settings.layer, source.view);
-  source.deep_elements.clear();
+  DeepFiles& deep = source.channels.deep.emplace(
+      DeepFiles{file, deep_parts_of(source.files[file], settings.layer, source.channels.view)});
   for (const auto& path : settings.deep) {
     if (path.empty() || path == source.files[file].path()) continue;
     const std::size_t other = search.open(path, "--deep");
-    source.deep_elements.emplace_back(other, deep_parts_of(source.files[other], settings.layer, source.view));
+    deep.elements.emplace_back(other, deep_parts_of(source.files[other], settings.layer, source.channels.view));
   }
 }
 
@@ -333,14 +333,14 @@ const std::string& first_of(const FileList& files) {
 void require_samples(const FrameSource& source, std::size_t file, const std::vector<int>& parts) {
   if (parts.empty())
     fail(ErrorKind::input, "{}: it holds no deep data{}; --behind takes flat depth (--deep)", source.files[file].path(),
-         source.view.empty() ? "" : fmt::format(" of the view {}", source.view));
+         source.channels.view.empty() ? "" : fmt::format(" of the view {}", source.channels.view));
 }
 
 /// Calls a function for all files of samples and their parts, the first one first.
 template <class Visit>
 void for_each_deep(const FrameSource& source, const Visit& visit) {
-  visit(*source.deep, source.deep_parts);
-  for (const auto& [file, parts] : source.deep_elements) visit(file, parts);
+  visit(source.channels.deep->file, source.channels.deep->parts);
+  for (const auto& [file, parts] : source.channels.deep->elements) visit(file, parts);
 }
 
 /// The pixels that some of the samples' parts have. A renderer may have cut each element to its own.
@@ -362,10 +362,10 @@ Window window_of_samples(const FrameSource& source) {
   constexpr std::uint64_t kMostTimes = 4;
   const bool fits = right - left <= kMost && bottom - top <= kMost;
   const std::uint64_t most =
-      std::max<std::uint64_t>(source.files[*source.deep].display().pixels(), kMostTimes * pixels);
+      std::max<std::uint64_t>(source.files[source.channels.deep->file].display().pixels(), kMostTimes * pixels);
   if (!fits || std::uint64_t(right - left) * std::uint64_t(bottom - top) > most)
     fail(ErrorKind::input, "{}: its deep parts and those beside them are too far apart for one picture (--deep)",
-         source.files[*source.deep].path());
+         source.files[source.channels.deep->file].path());
   return {int(left), int(top), int(right - left), int(bottom - top)};
 }
 
@@ -426,118 +426,120 @@ std::vector<ChannelRef> find_deep_depth(FrameSource& source, ChannelSearch& sear
     choose(source, search, depth_file, settings);
   } else {
     if (!has_deep(settings) || !settings.depth.empty() || !search.find(depth_file, kDepthNames, "", false).empty() ||
-        search.find_by_rules(depth_file, kDepthNames, "", source.rules->depth).candidate)
+        search.find_by_rules(depth_file, kDepthNames, "", source.program.rules->depth).candidate)
       return {};
     choose(source, search, search.open(first_of(settings.deep), "--deep"), settings);
   }
-  if (source.deep_parts.empty()) {
-    source.deep.reset();
+  if (source.channels.deep->parts.empty()) {
+    source.channels.deep.reset();
     return {};
   }
-  source.deep_data = window_of_samples(source);
-  source.deep_depth_is_half = any_deep(source, is_half);
-  return {{*source.deep, source.deep_parts.front(), deep_channel(0, false)}};
+  source.channels.deep->data = window_of_samples(source);
+  source.channels.deep->depth_is_half = any_deep(source, is_half);
+  return {{source.channels.deep->file, source.channels.deep->parts.front(), deep_channel(0, false)}};
 }
 
 void find_deep(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
-  const bool is_depth = source.deep.has_value();
+  const bool is_depth = source.channels.deep.has_value();
   if (!is_depth && !has_deep(settings)) return;
   if (!is_depth) choose(source, search, search.open(first_of(settings.deep), "--deep"), settings);
-  if (!is_depth) source.deep_data = source.file_data;
+  if (!is_depth) source.channels.deep->data = source.reading.data;
   for_each_deep(source, [&](std::size_t place, const std::vector<int>& parts) {
     require_samples(source, place, parts);
     const ExrFile& file = source.files[place];
-    if (file.display() != source.display)
+    if (file.display() != source.reading.display)
       fail(ErrorKind::input,
            "{}: its deep samples are of a picture of {}, and the depth of {} is of {}: both must cover the same pixels "
            "(--deep)",
-           file.path(), to_string(file.display()), source.depth_path(), to_string(source.display));
+           file.path(), to_string(file.display()), source.depth_path(), to_string(source.reading.display));
   });
-  if (common_part(window_of_samples(source), source.file_data).pixels() == 0)
+  if (common_part(window_of_samples(source), source.reading.data).pixels() == 0)
     fail(ErrorKind::input, "{}: its deep samples are {}, and the depth of {} is {}: they share no pixel (--deep)",
-         source.files[*source.deep].path(), to_string(window_of_samples(source)), source.depth_path(),
-         to_string(source.file_data));
-  const ExrFile& file = source.files[*source.deep];
-  const int first = source.deep_parts.front();
+         source.files[source.channels.deep->file].path(), to_string(window_of_samples(source)), source.depth_path(),
+         to_string(source.reading.data));
+  const ExrFile& file = source.files[source.channels.deep->file];
+  const int first = source.channels.deep->parts.front();
   const bool half = any_deep(source, is_half), backs = any_deep(source, has_backs);
   const auto add = [&](std::size_t surface, bool back) {
-    source[RawPlane::behind].push_back({*source.deep, first, deep_channel(surface, back)});
-    source.behind.push_back(
+    source.channels[RawPlane::behind].push_back({source.channels.deep->file, first, deep_channel(surface, back)});
+    source.reading.behind.push_back(
         {.kind = back ? BehindKind::backs : BehindKind::surfaces, .is_half = half, .is_whole = false});
   };
   for (std::size_t surface = is_depth ? 1 : 0; surface < kMostDeepSurfaces; surface++) add(surface, false);
   for (std::size_t surface = 0; backs && surface < kMostDeepSurfaces; surface++) add(surface, true);
-  if (source[RawPlane::behind].size() > kMostBehindPlanes)
+  if (source.channels[RawPlane::behind].size() > kMostBehindPlanes)
     fail(ErrorKind::input, "{}: with --behind these are {} planes of depth, and a frame takes {}: leave some out",
-         file.path(), source[RawPlane::behind].size(), kMostBehindPlanes);
+         file.path(), source.channels[RawPlane::behind].size(), kMostBehindPlanes);
 }
 
 DeepRules deep_rules(const FrameSource& source, const ExrFile& file, const std::vector<int>& parts,
                      const InputSettings& settings) {
-  const View view = view_of(source.camera, source.data, source.display);
+  const View view = view_of(source.reading, source.reading.data);
   const double pixel = std::abs(double(view.tangent_per_pixel.x));
   const double precision = is_half(file, parts) ? kHalfPrecision : kLeastPrecision;
   DeepRules rules{.opacity = settings.deep_opacity, .separation = {0, kPrecisions * precision, 0}};
-  rules.separation[view.orthographic ? 0 : 1] += view.orthographic ? pixel / source.depth_scale : pixel;
+  rules.separation[view.orthographic ? 0 : 1] += view.orthographic ? pixel / source.reading.depth_scale : pixel;
   return rules;
 }
 
 void take_deep(FrameSource& source, const InputSettings& settings) {
-  if (!source.deep) return;
-  ExrFile& file = source.files[*source.deep];
+  if (!source.channels.deep) return;
+  ExrFile& file = source.files[source.channels.deep->file];
   std::vector<DeepElement> others;
-  for (const auto& [other, parts] : source.deep_elements) others.push_back({&source.files[other], parts});
-  DeepRules rules = deep_rules(source, file, source.deep_parts, settings);
+  for (const auto& [other, parts] : source.channels.deep->elements) others.push_back({&source.files[other], parts});
+  DeepRules rules = deep_rules(source, file, source.channels.deep->parts, settings);
   for (const auto& other : others) {
     const DeepRules theirs = deep_rules(source, *other.file, other.parts, settings);
     rules.separation[1] = std::max(rules.separation[1], theirs.separation[1]);
   }
-  file.take_deep(source.deep_parts, rules, source.deep_data, others);
+  file.take_deep(source.channels.deep->parts, rules, source.channels.deep->data, others);
 }
 
 void read_deep_like_meaning(FrameSource& source) {
-  if (!source.deep) return;
-  for (std::size_t plane = 0; plane < source.behind.size(); plane++)
+  if (!source.channels.deep) return;
+  for (std::size_t plane = 0; plane < source.reading.behind.size(); plane++)
     if (is_deep_plane(source, plane)) {
-      source.behind[plane].depth_kind = source.deep_kind;
-      source.behind[plane].scale = source.deep_scale;
-      source.behind[plane].is_whole = source.deep_is_whole;
+      source.reading.behind[plane].depth_kind = source.reading.deep_kind;
+      source.reading.behind[plane].scale = source.reading.deep_scale;
+      source.reading.behind[plane].is_whole = source.reading.deep_is_whole;
     }
 }
 
-void settle_deep(FrameSource& source, std::span<const float> depth) {
-  if (!source.deep) return;
-  source.deep_is_whole =
-      !source.behind.empty() && goes_on_behind(source.files[*source.deep], source.deep_parts.front(), source.file_data);
+void settle_deep(FrameSource& source, const RawPart& raw) {
+  if (!source.channels.deep) return;
+  source.reading.deep_is_whole =
+      !source.reading.behind.empty() && goes_on_behind(source.files[source.channels.deep->file],
+                                                       source.channels.deep->parts.front(), source.reading.data);
   read_deep_like_meaning(source);
-  const ChannelRef& own = source[RawPlane::depth][0];
-  if (own.file == *source.deep && source.part_of(own).deep) return;
+  const ChannelRef& own = source.channels[RawPlane::depth][0];
+  if (own.file == source.channels.deep->file && source.part_of(own).deep) return;
   std::vector<DeepReading> readings;
-  for (const double scale : {source.depth_scale, 1.0})
+  for (const double scale : {source.reading.depth_scale, 1.0})
     for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) readings.push_back({kind, scale});
-  ExrFile& file = source.files[*source.deep];
-  const View view = view_of(source.camera, source.data, source.display);
-  const DepthMap map = depth_map_of(source);
+  ExrFile& file = source.files[source.channels.deep->file];
+  const Window& whole = source.reading.data;
+  const View view = view_of(source.reading, raw.window);
+  const DepthMap map = depth_map_of(source.reading);
   const double tolerance = 2 * std::abs(double(view.tangent_per_pixel.x)) + 2 * kHalfPrecision;
-  const auto width = std::size_t(source.data.width);
-  std::vector<float> first(std::size_t(source.file_data.width));
-  const ExrRead read{source.deep_parts.front(), deep_channel(0, false), first.data()};
+  const auto width = std::size_t(raw.window.width);
+  std::vector<float> first(std::size_t(whole.width));
+  const ExrRead read{source.channels.deep->parts.front(), deep_channel(0, false), first.data()};
   std::size_t compared = 0, found = 0;
-  const int step = std::max(1, source.data.height / kEvidenceRows);
-  for (int y = step / 2; y < source.data.height; y += step) {
-    file.read(std::span(&read, 1), source.data.y + y - source.file_data.y, 1);
+  const int step = std::max(1, raw.window.height / kEvidenceRows);
+  for (int y = step / 2; y < raw.window.height; y += step) {
+    file.read(std::span(&read, 1), raw.window.y + y - whole.y, 1);
     for (std::size_t x = 0; x < width; x++) {
       const double ray = ray_length(view, int(x), y);
       std::array<double, 3> values{};
-      for (std::size_t axis = 0; axis < source[RawPlane::depth].size(); axis++)
-        values[axis] = depth[axis * source.data.pixels() + std::size_t(y) * width + x];
+      for (std::size_t axis = 0; axis < source.channels[RawPlane::depth].size(); axis++)
+        values[axis] = raw.depth[axis * raw.window.pixels() + std::size_t(y) * width + x];
       const double z = planar_depth(map, values, ray);
-      const double raw = first[x + std::size_t(source.data.x - source.file_data.x)];
-      found += raw < double(kNoDeepSurface);
-      if (!std::isfinite(z) || raw >= double(kNoDeepSurface)) continue;
+      const double sample = first[x + std::size_t(raw.window.x - whole.x)];
+      found += sample < double(kNoDeepSurface);
+      if (!std::isfinite(z) || sample >= double(kNoDeepSurface)) continue;
       compared++;
       for (auto& reading : readings) {
-        const double planar = raw * reading.scale / (reading.kind == DepthKind::ray ? ray : 1);
+        const double planar = sample * reading.scale / (reading.kind == DepthKind::ray ? ray : 1);
         reading.same += std::abs(planar / z - 1) <= tolerance;
       }
     }
@@ -554,15 +556,15 @@ void settle_deep(FrameSource& source, std::span<const float> depth) {
         "or along the ray: give --deep the samples of the same frame and camera, of all its elements, and flat depth "
         "of others to --behind; --depth-kind and --depth-scale say how the depth is read",
         file.path(), source.depth_path(), 100.0 * double(best->same) / double(compared));
-  const bool is_own = best->kind == source.depth_kind && best->scale == source.depth_scale;
-  source.deep_kind = is_own ? DepthKind::automatic : best->kind;
-  source.deep_scale = is_own ? 1 : best->scale;
+  const bool is_own = best->kind == source.reading.depth_kind && best->scale == source.reading.depth_scale;
+  source.reading.deep_kind = is_own ? DepthKind::automatic : best->kind;
+  source.reading.deep_scale = is_own ? 1 : best->scale;
   read_deep_like_meaning(source);
 }
 
 Notes deep_notes(const FrameSource& source) {
-  if (!source.deep) return {};
-  const ExrFile& file = source.files[*source.deep];
+  if (!source.channels.deep) return {};
+  const ExrFile& file = source.files[source.channels.deep->file];
   const DeepCounts counts = file.deep_counts();
   if (counts.repaired == 0) return {};
   return {{NoteCode::repaired_samples,

@@ -36,9 +36,9 @@ DeepRules deep_rules(const FrameSource& source, const ExrFile& file, const std::
 void take_deep(FrameSource& source, const InputSettings& settings);
 
 /// Settles whether samples beside a flat depth are planar or along the ray, and their scale: their first surfaces are
-/// those of the depth, which is as read, over source.data. Fails with ErrorKind::input where they are not. Tells too
+/// those of the depth. Fails with ErrorKind::input where they are not. Tells too
 /// whether they list what is hidden.
-void settle_deep(FrameSource& source, std::span<const float> depth);
+void settle_deep(FrameSource& source, const RawPart& raw);
 
 /// Reads the planes of samples as the frame's meaning says.
 void read_deep_like_meaning(FrameSource& source);

@@ -97,9 +97,9 @@ void add_typed(FrameSource& source, const ChannelSearch& search, std::size_t fil
   const TypedLight typed = typed_light(text);
   const auto light = search.find(file, kLightNames, typed.light, false);
   const std::string color = typed.color.empty() ? color_of(light.front()) : typed.color;
-  auto& colors = source[RawPlane::diffuse_color];
-  source.ambient.push_back({typed.weight, color.empty() ? -1 : int(colors.size() / 3)});
-  append(source[RawPlane::indirect], light);
+  auto& colors = source.channels[RawPlane::diffuse_color];
+  source.reading.ambient.push_back({typed.weight, color.empty() ? -1 : int(colors.size() / 3)});
+  append(source.channels[RawPlane::indirect], light);
   if (!color.empty()) append(colors, search.find(file, kLightNames, color, false));
 }
 
@@ -110,9 +110,9 @@ void find_usual(FrameSource& source, const ChannelSearch& search, std::size_t fi
   const bool lacks_color = !color_of(light.front()).empty();
   const auto color = lacks_color ? search.find(file, kDiffuseColorNames, "", false) : std::vector<ChannelRef>();
   if (lacks_color && color.empty()) return;
-  source[RawPlane::indirect] = light;
-  source[RawPlane::diffuse_color] = color;
-  source.ambient = {{1, lacks_color ? 0 : -1}};
+  source.channels[RawPlane::indirect] = light;
+  source.channels[RawPlane::diffuse_color] = color;
+  source.reading.ambient = {{1, lacks_color ? 0 : -1}};
 }
 
 /// Finds the lights in the beauty's file. `settings.ambient` lists them with commas, each LIGHT[*LAYER][*NUMBER]: a
@@ -245,22 +245,23 @@ void doubt_depth_of_three(FrameSource& source, const ChannelSearch& search, cons
 // The frame.
 
 void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
-  source[RawPlane::beauty] = search.with_alpha(
+  source.channels[RawPlane::beauty] = search.with_alpha(
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
   find_ambient(source, search, file, settings);
-  source.supersampling = supersampling_of(source, source[RawPlane::beauty][0], settings);
-  if (source.supersampling > 1 && settings.supersampling == "auto")
+  source.reading.supersampling = supersampling_of(source, source.channels[RawPlane::beauty][0], settings);
+  if (source.reading.supersampling > 1 && settings.supersampling == "auto")
     source.notes.push_back(
         {NoteCode::windows_differ,
          fmt::format(
              "the depth is of {} times the beauty's size: what is written is filtered to that of the beauty, {} "
              "(--set supersampling, --set filter)",
-             source.supersampling, to_string(picture_of(source, source.display)))});
-  for (const auto* aov : {&source[RawPlane::beauty], &source[RawPlane::indirect], &source[RawPlane::diffuse_color]})
+             source.reading.supersampling, to_string(picture_of(source.reading, source.reading.display)))});
+  for (const auto* aov : {&source.channels[RawPlane::beauty], &source.channels[RawPlane::indirect],
+                          &source.channels[RawPlane::diffuse_color]})
     require_common_window(source, *aov, "beauty", "--beauty",
                           "the composite is as large as the beauty, which stays as it is where there is no depth");
   const auto window_of = [&](const ChannelRef& channel) { return source.part_of(channel).data; };
-  const auto& beauty = source[RawPlane::beauty];
+  const auto& beauty = source.channels[RawPlane::beauty];
   const auto other = std::ranges::find_if(
       beauty, [&](const ChannelRef& channel) { return window_of(channel) != window_of(beauty[0]); });
   if (other != beauty.end())
@@ -274,9 +275,9 @@ void find_material(FrameSource& source, ChannelSearch& search, const InputSettin
   if (settings.material_ao.empty() && settings.material_ao_channel.empty()) return;
   const std::size_t file =
       search.open(settings.material_ao.empty() ? settings.input : settings.material_ao, "--set material-ao");
-  source[RawPlane::material_ao] =
+  source.channels[RawPlane::material_ao] =
       search.require(file, kMaterialNames, settings.material_ao_channel, !settings.material_ao.empty(), "AO");
-  require_common_window(source, source[RawPlane::material_ao], "material AO", "--set material-ao",
+  require_common_window(source, source.channels[RawPlane::material_ao], "material AO", "--set material-ao",
                         "where it has no pixels it counts as 1");
 }
 
@@ -284,40 +285,42 @@ void find_material(FrameSource& source, ChannelSearch& search, const InputSettin
 void find_albedo(FrameSource& source, ChannelSearch& search, const std::string& beauty_path,
                  const InputSettings& settings) {
   const std::size_t file = search.open(settings.albedo.empty() ? beauty_path : settings.albedo, "--set albedo");
-  source[RawPlane::albedo] = search.find(file, kAlbedoNames, settings.albedo_channels, !settings.albedo.empty());
-  if (source[RawPlane::albedo].empty())
+  source.channels[RawPlane::albedo] =
+      search.find(file, kAlbedoNames, settings.albedo_channels, !settings.albedo.empty());
+  if (source.channels[RawPlane::albedo].empty())
     fail(ErrorKind::input,
          "{}: no diffuse colour found for --set multi-bounce: name its channels with --set albedo-channels, or give "
          "--set albedo a "
          "file or a number",
          source.files[file].path());
-  require_common_window(source, source[RawPlane::albedo], "diffuse colour", "--set albedo",
+  require_common_window(source, source.channels[RawPlane::albedo], "diffuse colour", "--set albedo",
                         "where it has no pixels it counts as black");
 }
 
 /// The rules that the settings name, or those of the file.
 void find_rules(FrameSource& source, const ExrFile& file, const InputSettings& settings) {
   const bool detects = settings.source.empty() || settings.source == "auto";
-  const DetectedRules found = detects ? detect_rules(file) : DetectedRules{&input_rules(settings.source), "--source"};
-  source.rules = found.rules;
-  source.rules_by = found.by;
-  source.rules_said = !detects;
+  const DetectedRules found =
+      detects ? detect_rules(file) : DetectedRules{&input_rules(settings.source), Program::kByOption};
+  source.program.rules = found.rules;
+  source.program.by = found.by;
 }
 
 /// The depth channel; the position's where the settings say so, or where there is no depth.
 std::vector<ChannelRef> find_depth(FrameSource& source, const ChannelSearch& search, std::size_t file,
                                    const InputSettings& settings, bool by_position) {
-  source.usual_depth_kind =
-      source.rules->depth_kind != DepthKind::automatic ? source.rules->depth_kind : DepthKind::planar;
+  source.program.depth_kind =
+      source.program.rules->depth_kind != DepthKind::automatic ? source.program.rules->depth_kind : DepthKind::planar;
   if (by_position)
     if (auto [found, candidate] =
-            search.find_by_rules(file, kPositionNames, settings.position_channels, source.rules->position);
+            search.find_by_rules(file, kPositionNames, settings.position_channels, source.program.rules->position);
         candidate)
       return found;
   if (!by_position)
-    if (auto [found, candidate] = search.find_by_rules(file, kDepthNames, settings.depth_channel, source.rules->depth);
+    if (auto [found, candidate] =
+            search.find_by_rules(file, kDepthNames, settings.depth_channel, source.program.rules->depth);
         candidate) {
-      if (candidate->kind != DepthKind::automatic) source.usual_depth_kind = candidate->kind;
+      if (candidate->kind != DepthKind::automatic) source.program.depth_kind = candidate->kind;
       return found;
     }
   if (by_position)
@@ -333,12 +336,13 @@ std::vector<ChannelRef> find_depth(FrameSource& source, const ChannelSearch& sea
 /// The normals, none where there are none; and what the rules say of their space.
 std::vector<ChannelRef> find_normal(FrameSource& source, const ChannelSearch& search, std::size_t file,
                                     const InputSettings& settings) {
-  if (source.rules->normal_space != NormalSpace::automatic) source.usual_normal_space = source.rules->normal_space;
-  const std::string depth_layer = source.layer_of(source[RawPlane::depth].front());
+  if (source.program.rules->normal_space != NormalSpace::automatic)
+    source.program.normal_space = source.program.rules->normal_space;
+  const std::string depth_layer = source.layer_of(source.channels[RawPlane::depth].front());
   if (auto [found, candidate] =
-          search.find_by_rules(file, kNormalNames, settings.normal_channels, source.rules->normal, depth_layer);
+          search.find_by_rules(file, kNormalNames, settings.normal_channels, source.program.rules->normal, depth_layer);
       candidate) {
-    if (candidate->space != NormalSpace::automatic) source.usual_normal_space = candidate->space;
+    if (candidate->space != NormalSpace::automatic) source.program.normal_space = candidate->space;
     return found;
   }
   if (!settings.normal.empty()) return search.require(file, kNormalNames, settings.normal_channels, true, "Normal.X");
@@ -355,32 +359,33 @@ std::vector<ChannelRef> find_normal(FrameSource& source, const ChannelSearch& se
 /// pixel shows which is right. Who crops a picture may keep the header of the whole.
 void note_pixel_aspect(FrameSource& source, const std::string& camera) {
   constexpr double kSame = 0.01;  // focal lengths are rounded
-  const double aspect = source.camera.fy / source.camera.fx;
-  if (std::abs(aspect / source.pixel_aspect - 1) < kSame) return;
-  source.notes.push_back({NoteCode::said_otherwise,
-                          fmt::format("by fx {:.6g} and fy {:.6g} of {} a pixel is {:.4g} times as wide as high, and "
-                                      "by the pixelAspectRatio of the frame {:.4g} times: is one of them wrong? Where "
-                                      "the picture was cropped, give the camera of what is left of it (--camera)",
-                                      source.camera.fx, source.camera.fy, camera, aspect, source.pixel_aspect)});
+  const double aspect = source.reading.camera.fy / source.reading.camera.fx;
+  if (std::abs(aspect / source.reading.pixel_aspect - 1) < kSame) return;
+  source.notes.push_back(
+      {NoteCode::said_otherwise,
+       fmt::format("by fx {:.6g} and fy {:.6g} of {} a pixel is {:.4g} times as wide as high, and "
+                   "by the pixelAspectRatio of the frame {:.4g} times: is one of them wrong? Where "
+                   "the picture was cropped, give the camera of what is left of it (--camera)",
+                   source.reading.camera.fx, source.reading.camera.fy, camera, aspect, source.reading.pixel_aspect)});
 }
 
 /// Notes a camera file for another resolution of the same shape, which is a proxy's as well as a crop's.
 void note_scaled_camera(FrameSource& source, const std::string& camera) {
-  const auto [width, height] = source.camera.scaled_from;
+  const auto [width, height] = source.reading.camera.scaled_from;
   if (width == 0) return;
   source.notes.push_back(
       {NoteCode::camera_scaled,
        fmt::format("the camera of {} is for {}x{} pixels and was scaled to the frame's {}x{}, as of a proxy: a cropped "
                    "picture needs the camera of what is left of it (--camera)",
-                   camera, width, height, source.camera.width, source.camera.height)});
+                   camera, width, height, source.reading.camera.width, source.reading.camera.height)});
 }
 
 /// What the positions say of the camera that saw them: it, or why they tell none. Nothing where there are no positions
 /// that fit the depth.
 std::optional<std::variant<Resection, NoResection>> camera_by_positions(FrameSource& source,
                                                                         const InputSettings& settings) {
-  if (source.positions.empty()) return std::nullopt;
-  const ExrFile& file = source.files[source.positions.front().file];
+  if (source.channels.positions.empty()) return std::nullopt;
+  const ExrFile& file = source.files[source.channels.positions.front().file];
   const auto points = points_of(source, settings.sky, kManyBands);
   auto found = resection_of(points, file.display());
   if (std::holds_alternative<NoResection>(found))
@@ -402,27 +407,28 @@ std::vector<ChannelRef> positions_beside(const ChannelSearch& search, const Fram
 /// The settings' camera, or else the header's, or else that of the positions. Options that give no more than a
 /// projection leave the camera where the header says that it stands.
 void find_camera(FrameSource& source, const ChannelSearch& search, const InputSettings& settings, int frame) {
-  const ChannelRef& depth = source[RawPlane::depth].front();
+  const ChannelRef& depth = source.channels[RawPlane::depth].front();
   const ExrFile& file = source.files[depth.file];
   const auto attributes = file.attribute_texts(depth.part);
   const std::string layer = source.layer_of(depth);
   require_no_panorama(attributes, file.path());
   if (!names_a_camera(settings))
-    if (auto found = header_camera(attributes, source.display, source.file_data, source.pixel_aspect, layer)) {
-      source.camera = found->camera;
+    if (auto found = header_camera(attributes, source.reading.display, source.reading.data, source.reading.pixel_aspect,
+                                   layer)) {
+      source.reading.camera = found->camera;
       source.camera_from = "the header's " + found->from;
-      source.positions = positions_beside(search, source, settings);
+      source.channels.positions = positions_beside(search, source, settings);
       note_pixel_aspect(source, source.camera_from);
       return;
     }
   if (!names_a_camera(settings)) {
-    source.positions = find_positions(search, source, settings);
+    source.channels.positions = find_positions(search, source, settings);
     if (const auto found = camera_by_positions(source, settings)) {
       if (const auto* none = std::get_if<NoResection>(&*found))
         throw NoCamera(file.path(), "its positions tell none, since " + none->why);
-      source.camera = std::get<Resection>(*found).camera;
+      source.reading.camera = std::get<Resection>(*found).camera;
       const bool looks_around = settings.around > 0 || settings.around_all;
-      if (source.camera.orthographic && looks_around && source[RawPlane::depth].size() == 1)
+      if (source.reading.camera.orthographic && looks_around && source.channels[RawPlane::depth].size() == 1)
         throw NoCamera(file.path(),
                        "its positions do not tell how far away an orthographic camera stands, and --around "
                        "needs that");
@@ -432,55 +438,61 @@ void find_camera(FrameSource& source, const ChannelSearch& search, const InputSe
   }
   if (!names_a_camera(settings))
     if (const std::string why = why_no_header_camera(attributes, layer); !why.empty()) throw NoCamera(file.path(), why);
-  source.positions = positions_beside(search, source, settings);
-  source.camera = camera_for(settings, source.display, source.pixel_aspect, frame, source.view);
+  source.channels.positions = positions_beside(search, source, settings);
+  source.reading.camera =
+      camera_for(settings, source.reading.display, source.reading.pixel_aspect, frame, source.channels.view);
   if (settings.camera.empty())
-    return place_by_header(source.camera, attributes, source.display, source.pixel_aspect, layer);
+    return place_by_header(source.reading.camera, attributes, source.reading.display, source.reading.pixel_aspect,
+                           layer);
   note_pixel_aspect(source, settings.camera);
   note_scaled_camera(source, settings.camera);
 }
 
 /// What of the meaning of depth and normals is said, and by whom; the rest is open.
 void find_meaning(FrameSource& source, const InputSettings& settings) {
-  const InputRules& rules = *source.rules;
+  const InputRules& rules = *source.program.rules;
   const auto decided = [](auto setting, auto from_camera, auto otherwise) {
     using Kind = decltype(setting);
     return setting != Kind::automatic ? setting : from_camera != Kind::automatic ? from_camera : otherwise;
   };
   const auto is_open = [&](auto setting, auto from_camera, bool in_rules) {
     using Kind = decltype(setting);
-    return setting == Kind::automatic && from_camera == Kind::automatic && !(source.rules_said && in_rules);
+    return setting == Kind::automatic && from_camera == Kind::automatic && !(source.program.is_said() && in_rules);
   };
-  source.depth_kind_open =
-      is_open(settings.depth_kind, source.camera.depth_kind, rules.depth_kind != DepthKind::automatic);
-  source.normal_space_open =
-      is_open(settings.normal_space, source.camera.normal_space, rules.normal_space != NormalSpace::automatic);
-  source.normal_encoding_open = is_open(settings.normal_encoding, source.camera.normal_encoding,
+  source.open.depth_kind =
+      is_open(settings.depth_kind, source.reading.camera.depth_kind, rules.depth_kind != DepthKind::automatic);
+  source.open.normal_space =
+      is_open(settings.normal_space, source.reading.camera.normal_space, rules.normal_space != NormalSpace::automatic);
+  source.open.normal_encoding = is_open(settings.normal_encoding, source.reading.camera.normal_encoding,
                                         rules.normal_encoding != NormalEncoding::automatic);
-  source.depth_kind = source[RawPlane::depth].size() == 3
-                          ? DepthKind::position
-                          : decided(settings.depth_kind, source.camera.depth_kind, source.usual_depth_kind);
-  source.depth_range = settings.depth_range;
-  if (!source.depth_range.near)
-    source.depth_range.near = source.camera.near ? source.camera.near : rules.depth_range.near;
-  if (!source.depth_range.far) source.depth_range.far = source.camera.far ? source.camera.far : rules.depth_range.far;
-  source.depth_range.reversed = settings.depth_range.reversed || source.camera.reversed_z || rules.depth_range.reversed;
-  source.position_space = settings.position_space != PositionSpace::automatic ? settings.position_space
-                          : source.camera.view_from_world                     ? PositionSpace::world
-                                                                              : PositionSpace::view;
-  const bool has_encoding = source.rules_said && rules.normal_encoding != NormalEncoding::automatic;
-  source.normal_encoding = decided(settings.normal_encoding, source.camera.normal_encoding,
-                                   has_encoding ? rules.normal_encoding : NormalEncoding::signed_float);
-  source.flip_normal = settings.flip_normal;
-  source.normal_space = decided(settings.normal_space, source.camera.normal_space, source.usual_normal_space);
+  source.reading.depth_kind =
+      source.channels[RawPlane::depth].size() == 3
+          ? DepthKind::position
+          : decided(settings.depth_kind, source.reading.camera.depth_kind, source.program.depth_kind);
+  source.reading.depth_range = settings.depth_range;
+  if (!source.reading.depth_range.near)
+    source.reading.depth_range.near = source.reading.camera.near ? source.reading.camera.near : rules.depth_range.near;
+  if (!source.reading.depth_range.far)
+    source.reading.depth_range.far = source.reading.camera.far ? source.reading.camera.far : rules.depth_range.far;
+  source.reading.depth_range.reversed =
+      settings.depth_range.reversed || source.reading.camera.reversed_z || rules.depth_range.reversed;
+  source.reading.position_space = settings.position_space != PositionSpace::automatic ? settings.position_space
+                                  : source.reading.camera.view_from_world             ? PositionSpace::world
+                                                                                      : PositionSpace::view;
+  const bool has_encoding = source.program.is_said() && rules.normal_encoding != NormalEncoding::automatic;
+  source.reading.normal_encoding = decided(settings.normal_encoding, source.reading.camera.normal_encoding,
+                                           has_encoding ? rules.normal_encoding : NormalEncoding::signed_float);
+  source.reading.flip_normal = settings.flip_normal;
+  source.reading.normal_space =
+      decided(settings.normal_space, source.reading.camera.normal_space, source.program.normal_space);
 }
 
 /// Notes an INPUT that gives nothing although the frame has no normals: perhaps it holds them.
 void note_unused_input(FrameSource& source, const InputSettings& settings) {
-  if (settings.input.empty() || !source[RawPlane::normal].empty() || source.normals_left_out) return;
+  if (settings.input.empty() || !source.channels[RawPlane::normal].empty() || !wants_normals(settings)) return;
   const auto is_of_input = [&](const ChannelRef& ref) { return source.files[ref.file].path() == settings.input; };
   const auto is_used = [&](const std::vector<ChannelRef>& plane) { return std::ranges::any_of(plane, is_of_input); };
-  if (std::ranges::any_of(source.planes.entries, is_used)) return;
+  if (std::ranges::any_of(source.channels.planes.entries, is_used)) return;
   source.notes.push_back({NoteCode::unused_input,
                           fmt::format("no channel of {} is used: where it holds the normals, give it with --normal, "
                                       "or name them with --normal-channels",
@@ -513,25 +525,26 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   std::size_t depth_file = by_position && !settings.position.empty()
                                ? search.open(settings.position, "--position")
                                : search.open(depth_path, is_deep_path(depth_path) ? "--deep" : "--depth");
-  source.view = search.view();
+  source.channels.view = search.view();
   find_rules(source, source.files[depth_file], settings);
-  if (!by_position) source[RawPlane::depth] = find_deep_depth(source, search, depth_file, settings);
-  if (source[RawPlane::depth].empty())
-    source[RawPlane::depth] = find_depth(source, search, depth_file, settings, by_position);
-  depth_file = source[RawPlane::depth][0].file;
-  const ExrPart& depth_part = source.part_of(source[RawPlane::depth][0]);
-  source.data = source.file_data = depth_part.deep ? source.deep_data : depth_part.data;
-  source.display = source.files[depth_file].display();
-  source.pixel_aspect = source.files[depth_file].pixel_aspect();
-  source.supersampling = supersampling_of(source, settings);
-  source.depth_is_half = source.is_half(source[RawPlane::depth][0]) || source.deep_depth_is_half;
-  source.depth_scale = settings.depth_scale;
-  source.sky = settings.sky;
+  if (!by_position) source.channels[RawPlane::depth] = find_deep_depth(source, search, depth_file, settings);
+  if (source.channels[RawPlane::depth].empty())
+    source.channels[RawPlane::depth] = find_depth(source, search, depth_file, settings, by_position);
+  depth_file = source.channels[RawPlane::depth][0].file;
+  const ExrPart& depth_part = source.part_of(source.channels[RawPlane::depth][0]);
+  source.reading.data = depth_part.deep ? source.channels.deep->data : depth_part.data;
+  source.reading.display = source.files[depth_file].display();
+  source.reading.pixel_aspect = source.files[depth_file].pixel_aspect();
+  source.reading.supersampling = supersampling_of(source, settings);
+  source.reading.depth_is_half = source.is_half(source.channels[RawPlane::depth][0]) ||
+                                 (source.channels.deep && source.channels.deep->depth_is_half);
+  source.reading.depth_scale = settings.depth_scale;
+  source.reading.sky = settings.sky;
 
-  source.normals_left_out = !wants_normals(settings);
-  if (!source.normals_left_out) {
-    source[RawPlane::normal] = find_normal(source, search, search.open(path_of(settings.normal), "--normal"), settings);
-    require_same_picture(source, source[RawPlane::normal], "normal", "--normal");
+  if (wants_normals(settings)) {
+    source.channels[RawPlane::normal] =
+        find_normal(source, search, search.open(path_of(settings.normal), "--normal"), settings);
+    require_same_picture(source, source.channels[RawPlane::normal], "normal", "--normal");
   }
   if (with_beauty) find_beauty(source, search, search.open(path_of(settings.beauty), "--beauty"), settings);
   if (with_albedo) find_albedo(source, search, path_of(settings.beauty), settings);
@@ -545,8 +558,8 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
 
   const auto views = views_of(source.files[depth_file]);
   if (settings.view.empty() && views.size() > 1)
-    source.notes.push_back(
-        {NoteCode::default_view, fmt::format("of the views {} this is {} (--view)", list_of(views), source.view)});
+    source.notes.push_back({NoteCode::default_view,
+                            fmt::format("of the views {} this is {} (--view)", list_of(views), source.channels.view)});
   const auto has_views = [](const ExrFile& file) { return !views_of(file).empty(); };
   if (!settings.view.empty() && std::ranges::none_of(source.files, has_views))
     source.notes.push_back({NoteCode::said_otherwise,
@@ -554,9 +567,10 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   find_camera(source, search, settings, frame);
   find_meaning(source, settings);
   take_deep(source, settings);
-  if (!source[RawPlane::normal].empty() && source.normal_space == NormalSpace::world && !source.normal_space_open &&
-      !source.camera.view_from_world)
-    fail(ErrorKind::input, "{}: {}", source.files[source[RawPlane::normal][0].file].path(), kWorldWithoutMatrix);
+  if (!source.channels[RawPlane::normal].empty() && source.reading.normal_space == NormalSpace::world &&
+      !source.open.normal_space && !source.reading.camera.view_from_world)
+    fail(ErrorKind::input, "{}: {}", source.files[source.channels[RawPlane::normal][0].file].path(),
+         kWorldWithoutMatrix);
   return source;
 }
 
@@ -580,7 +594,7 @@ bool may_tell_camera(const InputSettings& settings) {
   }
   FrameSource source;
   find_rules(source, file, settings);
-  return !search.find_by_rules(place, kPositionNames, settings.position_channels, source.rules->position)
+  return !search.find_by_rules(place, kPositionNames, settings.position_channels, source.program.rules->position)
               .channels.empty() ||
          !search.find(place, kPositionNames, settings.position_channels, !settings.position.empty()).empty();
 }

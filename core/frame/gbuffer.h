@@ -25,23 +25,74 @@ struct Guess {
   std::string what, chosen, why, option;  // option: the one that says it
 };
 
-/// FrameSource::camera_from where the pass of positions gave it.
+/// FrameSource::camera_from where the pass of positions gave the camera.
 inline constexpr const char* kByPositions = "its positions";
 
-/// Where everything is that a frame needs, and how it is read; nothing but headers has been read. `data` may be a part
-/// of what the files hold, then no more is read.
-struct FrameSource : Reading {
+/// Deep samples that are the depth of a frame, or give planes behind it.
+struct DeepFiles {
+  std::size_t file;        // of FrameSource::files
+  std::vector<int> parts;  // of that file
+  // other files and their parts, whose samples count together with those
+  std::vector<std::pair<std::size_t, std::vector<int>>> elements = {};
+  Window data = {};            // over which samples are read
+  bool depth_is_half = false;  // samples are the depth, and were rounded to half floats
+};
+
+/// The channels of a frame that are read.
+struct FrameChannels {
   /// The channels of a plane, in the order of its components; none: the frame has no such plane, or nobody asked for
   /// it. The indirect diffuse light is to be multiplied by the diffuse colour where that is there, and holds it already
   /// where it is not.
   std::vector<ChannelRef>& operator[](RawPlane plane) { return planes[plane]; }
   const std::vector<ChannelRef>& operator[](RawPlane plane) const { return planes[plane]; }
+
+  RawPlaneArray<std::vector<ChannelRef>> planes;
+  std::vector<ChannelRef> positions;  // that may tell the camera; empty: there are none
+  std::optional<DeepFiles> deep;
+  std::string view;  // that is read, of files with views
+};
+
+/// The program that wrote a frame, and how it usually means depth and normals.
+struct Program {
+  /// FrameSource::program.by where the option --source names the rules.
+  static constexpr const char* kByOption = "--source";
+
+  const InputRules* rules = nullptr;
+  std::string by;  // the attribute or channel, or the option, that told; empty: nothing did
+  DepthKind depth_kind = DepthKind::planar;
+  NormalSpace normal_space = NormalSpace::world;
+
+  /// Whether an option names the rules: then they are no guess.
+  bool is_said() const { return by == kByOption; }
+};
+
+/// Facts of a frame that neither settings nor headers say.
+struct OpenQuestions {
+  // The pixels decide these.
+  bool depth_kind = false, normal_space = false, normal_encoding = false;
+  // The camera only stands in for one, so that the pixels cannot speak against it.
+  bool camera = false;
+};
+
+/// Facts that the pixels of a frame show.
+struct Evidence {
+  bool tells = true;                     // false: the pixels did not show what was left open
+  Grain grain;                           // of the depth's values
+  std::vector<DepthScore> depth_scores;  // of depth that is no position
+  // of the surfaces, scene units; none until the frame is settled, and where all is sky
+  std::optional<double> median_depth;
+  std::vector<Guess> guesses;
+};
+
+/// A frame that was found: its files, the channels of its planes, and how they are read. Nothing but headers is read to
+/// find it.
+struct FrameSource {
   /// The file of the depth or the positions, after which the frame is called in messages.
-  const std::string& depth_path() const { return files[planes[RawPlane::depth][0].file].path(); }
+  const std::string& depth_path() const { return files[channels[RawPlane::depth][0].file].path(); }
   /// The file of the normals for notes on them: "" where it is the frame's own, or where there are none.
   std::string normal_file() const {
-    const auto& normal = planes[RawPlane::normal];
-    return normal.empty() || normal[0].file == planes[RawPlane::depth][0].file ? "" : files[normal[0].file].path();
+    const auto& normal = channels[RawPlane::normal];
+    return normal.empty() || normal[0].file == channels[RawPlane::depth][0].file ? "" : files[normal[0].file].path();
   }
   /// The part of a file that a channel lies in.
   const ExrPart& part_of(const ChannelRef& ref) const { return files[ref.file].parts()[std::size_t(ref.part)]; }
@@ -51,39 +102,17 @@ struct FrameSource : Reading {
   std::string layer_of(const ChannelRef& ref) const;
 
   std::vector<ExrFile> files;
-  std::optional<std::size_t> deep;  // of them, whose samples are the depth, or give planes behind it
-  std::vector<int> deep_parts;      // of that file
-  // of other files and their parts, whose samples count together with those
-  std::vector<std::pair<std::size_t, std::vector<int>>> deep_elements;
-  Window deep_data;                 // over which samples are read
-  bool deep_depth_is_half = false;  // samples are the depth, and were rounded to half floats
-  RawPlaneArray<std::vector<ChannelRef>> planes;
-  std::vector<ChannelRef> positions;     // that may tell the camera; none where there are none
-  Window file_data;                      // what the files hold
-  std::optional<Window> region;          // what is to be written of it; none: all of data
-  std::uint64_t rows_read = 0;           // that were decoded, each as often as it was
-  bool settled = false;                  // see core/frame/settle.h
-  bool has_evidence = true;              // false: its pixels did not show what was left open
-  Grain grain;                           // of the depth's values
-  std::vector<DepthScore> depth_scores;  // of depth that is no position
-  // of the surfaces, scene units; none until the frame is settled, and where all is sky
-  std::optional<double> median_depth;
-  const InputRules* rules = nullptr;  // of the program that wrote the frame
-  std::string rules_by;               // the attribute or channel, or the option, that told; empty: nothing did
-  bool rules_said = false;            // an option names them: what they say is no guess
-  DepthKind usual_depth_kind = DepthKind::planar;  // by the rules, for what is open
-  NormalSpace usual_normal_space = NormalSpace::world;
-  // Nobody says it, so the pixels decide.
-  bool depth_kind_open = false, normal_space_open = false, normal_encoding_open = false;
-  bool normals_left_out = false;  // the settings say so
-  std::string view;               // that is read, of files with views
-  std::string camera_from;        // what of the frame gave it; empty: the settings did
-  // Nobody gave a camera, and this one only stands in for it, so that the pixels cannot speak against it.
-  bool camera_is_assumed = false;
-  std::vector<Guess> guesses;
-  // what the user should know, a sentence each: guesses that are unusual, options that the pixels speak against
-  Notes notes;
-  Notes suspicious;  // what harms AO
+  FrameChannels channels;  // of those files
+  Reading reading;         // over all pixels that the files hold
+  Program program;
+  OpenQuestions open;
+  std::string camera_from;       // the header's attributes or the positions, which gave it; empty: the settings did
+  std::optional<Window> region;  // that is written; none: all pixels are
+  bool settled = false;          // see core/frame/settle.h
+  Evidence evidence;
+  Notes notes;                  // guesses that are unusual, and options that the pixels speak against
+  Notes suspicious;             // on faults of the files that harm AO
+  std::uint64_t rows_read = 0;  // that were decoded, each as often as it was
 };
 
 /// Opens the files that the settings name and finds the channels. `with_beauty` asks for the beauty and its ambient
@@ -110,14 +139,19 @@ struct PlaneRead {
   float* to;
 };
 
-/// Reads planes within source.data, which is as wide as the files. Every part of every file is decoded once.
-void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads);
+/// Reads planes over a window, which is as wide as the frame. Every part of every file is decoded once.
+void read_planes(FrameSource& source, const Window& window, const std::vector<PlaneRead>& reads);
 
-/// Depth and normals over source.data, as they were read.
+/// Depth and normals of a part of a frame, as they were read.
+struct RawPart {
+  Window window;
+  std::span<const float> depth, normal;
+};
+/// Depth and normals of a frame, as they were read.
 struct RawFrame {
   std::vector<float> depth, normal;
 };
-RawFrame read_raw_frame(FrameSource& source);
+RawFrame read_raw_frame(FrameSource& source, const Window& window);
 
 /// Finds, reads and settles the depth and normals that the settings name. Fails as find_frame() and settle() do.
 HostFrame read_host_frame(const InputSettings& settings, int frame);
@@ -144,8 +178,8 @@ void require_same_picture(const FrameSource& source, const std::vector<ChannelRe
 void require_common_window(FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                            const char* option, const char* without);
 
-/// Puts what changes nothing into the pixels of a plane over source.data that its files do not have: AO 1 of materials,
-/// no object of a matte. Of all other planes that is the 0 that is there.
-void fill_missing(const FrameSource& source, RawPlane plane, std::span<float> values);
+/// Puts values that change nothing into the pixels of a plane over a window that its files do not have: AO 1 of
+/// materials, no object of a matte. Of all other planes that is the 0 that is there.
+void fill_missing(const FrameSource& source, const Window& window, RawPlane plane, std::span<float> values);
 
 }  // namespace alcove

@@ -303,7 +303,7 @@ bool has_layer(const std::vector<Cryptomatte>& mattes, const std::string& layer)
 /// where the settings name it or all objects are numbers.
 void find_objects(FrameSource& source, ChannelSearch& search, std::size_t file, const Objects& meant, bool own_file) {
   const std::string& path = source.files[file].path();
-  const auto mattes = cryptomattes_of(source.files[file], source.view);
+  const auto mattes = cryptomattes_of(source.files[file], source.channels.view);
   const bool are_numbers =
       std::ranges::all_of(split(meant.words), [](const auto& word) { return number_in(word).has_value(); });
   const auto are_names = [&] {
@@ -311,11 +311,11 @@ void find_objects(FrameSource& source, ChannelSearch& search, std::size_t file, 
            search.find(file, meant.channel_names, "", own_file).empty();
   };
   const bool by_number = meant.channel.empty() ? are_numbers && !are_names() : !has_layer(mattes, meant.channel);
-  auto& channels = source[RawPlane::occluders];
+  auto& channels = source.channels[RawPlane::occluders];
   if (by_number) {
     channels = search.require(file, meant.channel_names, meant.channel, own_file, "IndexOB.X");
-    source.occluders.kind = MatteKind::objects;
-    source.occluders.objects = numbers_of(path, meant);
+    source.reading.occluders.kind = MatteKind::objects;
+    source.reading.occluders.objects = numbers_of(path, meant);
     return;
   }
   if (mattes.empty())
@@ -323,21 +323,22 @@ void find_objects(FrameSource& source, ChannelSearch& search, std::size_t file, 
          "{}: {}: the file has no Cryptomatte: give one with --set objects, a file of coverage instead of names, or "
          "numbers of a channel (--set object-channel)",
          path, typed(meant.option, meant.words));
-  take(source, file, chosen(mattes, path, meant), meant, source.occluders, channels);
+  take(source, file, chosen(mattes, path, meant), meant, source.reading.occluders, channels);
 }
 
 }  // namespace
 
 void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
   if (!wants_matte(settings)) return;
-  source.matte.outside = settings.matte_outside;
+  source.reading.matte.outside = settings.matte_outside;
   const std::size_t file = search.open(settings.matte.empty() ? main_input(settings) : settings.matte, "--matte");
   const std::string& path = source.files[file].path();
   const std::string& objects = settings.matte_object;
   const Objects meant{objects, "--matte-object", settings.matte_channel, kMatteNames};
   // A manifest may be long, and a file of coverage alone needs none.
   const bool may_be_ranked = !objects.empty() || !settings.matte_channel.empty();
-  const auto mattes = may_be_ranked ? cryptomattes_of(source.files[file], source.view) : std::vector<Cryptomatte>();
+  const auto mattes =
+      may_be_ranked ? cryptomattes_of(source.files[file], source.channels.view) : std::vector<Cryptomatte>();
   const bool is_layer = has_layer(mattes, settings.matte_channel);
   if (is_layer && objects.empty())
     fail(ErrorKind::input, "{}: --set matte-channel={} is a Cryptomatte: name its objects with --matte-object", path,
@@ -348,35 +349,36 @@ void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings&
         "{}: --matte-object {}: the file has no Cryptomatte; of a channel of numbers, name it with --set matte-channel",
         path, objects);
   if (is_layer || (!objects.empty() && settings.matte_channel.empty())) {
-    take(source, file, chosen(mattes, path, meant), meant, source.matte, source[RawPlane::matte]);
+    take(source, file, chosen(mattes, path, meant), meant, source.reading.matte, source.channels[RawPlane::matte]);
   } else {
-    source[RawPlane::matte] =
+    source.channels[RawPlane::matte] =
         search.require(file, kMatteNames, settings.matte_channel, !settings.matte.empty(), "matte.Y");
     if (!objects.empty()) {
-      source.matte.kind = MatteKind::objects;
-      source.matte.objects = numbers_of(path, meant);
+      source.reading.matte.kind = MatteKind::objects;
+      source.reading.matte.objects = numbers_of(path, meant);
     }
   }
-  require_common_window(source, source[RawPlane::matte], "matte", "--matte", "where it has no pixels nothing is in it");
+  require_common_window(source, source.channels[RawPlane::matte], "matte", "--matte",
+                        "where it has no pixels nothing is in it");
 }
 
 void find_occluders(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
   if (!chooses_occluders(settings)) return;
-  source.occluders.ignores = !settings.ignore.empty() || !settings.ignored_objects.empty();
-  const char* option = source.occluders.ignores ? "--set ignore" : "--set occluders";
-  const std::string& coverage = source.occluders.ignores ? settings.ignore : settings.occluders;
+  source.reading.occluders.ignores = !settings.ignore.empty() || !settings.ignored_objects.empty();
+  const char* option = source.reading.occluders.ignores ? "--set ignore" : "--set occluders";
+  const std::string& coverage = source.reading.occluders.ignores ? settings.ignore : settings.occluders;
   if (!coverage.empty()) {
     const std::size_t file = search.open(coverage, option);
-    source[RawPlane::occluders] = search.require(file, kMatteNames, "", true, "matte.Y");
+    source.channels[RawPlane::occluders] = search.require(file, kMatteNames, "", true, "matte.Y");
   } else {
-    const std::string& words = source.occluders.ignores ? settings.ignored_objects : settings.occluder_objects;
+    const std::string& words = source.reading.occluders.ignores ? settings.ignored_objects : settings.occluder_objects;
     const bool own_file = !settings.objects.empty();
     const std::size_t file = search.open(own_file ? settings.objects : main_input(settings), "--set objects");
     find_objects(source, search, file, {words, option, settings.object_channel, kObjectNames}, own_file);
   }
-  require_common_window(
-      source, source[RawPlane::occluders], "choice of occluders", option,
-      source.occluders.ignores ? "nothing is ignored where it has no pixels" : "nothing blocks where it has no pixels");
+  require_common_window(source, source.channels[RawPlane::occluders], "choice of occluders", option,
+                        source.reading.occluders.ignores ? "nothing is ignored where it has no pixels"
+                                                         : "nothing blocks where it has no pixels");
 }
 
 }  // namespace alcove

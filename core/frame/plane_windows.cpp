@@ -19,19 +19,19 @@ constexpr std::uint64_t kBandBytes = 8 << 20;
 
 /// How many pixels of the depth are one of a channel's file, in x and in y.
 int scale_of(const FrameSource& source, const ChannelRef& channel) {
-  const bool is_of_picture = source.files[channel.file].display() == picture_of(source, source.display);
-  return is_of_picture ? source.supersampling : 1;
+  const bool is_of_picture = source.files[channel.file].display() == picture_of(source.reading, source.reading.display);
+  return is_of_picture ? source.reading.supersampling : 1;
 }
 
 /// The pixels of the depth that a channel's file shows, whether the depth has them or not.
 Window shown_by(const FrameSource& source, const ChannelRef& channel) {
-  return enlarged(source.part_of(channel).data, source.display, scale_of(source, channel));
+  return enlarged(source.part_of(channel).data, source.reading.display, scale_of(source, channel));
 }
 
 /// What a channel has where its file has no pixels.
 float outside_of(const FrameSource& source, const ChannelRef& channel) {
   for (const RawPlane plane : {RawPlane::normal, RawPlane::behind})
-    if (std::ranges::find(source[plane], channel) != source[plane].end())
+    if (std::ranges::find(source.channels[plane], channel) != source.channels[plane].end())
       return std::numeric_limits<float>::quiet_NaN();
   return 0;
 }
@@ -57,7 +57,7 @@ void read_from_other(ExrFile& file, const Window& from, int rows_together, const
 
 /// What to do about a file of another size than the depth.
 std::string way_out(const FrameSource& source, const Window& display) {
-  if (display.width > source.display.width)
+  if (display.width > source.reading.display.width)
     return "compute from a depth of that size, if need be with --resolution half, or render both at the same size";
   return "render both at the same size, or the depth at 2, 3 or 4 times that of the picture, with --set supersampling";
 }
@@ -74,11 +74,11 @@ struct ChannelRead {
   float* to;
 };
 
-/// Reads all of source.data. Every part of every file is decoded once. Where their files have no pixels, normals and
+/// Reads all of a window. Every part of every file is decoded once. Where their files have no pixels, normals and
 /// what lies behind are NaN, which is none in any encoding, and all else is 0. Channels of the smaller picture have
 /// their value in all pixels of a block.
-void read_channels(FrameSource& source, std::span<const ChannelRead> reads) {
-  const Window& own = source.file_data;
+void read_channels(FrameSource& source, const Window& window, std::span<const ChannelRead> reads) {
+  const Window& own = source.reading.data;
   using Place = std::tuple<std::size_t, int, int, int, int>;  // a file, and a window
   std::map<Place, std::vector<const ChannelRead*>> groups;
   for (const auto& read : reads) {
@@ -92,11 +92,11 @@ void read_channels(FrameSource& source, std::span<const ChannelRead> reads) {
     for (const auto* read : group) of_file.push_back({read->channel.part, read->channel.channel, read->to});
     const int scale = scale_of(source, group[0]->channel);
     if (scale == 1 && part.data == own) {
-      file.read(of_file, source.data.y - own.y, source.data.height);
+      file.read(of_file, window.y - own.y, window.height);
       continue;
     }
-    for (const auto* read : group) std::fill_n(read->to, source.data.pixels(), outside_of(source, read->channel));
-    read_from_other(file, part.data, part.rows_together, of_file, source.data, source.display, scale);
+    for (const auto* read : group) std::fill_n(read->to, window.pixels(), outside_of(source, read->channel));
+    read_from_other(file, part.data, part.rows_together, of_file, window, source.reading.display, scale);
   }
 }
 
@@ -105,9 +105,9 @@ void read_channels(FrameSource& source, std::span<const ChannelRead> reads) {
 int supersampling_of(const FrameSource& source, const InputSettings& settings) {
   if (settings.supersampling == "auto") return 1;
   const int factor = std::stoi(settings.supersampling);
-  if (source.display.width % factor != 0 || source.display.height % factor != 0)
+  if (source.reading.display.width % factor != 0 || source.reading.display.height % factor != 0)
     fail(ErrorKind::input, "{}: the display window is {}, which --set supersampling={} cannot divide",
-         source.depth_path(), to_string(source.display), factor);
+         source.depth_path(), to_string(source.reading.display), factor);
   return factor;
 }
 
@@ -115,15 +115,15 @@ int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const 
   const ExrFile& file = source.files[beauty.file];
   if (settings.supersampling == "auto") {
     for (const int factor : {2, 3, 4})
-      if (is_times(source.display, file.display(), factor)) return factor;
+      if (is_times(source.reading.display, file.display(), factor)) return factor;
     return 1;
   }
   const int factor = supersampling_of(source, settings);
-  if (!is_times(source.display, file.display(), factor))
+  if (!is_times(source.reading.display, file.display(), factor))
     fail(ErrorKind::input,
          "{}: the beauty is of a picture of {}, and --set supersampling={} of the depth, {}, makes {}", file.path(),
-         to_string(file.display()), factor, to_string(source.display),
-         to_string(reduced(source.display, source.display, factor)));
+         to_string(file.display()), factor, to_string(source.reading.display),
+         to_string(reduced(source.reading.display, source.reading.display, factor)));
   return factor;
 }
 
@@ -132,17 +132,17 @@ void require_same_picture(const FrameSource& source, const std::vector<ChannelRe
   for (const auto& channel : channels) {
     const ExrFile& file = source.files[channel.file];
     const Window& data = source.part_of(channel).data;
-    if (data == source.file_data) continue;
-    if (file.display() != source.display)
+    if (data == source.reading.data) continue;
+    if (file.display() != source.reading.display)
       fail(
           ErrorKind::input,
           "{}: the {} channel {} is {} of a picture of {}, and the depth is {} of {}: both must cover the same pixels, "
           "or have the same display window ({})",
-          file.path(), what, channel.channel, to_string(data), to_string(file.display()), to_string(source.file_data),
-          to_string(source.display), option);
-    if (common_part(data, source.file_data).pixels() == 0)
+          file.path(), what, channel.channel, to_string(data), to_string(file.display()),
+          to_string(source.reading.data), to_string(source.reading.display), option);
+    if (common_part(data, source.reading.data).pixels() == 0)
       fail(ErrorKind::input, "{}: the {} channel {} is {}, and the depth is {}: they share no pixel ({})", file.path(),
-           what, channel.channel, to_string(data), to_string(source.file_data), option);
+           what, channel.channel, to_string(data), to_string(source.reading.data), option);
   }
 }
 
@@ -151,27 +151,28 @@ void require_common_window(FrameSource& source, const std::vector<ChannelRef>& c
   for (const auto& channel : channels) {
     const ExrFile& file = source.files[channel.file];
     const Window& data = source.part_of(channel).data;
-    if (data == source.file_data && source.supersampling == 1) continue;
-    if (file.display() != source.display && file.display() != picture_of(source, source.display))
+    if (data == source.reading.data && source.reading.supersampling == 1) continue;
+    if (file.display() != source.reading.display &&
+        file.display() != picture_of(source.reading, source.reading.display))
       fail(
           ErrorKind::input,
           "{}: the {} channel {} is {} of a picture of {}, and the depth is {} of {}: only files with the same display "
           "window show which pixels belong together: {} ({})",
-          file.path(), what, channel.channel, to_string(data), to_string(file.display()), to_string(source.file_data),
-          to_string(source.display), way_out(source, file.display()), option);
+          file.path(), what, channel.channel, to_string(data), to_string(file.display()),
+          to_string(source.reading.data), to_string(source.reading.display), way_out(source, file.display()), option);
     const Window shown = shown_by(source, channel);
-    if (shown == source.file_data) continue;
-    if (common_part(shown, source.file_data).pixels() == 0)
+    if (shown == source.reading.data) continue;
+    if (common_part(shown, source.reading.data).pixels() == 0)
       fail(ErrorKind::input, "{}: the {} channel {} is {}, and the depth is {}: they share no pixel ({})", file.path(),
-           what, channel.channel, to_string(data), to_string(source.file_data), option);
+           what, channel.channel, to_string(data), to_string(source.reading.data), option);
     add_new(source.notes,
             {{NoteCode::windows_differ, fmt::format("the {} is {}, and the depth is {}: {}", what, to_string(data),
-                                                    to_string(source.file_data), without)}});
+                                                    to_string(source.reading.data), without)}});
   }
 }
 
-void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
-  source.rows_read += std::uint64_t(source.data.height);
+void read_planes(FrameSource& source, const Window& window, const std::vector<PlaneRead>& reads) {
+  source.rows_read += std::uint64_t(window.height);
   std::vector<ChannelRead> firsts;
   // a channel that serves two purposes is decoded to the first place, and copied from there
   std::map<ChannelRef, float*> first;
@@ -179,35 +180,37 @@ void read_planes(FrameSource& source, const std::vector<PlaneRead>& reads) {
   for (const auto& read : reads)
     for (std::size_t i = 0; i < read.channels->size(); i++) {
       const auto& channel = (*read.channels)[i];
-      float* to = read.to + i * source.data.pixels();
+      float* to = read.to + i * window.pixels();
       if (const auto [known, is_new] = first.try_emplace(channel, to); is_new)
         firsts.push_back({channel, to});
       else
         copies.emplace_back(known->second, to);
     }
-  read_channels(source, firsts);
-  for (const auto& [from, to] : copies) std::copy_n(from, source.data.pixels(), to);
+  read_channels(source, window, firsts);
+  for (const auto& [from, to] : copies) std::copy_n(from, window.pixels(), to);
 }
 
-RawFrame read_raw_frame(FrameSource& source) {
+RawFrame read_raw_frame(FrameSource& source, const Window& window) {
   RawFrame raw;
-  raw.depth.resize(source[RawPlane::depth].size() * source.data.pixels());
-  raw.normal.resize(source[RawPlane::normal].size() * source.data.pixels());
-  read_planes(source, {{&source[RawPlane::depth], raw.depth.data()}, {&source[RawPlane::normal], raw.normal.data()}});
+  raw.depth.resize(source.channels[RawPlane::depth].size() * window.pixels());
+  raw.normal.resize(source.channels[RawPlane::normal].size() * window.pixels());
+  read_planes(
+      source, window,
+      {{&source.channels[RawPlane::depth], raw.depth.data()}, {&source.channels[RawPlane::normal], raw.normal.data()}});
   return raw;
 }
 
-void fill_missing(const FrameSource& source, RawPlane plane, std::span<float> values) {
-  const bool is_objects = (plane == RawPlane::matte && source.matte.kind == MatteKind::objects) ||
-                          (plane == RawPlane::occluders && source.occluders.kind == MatteKind::objects);
+void fill_missing(const FrameSource& source, const Window& window, RawPlane plane, std::span<float> values) {
+  const bool is_objects = (plane == RawPlane::matte && source.reading.matte.kind == MatteKind::objects) ||
+                          (plane == RawPlane::occluders && source.reading.occluders.kind == MatteKind::objects);
   if (plane != RawPlane::material_ao && !is_objects) return;
   // The number 0 may be that of an object.
   const float neutral = is_objects ? std::numeric_limits<float>::quiet_NaN() : 1;
-  const Window part = common_part(shown_by(source, source[plane][0]), source.data);
-  if (part == source.data) return;
-  const std::vector<float> kept = cropped(values, source.data, part);
+  const Window part = common_part(shown_by(source, source.channels[plane][0]), window);
+  if (part == window) return;
+  const std::vector<float> kept = cropped(values, window, part);
   std::ranges::fill(values, neutral);
-  copy_common(kept.data(), part, values.data(), source.data);
+  copy_common(kept.data(), part, values.data(), window);
 }
 
 }  // namespace alcove

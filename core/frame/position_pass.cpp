@@ -84,10 +84,11 @@ double rounding_at(const Band& band, int x, int y, double relative) {
 
 std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameSource& source,
                                        const InputSettings& settings) {
-  const auto& depth = source[RawPlane::depth];
+  const auto& depth = source.channels[RawPlane::depth];
   if (depth.size() == 3) return depth;
   const std::size_t file = depth.front().file;
-  auto found = search.find_by_rules(file, kPositionNames, settings.position_channels, source.rules->position).channels;
+  auto found =
+      search.find_by_rules(file, kPositionNames, settings.position_channels, source.program.rules->position).channels;
   if (found.empty()) found = search.find(file, kPositionNames, settings.position_channels, false);
   const auto fits = [&](const ChannelRef& ref) {
     return source.part_of(ref).data == source.part_of(found.front()).data;
@@ -96,7 +97,7 @@ std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameS
 }
 
 std::vector<SeenPoint> points_of(FrameSource& source, double sky, int bands) {
-  const auto& positions = source.positions;
+  const auto& positions = source.channels.positions;
   ExrFile& file = source.files[positions.front().file];
   const ExrPart& part = file.parts()[std::size_t(positions.front().part)];
   const Window& data = part.data;
@@ -203,17 +204,17 @@ double spread(std::vector<double> numbers) {
 }  // namespace
 
 std::string settle_camera(FrameSource& source, const InputSettings& settings) {
-  if (source.positions.empty() || source.camera_is_assumed || source.camera_from == kByPositions) return "";
-  ExrFile& file = source.files[source.positions.front().file];
+  if (source.channels.positions.empty() || source.open.camera || source.camera_from == kByPositions) return "";
+  ExrFile& file = source.files[source.channels.positions.front().file];
   const auto points = points_of(source, settings.sky, kFewBands);
-  const double limit = std::max(kLeastBeside, kLeastPart * source.display.width);
-  if (points.empty() || beside(source.camera, source.camera, points) <= limit) return "";
-  const auto found = resection_of(points, source.display);
+  const double limit = std::max(kLeastBeside, kLeastPart * source.reading.display.width);
+  if (points.empty() || beside(source.reading.camera, source.reading.camera, points) <= limit) return "";
+  const auto found = resection_of(points, source.reading.display);
   const auto* seen = std::get_if<Resection>(&found);
   const std::string& held = file.path();
   std::string text;
   if (!seen) {
-    if (const std::string panorama = panorama_of(points, source.display); !panorama.empty())
+    if (const std::string panorama = panorama_of(points, source.reading.display); !panorama.empty())
       refuse_panorama(file.path(), panorama + " by its positions");
     const auto& none = std::get<NoResection>(found);
     if (none.median <= kNoCamera || !source.camera_from.empty()) return "";
@@ -223,28 +224,28 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings) {
         "hold them, so they are of a panorama, or no positions (--position-channels); {} is taken",
         held, none.median, name_of_lens(source, settings));
   } else {
-    const double px = beside(source.camera, seen->camera, points);
+    const double px = beside(source.reading.camera, seen->camera, points);
     if (px <= limit) return "";
     text = fmt::format("by {} most positions of {} lie up to {:.3g} px from the pixels that hold them; they show {}{}",
-                       name_of_lens(source, settings), held, px, text_of(seen->camera, source.pixel_aspect),
+                       name_of_lens(source, settings), held, px, text_of(seen->camera, source.reading.pixel_aspect),
                        source.camera_from.empty() ? ": give that, or leave the option out" : "");
   }
   source.notes.push_back({NoteCode::field_of_view, text});
   return text;
 }
 
-std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings,
-                                           std::span<const float> depth) {
+std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
   constexpr double kSame = 0.005;  // of depth that is that of the positions, in whatever unit
   constexpr double kOther = 4;     // times as far is another kind
-  if (source.positions.empty() || source[RawPlane::depth].size() != 1) return std::nullopt;
-  const View view = view_of(source.camera, source.data, source.display);
+  if (source.channels.positions.empty() || source.channels[RawPlane::depth].size() != 1) return std::nullopt;
+  const Window &data = raw.window, &display = source.reading.display;
+  const View view = view_of(source.reading, data);
   std::vector<double> planar, ray, inverse;
   for (const auto& point : points_of(source, settings.sky, kFewBands)) {
-    const int x = int(point.x) + source.display.x - source.data.x, y = int(point.y) + source.display.y - source.data.y;
-    if (x < 0 || y < 0 || x >= source.data.width || y >= source.data.height) continue;
-    const double value = std::abs(depth[std::size_t(y) * std::size_t(source.data.width) + std::size_t(x)]);
-    const double z = planar_of(point, source.camera);
+    const int x = int(point.x) + display.x - data.x, y = int(point.y) + display.y - data.y;
+    if (x < 0 || y < 0 || x >= data.width || y >= data.height) continue;
+    const double value = std::abs(raw.depth[std::size_t(y) * std::size_t(data.width) + std::size_t(x)]);
+    const double z = planar_of(point, source.reading.camera);
     if (!(value > 0 && value < settings.sky && z > 0)) continue;
     planar.push_back(value / z);
     ray.push_back(value / (z * ray_length(view, x, y)));

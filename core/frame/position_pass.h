@@ -18,7 +18,7 @@ std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameS
 /// How many bands of rows are read of positions: to solve a camera, and to see whether one fits.
 inline constexpr int kManyBands = 48, kFewBands = 4;
 
-/// Up to 48 points of source.positions in each band of rows, well spread over the picture: of each place the pixel
+/// Up to 48 points of source.channels.positions in each band of rows, well spread over the picture: of each place the pixel
 /// whose surroundings are smoothest, so that neither edges nor filters matter. Sky has none: 0, not finite, beyond
 /// `sky`, or the same in all pixels about. Reads every part of the file's rows once, and no more of them than it needs.
 std::vector<SeenPoint> points_of(FrameSource& source, double sky, int bands);

@@ -227,6 +227,13 @@ bool list_all(std::span<const BehindPlane> planes) {
       planes, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces && plane.is_whole; });
 }
 
+Reading over(Reading reading, const Window& window) {
+  reading.data = window;
+  return reading;
+}
+
+View view_of(const Reading& reading, const Window& window) { return view_of(reading.camera, window, reading.display); }
+
 Window picture_of(const Reading& reading, const Window& part) {
   return reduced(part, reading.display, reading.supersampling);
 }

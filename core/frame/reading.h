@@ -146,6 +146,11 @@ struct Reading : Meaning {
   std::vector<AmbientReading> ambient;  // the lights that AO may dim; none: it dims the whole beauty
 };
 
+/// The same reading of a part of the frame.
+Reading over(Reading reading, const Window& window);
+/// The projection over a part of the frame.
+View view_of(const Reading& reading, const Window& window);
+
 /// The part of the picture that is written for a part of the frame: see core/base/image.h.
 Window picture_of(const Reading& reading, const Window& part);
 

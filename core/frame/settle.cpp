@@ -18,14 +18,8 @@
 
 namespace alcove {
 
-Settlement::Settlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-                       std::span<const float> normal, RawPlane about)
-    : source_(source),
-      settings_(settings),
-      depth_(depth),
-      normal_(normal),
-      view_(view_of(source.camera, source.data, source.display)),
-      about_(about) {}
+Settlement::Settlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, RawPlane about)
+    : source_(source), settings_(settings), raw_(raw), view_(view_of(source.reading, raw.window)), about_(about) {}
 
 void Settlement::note(NoteCode code, std::string text) {
   source_.notes.push_back({code, std::move(text), about_ == RawPlane::normal ? source_.normal_file() : ""});
@@ -33,7 +27,7 @@ void Settlement::note(NoteCode code, std::string text) {
 
 void Settlement::take_down(const std::string& what, const std::string& chosen, const std::string& why,
                            const std::string& option, bool unusual, bool proven) {
-  source_.guesses.push_back({what, chosen, why, option});
+  source_.evidence.guesses.push_back({what, chosen, why, option});
   if (unusual)
     note(proven ? NoteCode::proven_reading : NoteCode::unusual_reading,
          fmt::format("{} taken as {}: {} ({} says otherwise)", what, chosen, why, option));
@@ -85,10 +79,11 @@ Notes cut_parts(ExrFile& file, const std::set<int>& needed) {
 }
 
 /// Depth that was averaged over the pixels, by some of its rows.
-Notes averaged_depth(const FrameSource& source, std::span<const float> depth) {
-  const int step = int(std::min<std::size_t>(source.data.pixels() / kEdgePixels + 1, std::size_t(source.data.height)));
-  const View view = view_of(source.camera, source.data, source.display);
-  const double blended = blended_edges(planar_depths(depth, depth_map_of(source), view, step), source.data.width);
+Notes averaged_depth(const FrameSource& source, const RawPart& raw) {
+  const int step = int(std::min<std::size_t>(raw.window.pixels() / kEdgePixels + 1, std::size_t(raw.window.height)));
+  const View view = view_of(source.reading, raw.window);
+  const double blended =
+      blended_edges(planar_depths(raw.depth, depth_map_of(source.reading), view, step), raw.window.width);
   if (blended <= kMostBlended) return {};
   return {{NoteCode::antialiased_depth,
            fmt::format("{:.0f} % of the depth's edges have a pixel in between: the depth is anti-aliased, and AO shows "
@@ -102,15 +97,14 @@ struct BorderRows {
   bool is_bar = false;  // the next one is mostly of surfaces, unlike that below a sky
 };
 
-BorderRows border_rows(const FrameSource& source, std::span<const float> depth, const DepthMap& map, bool columns,
-                       bool last) {
+BorderRows border_rows(const RawPart& raw, const DepthMap& map, bool columns, bool last) {
   constexpr double kLeastSurfaces = 0.5;
-  const int width = source.data.width, height = source.data.height;
+  const int width = raw.window.width, height = raw.window.height;
   const int rows = columns ? width : height, across = columns ? height : width;
   const auto value = [&](int row, int i) {
     const int at = last ? rows - 1 - row : row;
-    return depth[columns ? std::size_t(i) * std::size_t(width) + std::size_t(at)
-                         : std::size_t(at) * std::size_t(width) + std::size_t(i)];
+    return raw.depth[columns ? std::size_t(i) * std::size_t(width) + std::size_t(at)
+                             : std::size_t(at) * std::size_t(width) + std::size_t(i)];
   };
   for (int row = 0; row < rows; row++) {
     int surfaces = 0;
@@ -127,13 +121,11 @@ BorderRows border_rows(const FrameSource& source, std::span<const float> depth, 
 
 /// Bars above and below a picture, or on both its sides, that are as wide: a sky is on one side alone. Between them the
 /// picture reaches both other borders; a thing before an empty background does not.
-Notes letterbox(const FrameSource& source, std::span<const float> depth) {
-  if (source.data != source.file_data || source[RawPlane::depth].size() != 1) return {};
-  const DepthMap map = depth_map_of(source);
+Notes letterbox(const FrameSource& source, const RawPart& raw) {
+  if (raw.window != source.reading.data || source.channels[RawPlane::depth].size() != 1) return {};
+  const DepthMap map = depth_map_of(source.reading);
   for (const bool columns : {false, true}) {
-    const auto border = [&](bool of_columns, bool is_last) {
-      return border_rows(source, depth, map, of_columns, is_last);
-    };
+    const auto border = [&](bool of_columns, bool is_last) { return border_rows(raw, map, of_columns, is_last); };
     const BorderRows first = border(columns, false), last = border(columns, true);
     if (!first.is_bar || !last.is_bar || first.empty == 0 || std::abs(first.empty - last.empty) > 1) continue;
     if (border(!columns, false).empty > 0 || border(!columns, true).empty > 0) continue;
@@ -148,25 +140,25 @@ Notes letterbox(const FrameSource& source, std::span<const float> depth) {
 
 /// Normals that were averaged over the pixels, by some of them. It is no warning where the program does so always, for
 /// nobody can have it do otherwise.
-Notes averaged_normals(const FrameSource& source, std::span<const float> depth, std::span<const float> normal) {
+Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
   // Normals that lost components are short for that reason.
   if (!has_lengths(source) || std::ranges::count(source.notes, NoteCode::cut_normals, &Note::code) > 0) return {};
-  std::size_t step = source.data.pixels() / kNormalPixels + 1;
-  while (std::gcd(step, std::size_t(source.data.width)) > 1) step++;  // so that no column is favoured
-  const NormalStatistics s = normal_statistics(normal, depth, depth_map_of(source), step);
-  const double unit = source.normal_unorm ? s.unorm_unit_share : s.unit_share;
+  std::size_t step = raw.window.pixels() / kNormalPixels + 1;
+  while (std::gcd(step, std::size_t(raw.window.width)) > 1) step++;  // so that no column is favoured
+  const NormalStatistics s = normal_statistics(raw.normal, raw.depth, depth_map_of(source.reading), step);
+  const double unit = source.reading.normal_unorm ? s.unorm_unit_share : s.unit_share;
   if (!s.count || unit >= 1 - kMostShortened) return {};
-  if (!source.normal_unorm && s.usual_share > 1 - kMostOfOtherLength)
+  if (!source.reading.normal_unorm && s.usual_share > 1 - kMostOfOtherLength)
     return {{NoteCode::scaled_normals,
              fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO takes their direction "
                          "alone",
                          s.usual_length, 100 * s.usual_share),
              source.normal_file()}};
-  const bool is_usual = source.rules->normal_averaged;
+  const bool is_usual = source.program.rules->normal_averaged;
   return {{is_usual ? NoteCode::averaged_normals : NoteCode::shortened_normals,
            fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over the pixel, at edges "
                        "over several surfaces{}",
-                       100 * (1 - unit), is_usual ? ", as " + source.rules->name + " always does" : ""),
+                       100 * (1 - unit), is_usual ? ", as " + source.program.rules->name + " always does" : ""),
            source.normal_file()}};
 }
 
@@ -175,7 +167,7 @@ Notes damage(FrameSource& source) {
   Notes found;
   std::vector<std::set<int>> needed(source.files.size());
   for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})
-    for (const auto& channel : source[plane]) {
+    for (const auto& channel : source.channels[plane]) {
       needed[channel.file].insert(channel.part);
       if (is_lossy(source, channel))
         found.push_back(
@@ -192,26 +184,27 @@ Notes damage(FrameSource& source) {
 /// Windows that are not those of the depth.
 Notes windows(const FrameSource& source) {
   Notes found;
-  for (const auto& part : source.files[source[RawPlane::depth][0].file].parts())
-    if (part.data != source.file_data) {
+  for (const auto& part : source.files[source.channels[RawPlane::depth][0].file].parts())
+    if (part.data != source.reading.data) {
       found.push_back({NoteCode::windows_differ, fmt::format("part {} is {}, and the depth is {}", part.name,
-                                                             to_string(part.data), to_string(source.file_data))});
+                                                             to_string(part.data), to_string(source.reading.data))});
       break;
     }
-  if (source.file_data != source.display)
+  if (source.reading.data != source.reading.display)
     found.push_back(
         {NoteCode::windows_differ,
          fmt::format("the data window is {} and the display window {}: AO is computed on the data window, and the "
                      "camera is for the display window",
-                     to_string(source.file_data), to_string(source.display))});
+                     to_string(source.reading.data), to_string(source.reading.display))});
   return found;
 }
 
 }  // namespace
 
 bool has_lengths(const FrameSource& source) {
-  return source[RawPlane::normal].size() == 3 &&
-         (source.normal_encoding == NormalEncoding::signed_float || source.normal_encoding == NormalEncoding::unorm);
+  return source.channels[RawPlane::normal].size() == 3 &&
+         (source.reading.normal_encoding == NormalEncoding::signed_float ||
+          source.reading.normal_encoding == NormalEncoding::unorm);
 }
 
 double blended_edges(std::span<const float> planar, int width) {
@@ -238,19 +231,19 @@ double blended_edges(std::span<const float> planar, int width) {
 namespace {
 
 /// Gives one sentence for each finding: anti-aliased depth, shortened normals, channels that a lossy codec has damaged,
-/// other parts that are cut short or have other windows, overscan and crops. `depth` and `normal` are as read, of
-/// source.data and of a frame whose meaning is settled; of large frames a part of the pixels is looked at.
-Notes findings(FrameSource& source, std::span<const float> depth, std::span<const float> normal) {
+/// other parts that are cut short or have other windows, overscan and crops. The frame's meaning is settled; of large
+/// frames a part of the pixels is looked at.
+Notes findings(FrameSource& source, const RawPart& raw) {
   Notes found;
-  for (Notes some : {averaged_depth(source, depth), averaged_normals(source, depth, normal), letterbox(source, depth),
-                     damage(source), windows(source)})
+  for (Notes some : {averaged_depth(source, raw), averaged_normals(source, raw), letterbox(source, raw), damage(source),
+                     windows(source)})
     std::ranges::move(some, std::back_inserter(found));
   return found;
 }
 
 /// Refuses depth that was saved as a grey picture: it has no more than 256 distances.
 void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
-  if (source[RawPlane::depth].size() != 1) return;
+  if (source.channels[RawPlane::depth].size() != 1) return;
   constexpr std::size_t kLeastLevels = 16;  // fewer may be a few walls that happen to lie there
   std::set<double> levels;
   for (std::size_t i = 0; i < depth.size(); i += kSparse) {
@@ -261,31 +254,31 @@ void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
   if (levels.size() >= kLeastLevels)
     fail(ErrorKind::input,
          "{}: {} holds only values of 8 bits, too few distances for AO: save depth as EXR, or as DDS (--depth)",
-         source.depth_path(), source[RawPlane::depth][0].channel);
+         source.depth_path(), source.channels[RawPlane::depth][0].channel);
 }
 
 /// Takes down how the values were rounded. It changes how they are judged, and how near occluders may be.
 void measure_grain(FrameSource& source, const Grain& grain, std::span<const float> depth) {
-  source.depth_is_coarse = grain.is_coarse;
-  const auto is_beyond = [&](float d) { return std::abs(d) > kLargestHalf && std::abs(d) < source.sky; };
-  if (grain.is_half && std::ranges::none_of(depth, is_beyond)) source.found_sky = kLargestHalf;
+  source.reading.depth_is_coarse = grain.is_coarse;
+  const auto is_beyond = [&](float d) { return std::abs(d) > kLargestHalf && std::abs(d) < source.reading.sky; };
+  if (grain.is_half && std::ranges::none_of(depth, is_beyond)) source.reading.found_sky = kLargestHalf;
   if (!grain.is_coarse) return;
   if (grain.is_fixed)
-    source.depth_step = grain.step;
+    source.reading.depth_step = grain.step;
   else
-    source.depth_rounding =
+    source.reading.depth_rounding =
         grain.is_half ? kHalfPrecision : 0.5 * std::exp2(std::ceil(std::log2(grain.step / grain.median)));
 }
 
 /// Notes values that are coarser than floats: half floats step by a 1024th of the power of two below the value.
 void note_grain(FrameSource& source, const Grain& grain) {
-  if (!has_coarse_depth(source) || grain.median == 0) return;
-  const bool has_half_type = source.depth_is_half;
+  if (!has_coarse_depth(source.reading) || grain.median == 0) return;
+  const bool has_half_type = source.reading.depth_is_half;
   const double step = grain.is_coarse ? grain.step : std::exp2(std::floor(std::log2(grain.median)) - 10);
   source.suspicious.push_back(
       {NoteCode::half_depth,
        fmt::format("{} {}: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as bands; {}",
-                   source[RawPlane::depth][0].channel,
+                   source.channels[RawPlane::depth][0].channel,
                    has_half_type   ? "is stored as half float"
                    : grain.is_half ? "holds the values of half floats"
                                    : "was rounded",
@@ -296,7 +289,9 @@ void note_grain(FrameSource& source, const Grain& grain) {
 /// Notes half floats whose sky may be surfaces: those beyond the largest number became infinite.
 void note_overflow(FrameSource& source, std::span<const float> depth) {
   constexpr float kNear = 0.9f * float(kLargestHalf);
-  if (!is_distance(source.depth_kind) || !(source.depth_is_half || source.found_sky == kLargestHalf)) return;
+  if (!is_distance(source.reading.depth_kind) ||
+      !(source.reading.depth_is_half || source.reading.found_sky == kLargestHalf))
+    return;
   std::size_t beyond = 0, near = 0;
   for (const float d : depth) {
     beyond += std::abs(d) >= kLargestHalf;
@@ -308,13 +303,13 @@ void note_overflow(FrameSource& source, std::span<const float> depth) {
        fmt::format(
            "{:.0f} % of {} is infinite or 65504, the largest half float, and surfaces reach up to it: what lies "
            "beyond counts as sky; write depth as float, or in larger units",
-           100 * double(beyond) / double(depth.size()), source[RawPlane::depth][0].channel)});
+           100 * double(beyond) / double(depth.size()), source.channels[RawPlane::depth][0].channel)});
 }
 
 /// Notes depth that was sampled at random places within the pixels, or averaged over few of them.
-void note_jitter(FrameSource& source, std::span<const float> depth, const Grain& grain) {
-  const View view = view_of(source.camera, source.data, source.display);
-  const auto jitter = jitter_of(depth, depth_map_of(source), view, grain);
+void note_jitter(FrameSource& source, const RawPart& raw, const Grain& grain) {
+  const View view = view_of(source.reading, raw.window);
+  const auto jitter = jitter_of(raw.depth, depth_map_of(source.reading), view, grain);
   if (!jitter) return;
   source.suspicious.push_back(
       {NoteCode::jittered_depth,
@@ -325,22 +320,21 @@ void note_jitter(FrameSource& source, std::span<const float> depth, const Grain&
 }
 
 /// What depth and normals are, by the camera as it is.
-void settle_meaning(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-                    std::span<const float> normal) {
-  settle_depth(source, settings, depth, normal);
-  settle_deep(source, depth);
-  if (source[RawPlane::normal].empty())
+void settle_meaning(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
+  settle_depth(source, settings, raw);
+  settle_deep(source, raw);
+  if (source.channels[RawPlane::normal].empty())
     note_centre(source);
   else
-    settle_normals(source, settings, depth, normal);
+    settle_normals(source, settings, raw);
 }
 
-/// As many rows from the middle of source.data as have room in so many bytes, twice: as they are read, and what is made
+/// As many rows from the middle of a frame as have room in so many bytes, twice: as they are read, and what is made
 /// of them.
 Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
   constexpr std::uint64_t kLeastPixels = 1 << 18;  // fewer tell too little
-  const Window& data = source.data;
-  const std::uint64_t planes = source[RawPlane::depth].size() + source[RawPlane::normal].size();
+  const Window& data = source.reading.data;
+  const std::uint64_t planes = source.channels[RawPlane::depth].size() + source.channels[RawPlane::normal].size();
   const std::uint64_t pixels =
       std::clamp<std::uint64_t>(most_bytes / (2 * sizeof(float) * planes), kLeastPixels, kEvidencePixels);
   const int rows = int(std::clamp<std::uint64_t>(pixels / std::uint64_t(data.width), 1, std::uint64_t(data.height)));
@@ -349,61 +343,60 @@ Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
 
 }  // namespace
 
-void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-            std::span<const float> normal) {
-  refuse_8_bits(source, depth);
-  if (source[RawPlane::depth].size() == 1) source.grain = grain_of(depth, settings.sky);
-  measure_grain(source, source.grain, depth);
+void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
+  Grain& grain = source.evidence.grain;
+  refuse_8_bits(source, raw.depth);
+  if (source.channels[RawPlane::depth].size() == 1) grain = grain_of(raw.depth, settings.sky);
+  measure_grain(source, grain, raw.depth);
   const std::string refutation = settle_camera(source, settings);
   try {
-    settle_meaning(source, settings, depth, normal);
+    settle_meaning(source, settings, raw);
   } catch (const Error& error) {
     // By a wrong lens anything may look wrong.
     if (refutation.empty()) throw;
     fail(error.kind(), "{}; {}", error.what(), refutation);
   }
-  note_grain(source, source.grain);
-  note_overflow(source, depth);
-  note_jitter(source, depth, source.grain);
-  if (is_between_planes(source.depth_kind)) source.depth_step = std::max(source.depth_step, step_of(depth));
-  source.median_depth = median_depth(source, depth);
-  std::ranges::move(findings(source, depth, normal), std::back_inserter(source.suspicious));
+  note_grain(source, grain);
+  note_overflow(source, raw.depth);
+  note_jitter(source, raw, grain);
+  Reading& reading = source.reading;
+  if (is_between_planes(reading.depth_kind)) reading.depth_step = std::max(reading.depth_step, step_of(raw.depth));
+  source.evidence.median_depth = median_depth(over(reading, raw.window), raw.depth);
+  std::ranges::move(findings(source, raw), std::back_inserter(source.suspicious));
   source.settled = true;
 }
 
 void settle_by_planes(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
                       std::span<const float> normal, std::uint64_t most_bytes) {
-  const Window data = source.data;
+  const Window& data = source.reading.data;
   if (data.pixels() <= kEvidencePixels && depth.size_bytes() + normal.size_bytes() <= most_bytes)
-    return settle(source, settings, depth, normal);
-  source.data = middle_rows(source, most_bytes);
-  settle(source, settings, cropped(depth, data, source.data), cropped(normal, data, source.data));
-  source.data = data;
+    return settle(source, settings, {data, depth, normal});
+  const Window rows = middle_rows(source, most_bytes);
+  settle(source, settings, {rows, cropped(depth, data, rows), cropped(normal, data, rows)});
 }
 
 void settle_by_rows(FrameSource& source, const InputSettings& settings, std::uint64_t most_bytes) {
-  const Window window = middle_rows(source, most_bytes);
-  if (std::size_t(window.width) > kEvidencePixels)
+  const Window rows = middle_rows(source, most_bytes);
+  if (std::size_t(rows.width) > kEvidencePixels)
     fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device", source.depth_path(),
-         window.width);
-  const Window data = std::exchange(source.data, window);
-  const RawFrame raw = read_raw_frame(source);
-  settle(source, settings, raw.depth, raw.normal);
-  source.data = data;
+         rows.width);
+  const RawFrame raw = read_raw_frame(source, rows);
+  settle(source, settings, {rows, raw.depth, raw.normal});
 }
 
 HostFrame read_host_frame(const InputSettings& settings, int number) {
   FrameSource source = find_frame(settings, false, number);
-  require_host_room(source.depth_path(), source.data);
-  RawFrame raw = read_raw_frame(source);
-  settle(source, settings, raw.depth, raw.normal);
-  return {source, std::move(raw.depth), std::move(raw.normal), {}, number};
+  const Window& data = source.reading.data;
+  require_host_room(source.depth_path(), data);
+  RawFrame raw = read_raw_frame(source, data);
+  settle(source, settings, {data, raw.depth, raw.normal});
+  return {source.reading, std::move(raw.depth), std::move(raw.normal), {}, number};
 }
 
 bool settle_like(FrameSource& source, const FrameSource& settled) {
   for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})
-    if (source[plane].size() != settled[plane].size()) return false;
-  read_like(source, settled);
+    if (source.channels[plane].size() != settled.channels[plane].size()) return false;
+  read_like(source.reading, settled.reading);
   read_deep_like_meaning(source);
   return source.settled = true;
 }

@@ -20,13 +20,12 @@ namespace alcove {
 /// and notes. What the settings or the camera file say is never overruled. Fails with ErrorKind::input where the pixels
 /// speak for two ways or against all, naming the options that decide; under settings.strict, wherever there is a guess.
 /// Near or far that are missing are ErrorKind::usage.
-void settle(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-            std::span<const float> normal);
+void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw);
 
 /// The most pixels that a frame is settled by.
 constexpr std::size_t kEvidencePixels = std::size_t(1) << 24;
 
-/// Settles a frame by planes that are there, over source.data. Where so many bytes, or kEvidencePixels, are too few for
+/// Settles a frame by planes that are there. Where so many bytes, or kEvidencePixels, are too few for
 /// what is made of them, rows from the middle decide. Fails as settle() does.
 void settle_by_planes(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
                       std::span<const float> normal,
@@ -68,12 +67,11 @@ inline constexpr double kRefuted = 0.1;
 class Settlement {
  public:
   /// `about` is the plane whose file is named by what is said.
-  Settlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-             std::span<const float> normal, RawPlane about = RawPlane::depth);
+  Settlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, RawPlane about = RawPlane::depth);
 
  protected:
   const std::string& depth_path() const { return source_.depth_path(); }
-  const std::string& normal_path() const { return source_.files[source_[RawPlane::normal][0].file].path(); }
+  const std::string& normal_path() const { return source_.files[source_.channels[RawPlane::normal][0].file].path(); }
 
   /// Takes down what was chosen; `unusual` guesses are noted too, with a warning unless nothing speaks against them.
   void take_down(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
@@ -85,7 +83,7 @@ class Settlement {
 
   FrameSource& source_;
   const InputSettings& settings_;
-  std::span<const float> depth_, normal_;
+  const RawPart& raw_;
   View view_;
 
  private:
@@ -98,17 +96,14 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings);
 
 /// The kind by which the depth is that of the positions beside it: planar, ray or inverse. None where there are no
 /// positions, or where more than one kind fits.
-std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings,
-                                           std::span<const float> depth);
+std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw);
 
 /// Settles kind and sign of the depth, or the space of positions.
-void settle_depth(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-                  std::span<const float> normal);
+void settle_depth(FrameSource& source, const InputSettings& settings, const RawPart& raw);
 
 /// Settles encoding and space of the normals of a frame whose depth is settled. Refuses those that depth and camera
 /// refute.
-void settle_normals(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-                    std::span<const float> normal);
+void settle_normals(FrameSource& source, const InputSettings& settings, const RawPart& raw);
 
 /// Notes a principal point beside the centre that the pixels neither confirm nor refute.
 void note_centre(FrameSource& source);

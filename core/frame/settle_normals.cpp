@@ -257,9 +257,8 @@ constexpr double kBelowZero = -1.0 / 256, kLeastNeeded = 0.02, kLeastCut = 0.8;
 
 class NormalSettlement : private Settlement {
  public:
-  NormalSettlement(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-                   std::span<const float> normal)
-      : Settlement(source, settings, depth, normal, RawPlane::normal) {}
+  NormalSettlement(FrameSource& source, const InputSettings& settings, const RawPart& raw)
+      : Settlement(source, settings, raw, RawPlane::normal) {}
 
   void run() {
     settle_encoding();
@@ -279,44 +278,44 @@ class NormalSettlement : private Settlement {
   }
 
   void settle_encoding() {
-    const bool is_open = source_.normal_encoding_open;
-    const NormalStatistics n = normal_statistics(normal_, depth_, depth_map_of(source_), kSparse);
+    const bool is_open = source_.open.normal_encoding;
+    const NormalStatistics n = normal_statistics(raw_.normal, raw_.depth, depth_map_of(source_.reading), kSparse);
     if (!is_open) doubt_encoding(n);
-    has_any_ = n.count > 0 || normal_statistics(normal_, depth_, depth_map_of(source_)).count > 0;
+    has_any_ = n.count > 0 || normal_statistics(raw_.normal, raw_.depth, depth_map_of(source_.reading)).count > 0;
     has_negative_ = n.least < kBelowZero;
     const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
-    const NormalEncoding said = source_.normal_encoding;
-    std::string why = source_[RawPlane::normal].size() == 2
+    const NormalEncoding said = source_.reading.normal_encoding;
+    std::string why = source_.channels[RawPlane::normal].size() == 2
                           ? fmt::format("all in {:.2g} to {:.2g}", n.least, n.most)
                           : fmt::format("of unit length on {:.0f} %", 100 * n.unit_share);
     if (said == NormalEncoding::octahedral || said == NormalEncoding::spheremap ||
-        source_[RawPlane::normal].size() == 2) {
-      source_.normal_unorm =
+        source_.channels[RawPlane::normal].size() == 2) {
+      source_.reading.normal_unorm =
           said == NormalEncoding::unorm || (in_unit_range && (is_open || said != NormalEncoding::signed_float));
     } else {
       const bool is_unorm =
           is_open && in_unit_range && n.unorm_unit_share > 0.5 && n.unit_share < 0.5 * n.unorm_unit_share;
       if (is_unorm)
         why = fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share);
-      source_.normal_unorm = is_unorm || said == NormalEncoding::unorm;
+      source_.reading.normal_unorm = is_unorm || said == NormalEncoding::unorm;
     }
     if (has_lengths(source_)) refuse_altered(n);
-    const double unit = source_.normal_unorm ? n.unorm_unit_share : n.unit_share;
-    const double otherwise = source_.normal_unorm ? n.unit_share : n.unorm_unit_share;
+    const double unit = source_.reading.normal_unorm ? n.unorm_unit_share : n.unit_share;
+    const double otherwise = source_.reading.normal_unorm ? n.unit_share : n.unorm_unit_share;
     const bool tells = has_lengths(source_) && std::max(unit, otherwise) > kUnit;
     const bool differs = !tells && compare_encodings(in_unit_range, why);
     if (!is_open) return;
-    const std::string name = encoding_name(source_.normal_encoding, source_.normal_unorm);
+    const std::string name = encoding_name(source_.reading.normal_encoding, source_.reading.normal_unorm);
     if (tells && unit > kUnit && otherwise < kNotUnit)
-      take_down("normal encoding", name, why, "--normal-encoding", source_.normal_unorm, true);
+      take_down("normal encoding", name, why, "--normal-encoding", source_.reading.normal_unorm, true);
     else
-      guess("normal encoding", name, why, "--normal-encoding", differs || source_.normal_unorm);
+      guess("normal encoding", name, why, "--normal-encoding", differs || source_.reading.normal_unorm);
   }
 
   /// Refuses vectors whose lengths show that they went through what is made for colours.
   void refuse_altered(const NormalStatistics& n) const {
     if (std::max(n.unit_share, n.unorm_unit_share) > kUnit || n.usual_share > kUnit) return;
-    if (const auto what = alteration_of(normal_, depth_, depth_map_of(source_)))
+    if (const auto what = alteration_of(raw_.normal, raw_.depth, depth_map_of(source_.reading)))
       fail(ErrorKind::input, "{}: its normals ({}) are of unit length on {:.0f} % only: they look like {}; {}",
            normal_path(), channels(), 100 * n.unit_share, *what, kWithout);
   }
@@ -324,11 +323,12 @@ class NormalSettlement : private Settlement {
   /// Takes normals without any component below 0 where by depth there should be some: what was lost is not in the file.
   /// Returns whether they are such.
   bool settle_cut(const std::vector<NormalScore>& scores) {
-    if (has_negative_ || !has_lengths(source_) || source_.normal_unorm || source_.camera_is_assumed) return false;
+    if (has_negative_ || !has_lengths(source_) || source_.reading.normal_unorm || source_.open.camera) return false;
     const NormalScore* as = nullptr;
     CutScore best;
     for (const auto& score : scores) {
-      if (to_string(score.flips) != "none" || (!source_.normal_space_open && score.space != source_.normal_space))
+      if (to_string(score.flips) != "none" ||
+          (!source_.open.normal_space && score.space != source_.reading.normal_space))
         continue;
       const auto cut = score_cut(score.space, planes());
       if (!cut || cut->needed < kLeastNeeded || std::max(cut->absolute, cut->clamped) < kLeastCut) continue;
@@ -343,8 +343,8 @@ class NormalSettlement : private Settlement {
         channels(), 100 * best.needed,
         best.absolute > best.clamped ? "their absolute values were saved" : "values below 0 were cut off");
     if (as->explained() < kLeastAgreement) fail(ErrorKind::input, "{}: {}; {}", normal_path(), why, kWithout);
-    if (source_.normal_space_open) {
-      source_.normal_space = as->space;
+    if (source_.open.normal_space) {
+      source_.reading.normal_space = as->space;
       guess("normal space", word_of(as->space), text_of(*as), "--normal-space", false);
     }
     note(NoteCode::cut_normals, why + "; " + kWithout);
@@ -354,14 +354,15 @@ class NormalSettlement : private Settlement {
   /// As "N.X, N.Y, N.Z".
   std::string channels() const {
     std::string names;
-    for (const auto& channel : source_[RawPlane::normal]) names += (names.empty() ? "" : ", ") + channel.channel;
+    for (const auto& channel : source_.channels[RawPlane::normal])
+      names += (names.empty() ? "" : ", ") + channel.channel;
     return names;
   }
 
   /// If the normals do not agree with depth, and do so much better in another encoding, that one is chosen where nobody
   /// says one, and else noted. Returns whether it was chosen.
   bool compare_encodings(bool in_unit_range, std::string& why) {
-    const auto scores = scores_of(source_.normal_encoding, source_.normal_unorm);
+    const auto scores = scores_of(source_.reading.normal_encoding, source_.reading.normal_unorm);
     if (scores.empty() || agrees(scores[0])) return false;
     std::optional<std::pair<NormalEncoding, double>> best;
     for (const auto encoding : {NormalEncoding::signed_float, NormalEncoding::octahedral, NormalEncoding::spheremap}) {
@@ -375,57 +376,59 @@ class NormalSettlement : private Settlement {
         "as {} the best quarter of the normals agrees with depth within {:.1f} degrees, as {} within {:.1f}, and "
         "{:.0f} % agree at all",
         encoding_name(best->first, in_unit_range), best->second,
-        encoding_name(source_.normal_encoding, source_.normal_unorm), scores[0].angle, 100 * scores[0].agreement);
-    if (!source_.normal_encoding_open) {
+        encoding_name(source_.reading.normal_encoding, source_.reading.normal_unorm), scores[0].angle,
+        100 * scores[0].agreement);
+    if (!source_.open.normal_encoding) {
       note(NoteCode::said_otherwise, why + ": is --normal-encoding right?");
       return false;
     }
-    source_.normal_encoding = best->first;
-    source_.normal_unorm = in_unit_range;
+    source_.reading.normal_encoding = best->first;
+    source_.reading.normal_unorm = in_unit_range;
     return true;
   }
 
   /// Notes where the lengths of the normals speak against the encoding that is said.
   void doubt_encoding(const NormalStatistics& n) {
-    if (source_[RawPlane::normal].size() != 3) return;
+    if (source_.channels[RawPlane::normal].size() != 3) return;
     const bool is_signed = n.unit_share > kUnit && n.unorm_unit_share < kNotUnit;
     const bool is_unorm = n.unorm_unit_share > kUnit && n.unit_share < kNotUnit;
-    if (is_signed && source_.normal_encoding != NormalEncoding::signed_float)
+    if (is_signed && source_.reading.normal_encoding != NormalEncoding::signed_float)
       note(NoteCode::said_otherwise,
            fmt::format("the normals are signed vectors by their lengths (of 1 on {:.0f} %), and --normal-encoding or "
                        "the camera file says otherwise",
                        100 * n.unit_share));
-    if (is_unorm && source_.normal_encoding == NormalEncoding::signed_float)
+    if (is_unorm && source_.reading.normal_encoding == NormalEncoding::signed_float)
       note(NoteCode::said_otherwise,
            fmt::format("2 n - 1 of the normals is of unit length on {:.0f} %: are they unorm (--normal-encoding)?",
                        100 * n.unorm_unit_share));
   }
 
-  NormalPlanes planes() const { return {source_, normal_, depth_}; }
+  NormalPlanes planes() const { return {over(source_.reading, raw_.window), raw_.normal, raw_.depth}; }
 
   void settle_space() {
-    const bool has_world = source_.camera.view_from_world.has_value();
+    const bool has_world = source_.reading.camera.view_from_world.has_value();
     // The usual reading, and that of view space where the camera knows no world.
-    const bool has_usual = has_world || source_.usual_normal_space == NormalSpace::view;
+    const bool has_usual = has_world || source_.program.normal_space == NormalSpace::view;
     if (!has_any_) {
-      source_.has_evidence = false;
-      if (source_.normal_space_open) source_.normal_space = has_usual ? source_.usual_normal_space : NormalSpace::view;
+      source_.evidence.tells = false;
+      if (source_.open.normal_space)
+        source_.reading.normal_space = has_usual ? source_.program.normal_space : NormalSpace::view;
       return;
     }
     const auto all_scores = score_normals(planes());
     if (settle_cut(all_scores)) return;
-    if (!source_.normal_space_open) return doubt_normals(all_scores);
+    if (!source_.open.normal_space) return doubt_normals(all_scores);
     const std::string given = to_string(settings_.flip_normal);
     auto scores = all_scores;
     if (given != "none") std::erase_if(scores, [&](const auto& s) { return to_string(s.flips) != given; });
     const NormalScore* plain =
-        score_of(scores, has_usual ? source_.usual_normal_space : NormalSpace::view, settings_.flip_normal);
+        score_of(scores, has_usual ? source_.program.normal_space : NormalSpace::view, settings_.flip_normal);
     const bool tells = plain && best_of(scores).explained() >= kLeastAgreement;
     if (!tells) {
-      source_.has_evidence = false;
+      source_.evidence.tells = false;
       if (!has_usual) refuse_without_matrix(scores);
-      source_.normal_space = source_.usual_normal_space;
-      guess("normal space", word_of(source_.normal_space), "the frame does not tell", "--normal-space", false);
+      source_.reading.normal_space = source_.program.normal_space;
+      guess("normal space", word_of(source_.reading.normal_space), "the frame does not tell", "--normal-space", false);
       return doubt_normals(all_scores);
     }
     const bool is_plain = explains(*plain, scores);
@@ -434,20 +437,20 @@ class NormalSettlement : private Settlement {
     const NormalScore& best = is_plain ? *plain : best_of(scores);
     const NormalScore* straighter = straighter_than(best, scores);
     if (!straighter && !is_plain) refuse_ambiguous(best, scores);
-    if (!has_world && !source_.camera_is_assumed) refuse_turned_world(best);
+    if (!has_world && !source_.open.camera) refuse_turned_world(best);
     take(straighter ? *straighter : best, straighter ? turn_of(*straighter, best) : text_of(best), has_world);
     doubt_normals(all_scores);
   }
 
   /// Takes a reading, and says so where it is not the usual one, or where no matrix would turn normals of the world.
   void take(const NormalScore& score, const std::string& why, bool has_world) {
-    source_.normal_space = score.space;
-    source_.flip_normal = score.flips;
+    source_.reading.normal_space = score.space;
+    source_.reading.flip_normal = score.flips;
     const bool is_flipped = to_string(score.flips) != to_string(settings_.flip_normal);
-    const bool is_proven = score.close > kUnit && !has_coarse_depth(source_);
+    const bool is_proven = score.close > kUnit && !has_coarse_depth(source_.reading);
     guess("normal space", word_of(score.space), why,
           is_flipped || !has_world ? "--normal-space with --flip-normal" : "--normal-space",
-          score.space != source_.usual_normal_space || is_flipped, is_proven);
+          score.space != source_.program.normal_space || is_flipped, is_proven);
   }
 
   /// Refuses a reading where one in the other space does about as well.
@@ -461,7 +464,7 @@ class NormalSettlement : private Settlement {
 
   /// Refuses normals that are read in view space where they look like those of a world that nothing turns.
   void refuse_turned_world(const NormalScore& score) const {
-    if (source_.usual_normal_space == NormalSpace::view) return;
+    if (source_.program.normal_space == NormalSpace::view) return;
     if (const auto turned = turned_world(score))
       fail(ErrorKind::input, "{}: {}: give a --camera file with world_to_camera; {}", normal_path(), *turned, kWithout);
   }
@@ -490,7 +493,7 @@ class NormalSettlement : private Settlement {
   /// Whether one reading has nothing of a turn that the normals as a whole have by the other, as those of a camera that
   /// is turned by little have in the wrong space.
   bool is_straighter(const NormalScore& score, const NormalScore& other) const {
-    const double least = !has_coarse_depth(source_) ? kLeastTurn : kLeastTurnOfHalf;
+    const double least = !has_coarse_depth(source_.reading) ? kLeastTurn : kLeastTurnOfHalf;
     return other.turn_degrees() > least && kClear * score.turn_degrees() < other.turn_degrees() &&
            score.explained() >= kNoBetter * other.explained();
   }
@@ -512,8 +515,8 @@ class NormalSettlement : private Settlement {
   /// Where no matrix places the camera, tells whether normals that are read in view space are those of a world in which
   /// it is turned by little.
   std::optional<std::string> turned_world(const NormalScore& score) const {
-    const double least = !has_coarse_depth(source_) ? kClearTurn : kLeastTurnOfHalf;
-    if (source_.camera.view_from_world || score.space != NormalSpace::view || score.turn_degrees() < least)
+    const double least = !has_coarse_depth(source_.reading) ? kClearTurn : kLeastTurnOfHalf;
+    if (source_.reading.camera.view_from_world || score.space != NormalSpace::view || score.turn_degrees() < least)
       return std::nullopt;
     const auto turned = slightly_turned_camera(planes(), score);
     if (!turned) return std::nullopt;
@@ -530,7 +533,7 @@ class NormalSettlement : private Settlement {
 
   /// Refuses normals that are not those of view space where no matrix turns those of the world.
   [[noreturn]] void refuse_without_matrix(const std::vector<NormalScore>& scores) const {
-    if (!source_.rules_by.empty()) fail(ErrorKind::input, "{}: {}", normal_path(), kWorldWithoutMatrix);
+    if (!source_.program.by.empty()) fail(ErrorKind::input, "{}: {}", normal_path(), kWorldWithoutMatrix);
     fail(
         ErrorKind::input,
         "{}: {:.0f} % of its normals at most agree with depth in view space; those of world space need a --camera file "
@@ -546,8 +549,8 @@ class NormalSettlement : private Settlement {
 
   /// Notes where depth speaks against the normals as they are read, and refuses what it refutes.
   void doubt_normals(const std::vector<NormalScore>& scores) {
-    if (source_.camera_is_assumed) return;
-    const NormalScore* chosen = score_of(scores, source_.normal_space, source_.flip_normal);
+    if (source_.open.camera) return;
+    const NormalScore* chosen = score_of(scores, source_.reading.normal_space, source_.reading.flip_normal);
     if (!chosen) return;
     const NormalScore* straighter = straighter_than(*chosen, scores);
     if (straighter)
@@ -566,7 +569,7 @@ class NormalSettlement : private Settlement {
                                                    100 * chosen->agreement, text_of(*chosen), kCheck));
     else if (const auto turned = turned_world(*chosen))
       note(NoteCode::normals_disagree, fmt::format("{} ({})", *turned, kSpaceOptions));
-    else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(source_))
+    else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(source_.reading))
       note(NoteCode::normals_disagree,
            fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
                        chosen->angle, kCheck));
@@ -599,7 +602,7 @@ class NormalSettlement : private Settlement {
     if (best.agreement >= kLeastAgreement && best.agreement > kClear * chosen.agreement)
       fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
-    if (chosen.explained() < kRefuted && !has_coarse_depth(source_))
+    if (chosen.explained() < kRefuted && !has_coarse_depth(source_.reading))
       fail(ErrorKind::input, "{}, nor in any other space: {}; {}", read, kCheck, kWithout);
   }
 
@@ -619,7 +622,7 @@ class NormalSettlement : private Settlement {
 
   /// Refuses a principal point that fits elsewhere, and says where no pixel can tell.
   void doubt_centre(const NormalScore& chosen) {
-    if (!is_off_centre(source_.camera)) return;
+    if (!is_off_centre(source_.reading.camera)) return;
     const auto other = best_other_point(planes(), chosen);
     if (!other) return;
     if (is_sharper(other->score, chosen))
@@ -682,17 +685,17 @@ const char* encoding_name(NormalEncoding encoding, bool unorm) {
 
 void note_centre(FrameSource& source) {
   // What a renderer writes into headers is its own camera.
-  if (source.camera_is_assumed || !source.camera_from.empty() || !is_off_centre(source.camera)) return;
+  if (source.open.camera || !source.camera_from.empty() || !is_off_centre(source.reading.camera)) return;
   source.notes.push_back(
       {NoteCode::principal_point,
        fmt::format("the principal point is at ({:.6g}, {:.6g}) of {} x {} pixels, and no pixel shows whether it is on "
                    "the right side of the centre",
-                   source.camera.cx, source.camera.cy, source.camera.width, source.camera.height)});
+                   source.reading.camera.cx, source.reading.camera.cy, source.reading.camera.width,
+                   source.reading.camera.height)});
 }
 
-void settle_normals(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
-                    std::span<const float> normal) {
-  NormalSettlement(source, settings, depth, normal).run();
+void settle_normals(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
+  NormalSettlement(source, settings, raw).run();
 }
 
 }  // namespace alcove

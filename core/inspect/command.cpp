@@ -41,7 +41,7 @@ void add_files(Command& command, const FrameSource& source, const InputSettings&
   command.add("--position", settings.position);
   command.add("--layer", settings.layer);
   command.add("--view", settings.view);
-  if (source.rules_said) command.add("--source", settings.source);
+  if (source.program.is_said()) command.add("--source", settings.source);
   command.add("--depth-channel", settings.depth_channel);
   command.add("--normal-channels", settings.normal_channels);
   command.add("--position-channels", settings.position_channels);
@@ -59,18 +59,19 @@ void add_behind(Command& command, const InputSettings& settings) {
 }
 
 void add_depth(Command& command, const FrameSource& source, const InputSettings& settings) {
-  command.add("--depth-kind", word_of(source.depth_kind));
-  if (is_between_planes(source.depth_kind)) {
-    if (source.depth_kind != DepthKind::log) command.add("--near", source.depth_range.near);
-    command.add("--far", source.depth_range.far);
-    if (source.depth_range.reversed) command.add("--reversed-z");
+  command.add("--depth-kind", word_of(source.reading.depth_kind));
+  if (is_between_planes(source.reading.depth_kind)) {
+    if (source.reading.depth_kind != DepthKind::log) command.add("--near", source.reading.depth_range.near);
+    command.add("--far", source.reading.depth_range.far);
+    if (source.reading.depth_range.reversed) command.add("--reversed-z");
   }
-  if (source.depth_kind == DepthKind::position) command.add("--set position-space", word_of(source.position_space));
+  if (source.reading.depth_kind == DepthKind::position)
+    command.add("--set position-space", word_of(source.reading.position_space));
   const InputSettings defaults;
-  const bool is_device = source.depth_kind == DepthKind::device;
+  const bool is_device = source.reading.depth_kind == DepthKind::device;
   if (is_device && settings.depth_range.device == DeviceRange::minus_one_to_one)
     command.add("--set device-range=-1..1");
-  const bool is_log = source.depth_kind == DepthKind::log;
+  const bool is_log = source.reading.depth_kind == DepthKind::log;
   if (is_log && settings.depth_range.log_constant != defaults.depth_range.log_constant)
     command.add("--set log-constant", std::optional(settings.depth_range.log_constant));
   if (settings.depth_scale != defaults.depth_scale) command.add("--depth-scale", std::optional(settings.depth_scale));
@@ -78,11 +79,13 @@ void add_depth(Command& command, const FrameSource& source, const InputSettings&
 }
 
 void add_normals(Command& command, const FrameSource& source, const InputSettings& settings, bool has_camera) {
-  if (source[RawPlane::normal].empty()) return;
+  if (source.channels[RawPlane::normal].empty()) return;
   if (has_camera || settings.normal_space != NormalSpace::automatic)
-    command.add("--normal-space", word_of(source.normal_space));
-  command.add("--normal-encoding", std::string(encoding_name(source.normal_encoding, source.normal_unorm)));
-  if (to_string(source.flip_normal) != "none") command.add("--flip-normal", to_string(source.flip_normal));
+    command.add("--normal-space", word_of(source.reading.normal_space));
+  command.add("--normal-encoding",
+              std::string(encoding_name(source.reading.normal_encoding, source.reading.normal_unorm)));
+  if (to_string(source.reading.flip_normal) != "none")
+    command.add("--flip-normal", to_string(source.reading.flip_normal));
 }
 
 void add_camera(Command& command, const InputSettings& settings, bool has_camera) {
@@ -107,7 +110,7 @@ std::string command_of(const FrameSource& source, const CommandNames& names, boo
   add_depth(command, source, settings);
   add_normals(command, source, settings, has_camera);
   add_camera(command, settings, has_camera);
-  if (const auto radius = proposed_radius(source.camera, source.median_depth))
+  if (const auto radius = proposed_radius(source.reading.camera, source.evidence.median_depth))
     command.add("--radius", radius);
   else
     command.add("--radius RADIUS");

@@ -25,11 +25,13 @@ namespace {
 std::string depth_of(const FrameSource& source, const ExrFile& file) {
   const auto is_it = [&](std::size_t other) { return source.files[other].path() == file.path(); };
   const auto is_element = [&](const auto& element) { return is_it(element.first); };
-  const bool is_taken = source.deep && (is_it(*source.deep) || std::ranges::any_of(source.deep_elements, is_element));
+  const bool is_taken = source.channels.deep && (is_it(source.channels.deep->file) ||
+                                                 std::ranges::any_of(source.channels.deep->elements, is_element));
   if (!is_taken || !source.settled) return "";
-  const ChannelRef& own = source[RawPlane::depth][0];
+  const ChannelRef& own = source.channels[RawPlane::depth][0];
   if (source.part_of(own).deep) return "the depth of the frame";
-  const DepthKind kind = source.deep_kind == DepthKind::automatic ? source.depth_kind : source.deep_kind;
+  const DepthKind kind =
+      source.reading.deep_kind == DepthKind::automatic ? source.reading.depth_kind : source.reading.deep_kind;
   return kind == DepthKind::ray ? "along the ray" : kind == DepthKind::planar ? "planar" : word_of(kind);
 }
 
@@ -37,7 +39,7 @@ std::string depth_of(const FrameSource& source, const ExrFile& file) {
 /// Fails as reading them does.
 std::optional<InspectedDeep> deep_samples(const FrameSource& source, const ExrFile& file,
                                           const InputSettings& settings) {
-  const std::vector<int> parts = deep_parts_of(file, settings.layer, source.view);
+  const std::vector<int> parts = deep_parts_of(file, settings.layer, source.channels.view);
   if (parts.empty()) return std::nullopt;
   ExrFile samples(file.path(), "INPUT");
   const ExrPart& first = samples.parts()[std::size_t(parts.front())];
@@ -74,7 +76,7 @@ std::optional<BehindKind> kind_by(const std::string& name) {
 /// Whether the frame reads the channel already.
 bool is_read(const FrameSource& source, const ChannelRef& ref) {
   const auto has = [&](const std::vector<ChannelRef>& plane) { return std::ranges::find(plane, ref) != plane.end(); };
-  return std::ranges::any_of(source.planes.entries, has);
+  return std::ranges::any_of(source.channels.planes.entries, has);
 }
 
 }  // namespace
@@ -83,14 +85,14 @@ std::vector<HiddenGuess> hidden_guesses(const FrameSource& source, const InputSe
   std::vector<HiddenGuess> guesses;
   for (std::size_t file = 0; file < source.files.size(); file++) {
     const ExrFile& of = source.files[file];
-    const std::string view = view_in(of, source.view);
-    const bool is_of_view = view.empty() || source.view.empty() || same_name(view, source.view);
-    if (!is_of_view || of.display() != source.display) continue;
+    const std::string view = view_in(of, source.channels.view);
+    const bool is_of_view = view.empty() || source.channels.view.empty() || same_name(view, source.channels.view);
+    if (!is_of_view || of.display() != source.reading.display) continue;
     for (const auto& channel : channels_in(of, file, settings.layer, view)) {
       std::optional<BehindKind> kind;
       for (const auto& name : channel.spellings)
         if (!kind) kind = kind_by(name);
-      const bool fits = kind && !channel.subsampled && source.part_of(channel.ref).data == source.file_data &&
+      const bool fits = kind && !channel.subsampled && source.part_of(channel.ref).data == source.reading.data &&
                         channel.full.find(',') == channel.full.npos;
       if (fits && !is_read(source, channel.ref)) guesses.push_back({of.path(), channel.full, *kind});
     }
@@ -120,7 +122,8 @@ std::string options_for(const std::vector<HiddenGuess>& guesses) {
 std::vector<InspectedFile> files_of(const FrameSource& source) {
   std::vector<InspectedFile> files;
   for (const auto& file : source.files) {
-    files.push_back({file.path(), file.display(), file.pixel_aspect(), {}, cryptomattes_of(file, source.view)});
+    files.push_back(
+        {file.path(), file.display(), file.pixel_aspect(), {}, cryptomattes_of(file, source.channels.view)});
     for (std::size_t part = 0; part < file.parts().size(); part++)
       files.back().parts.push_back({file.parts()[part], file.attribute_texts(int(part))});
   }
@@ -143,17 +146,17 @@ std::string options_of_camera(const InputSettings& settings) {
 }
 
 InspectedCamera camera_of(const FrameSource& source, const InputSettings& settings) {
-  const Camera& camera = source.camera;
+  const Camera& camera = source.reading.camera;
   if (!source.camera_from.empty()) return {camera, source.camera_from};
   const std::string placed = camera.placement_from.empty() ? "" : " and the header's " + camera.placement_from;
   return {camera, options_of_camera(settings) + placed};
 }
 
 InspectedNormals normals_of(const RawFrame& raw, const FrameSource& source) {
-  const NormalStatistics s = normal_statistics(raw.normal, raw.depth, depth_map_of(source));
-  InspectedNormals normals{.space = source.normal_space,
-                           .encoding = encoding_name(source.normal_encoding, source.normal_unorm),
-                           .flips = source.flip_normal,
+  const NormalStatistics s = normal_statistics(raw.normal, raw.depth, depth_map_of(source.reading));
+  InspectedNormals normals{.space = source.reading.normal_space,
+                           .encoding = encoding_name(source.reading.normal_encoding, source.reading.normal_unorm),
+                           .flips = source.reading.flip_normal,
                            .least = s.least,
                            .most = s.most,
                            .mean_length = {},
@@ -161,11 +164,12 @@ InspectedNormals normals_of(const RawFrame& raw, const FrameSource& source) {
                            .scores = {},
                            .chosen = {}};
   if (has_lengths(source)) {
-    normals.mean_length = source.normal_unorm ? s.unorm_mean_length : s.mean_length;
-    normals.unit_share = source.normal_unorm ? s.unorm_unit_share : s.unit_share;
+    normals.mean_length = source.reading.normal_unorm ? s.unorm_mean_length : s.mean_length;
+    normals.unit_share = source.reading.normal_unorm ? s.unorm_unit_share : s.unit_share;
   }
-  normals.scores = score_normals({source, raw.normal, raw.depth});
-  if (const auto* chosen = score_of(normals.scores, source.normal_space, source.flip_normal)) normals.chosen = *chosen;
+  normals.scores = score_normals({source.reading, raw.normal, raw.depth});
+  if (const auto* chosen = score_of(normals.scores, source.reading.normal_space, source.reading.flip_normal))
+    normals.chosen = *chosen;
   return normals;
 }
 
@@ -223,17 +227,17 @@ struct Inspector {
       found.missing.push_back(error.what());
       return false;
     }
-    source.camera_is_assumed = !has_camera;
-    found.source = InspectedSource{source.rules->name, source.rules_by};
-    add_aov(found, source[RawPlane::depth].size() == 3 ? "position" : "depth", source, source[RawPlane::depth],
-            !settings.depth_channel.empty() || !settings.position_channels.empty());
-    add_aov(found, "normal", source, source[RawPlane::normal], !settings.normal_channels.empty());
-    for (std::size_t i = 0; i < source[RawPlane::behind].size(); i++)
-      add_aov(found, fmt::format("behind{}", i + 1), source, {source[RawPlane::behind][i]},
+    source.open.camera = !has_camera;
+    found.source = InspectedSource{source.program.rules->name, source.program.by};
+    add_aov(found, source.channels[RawPlane::depth].size() == 3 ? "position" : "depth", source,
+            source.channels[RawPlane::depth], !settings.depth_channel.empty() || !settings.position_channels.empty());
+    add_aov(found, "normal", source, source.channels[RawPlane::normal], !settings.normal_channels.empty());
+    for (std::size_t i = 0; i < source.channels[RawPlane::behind].size(); i++)
+      add_aov(found, fmt::format("behind{}", i + 1), source, {source.channels[RawPlane::behind][i]},
               !settings.behind_channels.empty());
     found.hidden = hidden_guesses(source, reading);
     found.hidden_options = options_for(found.hidden);
-    if (source[RawPlane::normal].empty() && wants_normals(settings))
+    if (source.channels[RawPlane::normal].empty() && wants_normals(settings))
       found.missing.push_back(
           "normals: they would be reconstructed from depth; --normal or --normal-channels names them");
     if (has_camera) found.camera = camera_of(source, settings);
@@ -242,26 +246,26 @@ struct Inspector {
 
   /// Reads depth and normals. Returns false where the pixels cannot be read.
   bool read() {
-    require_host_room(source.depth_path(), source.data);
+    require_host_room(source.depth_path(), source.reading.data);
     try {
-      raw = read_raw_frame(source);
+      raw = read_raw_frame(source, source.reading.data);
     } catch (const Error& error) {
       found.suspicious.push_back({NoteCode::damaged_file, error.what()});
       found.unreadable = error;
       return false;
     }
-    found.depth = InspectedDepth{word_of(source.depth_kind), statistics_of(raw.depth), {}, {}};
+    found.depth = InspectedDepth{word_of(source.reading.depth_kind), statistics_of(raw.depth), {}, {}};
     return true;
   }
 
   /// Settles what the pixels decide. A camera that nobody gave has nothing to say.
   void settle_frame() {
     const auto notes = source.notes;
-    settle(source, reading, raw.depth, raw.normal);
-    found.depth->kind = word_of(source.depth_kind);
+    settle(source, reading, {source.reading.data, raw.depth, raw.normal});
+    found.depth->kind = word_of(source.reading.depth_kind);
     if (has_camera) return;
     source.notes = notes;
-    if (settings.normal_space == NormalSpace::automatic) source.normal_space = source.usual_normal_space;
+    if (settings.normal_space == NormalSpace::automatic) source.reading.normal_space = source.program.normal_space;
   }
 
   void look_at_normals() {
@@ -274,13 +278,13 @@ struct Inspector {
 
   /// Whether it is known what the depth means, be it that the frame is refused for its normals.
   bool knows_depth() const {
-    return !source.depth_kind_open ||
-           std::ranges::any_of(source.guesses, [](const Guess& guess) { return guess.what == "depth kind"; });
+    return !source.open.depth_kind ||
+           std::ranges::any_of(source.evidence.guesses, [](const Guess& guess) { return guess.what == "depth kind"; });
   }
 
   void describe() {
     found.depth->distances = distances_of(source, raw.depth);
-    found.depth->scores = source.depth_scores;
+    found.depth->scores = source.evidence.depth_scores;
     look_at_normals();
   }
 
@@ -294,9 +298,9 @@ struct Inspector {
       found.missing.push_back(error.what());
       describe_refused();
     }
-    found.shows_surfaces = source.has_evidence;
+    found.shows_surfaces = source.evidence.tells;
     found.suspicious = source.suspicious;
-    found.guesses = source.guesses;
+    found.guesses = source.evidence.guesses;
     found.notes = source.notes;
   }
 
@@ -327,7 +331,8 @@ struct Inspector {
     for (const auto& file : source.files) try {
         if (auto deep = deep_samples(source, file, settings)) found.deep.push_back(std::move(*deep));
         // Those of several files together show more than each does.
-        if (!found.deep.empty() && found.deep.back().file == file.path() && source.deep_elements.empty())
+        if (!found.deep.empty() && found.deep.back().file == file.path() &&
+            (!source.channels.deep || source.channels.deep->elements.empty()))
           leave_out_empty(found.deep.back());
       } catch (const Error& error) {
         found.suspicious.push_back({NoteCode::damaged_file, error.what()});
@@ -340,9 +345,9 @@ struct Inspector {
     alone.normal = "none";
     try {
       const FrameSource beauty = find_frame(alone, true, frame);
-      add_aov(found, "beauty", beauty, beauty[RawPlane::beauty], !settings.beauty_channels.empty());
-      add_aov(found, "indirect", beauty, beauty[RawPlane::indirect], false);
-      add_aov(found, "diffuse_color", beauty, beauty[RawPlane::diffuse_color], false);
+      add_aov(found, "beauty", beauty, beauty.channels[RawPlane::beauty], !settings.beauty_channels.empty());
+      add_aov(found, "indirect", beauty, beauty.channels[RawPlane::indirect], false);
+      add_aov(found, "diffuse_color", beauty, beauty.channels[RawPlane::diffuse_color], false);
     } catch (const Error&) {
       found.missing.push_back("beauty: only --composite needs one; --beauty or --set beauty-channels names it");
     }
@@ -353,7 +358,7 @@ struct Inspector {
 
 Distances distances_of(const FrameSource& source, std::span<const float> raw) {
   std::vector<float> planar =
-      planar_depths(raw, depth_map_of(source), view_of(source.camera, source.data, source.display));
+      planar_depths(raw, depth_map_of(source.reading), view_of(source.reading, source.reading.data));
   const std::size_t pixels = planar.size();
   std::erase_if(planar, [](float z) { return std::isinf(z); });
   Distances distances{1 - double(planar.size()) / double(pixels), {}, {}, {}};

@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -20,6 +19,7 @@
 #include "core/frame/flatness.h"
 #include "core/frame/gbuffer.h"
 #include "core/frame/matte.h"
+#include "core/run/plan.h"
 
 namespace alcove {
 
@@ -74,7 +74,7 @@ struct Distances {
   double sky_share = 0;
   std::optional<double> nearest, median, farthest;
 };
-/// `raw` is the depth of a settled frame over source.data, as it was read.
+/// `raw` is the depth of a settled frame, as it was read.
 Distances distances_of(const FrameSource& source, std::span<const float> raw);
 
 struct InspectedDepth {
@@ -203,19 +203,9 @@ struct CameraSearch {
 /// A file that cannot be opened has no camera.
 CameraSearch look_for_camera(const InputSettings& settings, int frame);
 
-/// The frames that a sequence is told of, and their files.
-struct SequenceNames {
-  InputSettings named;                   // as the user gave them, with places for the frame number
-  std::vector<int> frames;               // those that there are, in order, at least one
-  std::vector<int> absent;               // those that were asked for, or lie between them, and are not there
-  std::vector<int> evidence;             // some of them, by one of which a run decides how all are read
-  std::string said;                      // --frames, or empty
-  std::function<InputSettings(int)> of;  // the settings with the files of one frame
-};
-
 /// Inspects the frame by which a run would decide how all are read, and adds what changes along the sequence: by the
 /// headers of all frames, and by the pixels of a few. Fails as inspect_frame() does for that frame; what is wrong with
 /// others is part of the answer.
-Inspection inspect_sequence(const SequenceNames& names);
+Inspection inspect_sequence(const FramePlan& plan);
 
 }  // namespace alcove

@@ -43,27 +43,27 @@ std::string plane_text(const std::optional<double>& distance) {
 
 /// What the headers of a frame say.
 Values values_of(const FrameSource& source, bool has_camera) {
-  Values values{{"data window", to_string(source.file_data)},
-                {"display window", to_string(source.display)},
-                {"pixel aspect", fmt::format("{:.4g}", source.pixel_aspect)},
+  Values values{{"data window", to_string(source.reading.data)},
+                {"display window", to_string(source.reading.display)},
+                {"pixel aspect", fmt::format("{:.4g}", source.reading.pixel_aspect)},
                 {"channels", channels_of(source)},
-                {"depth", names_of(source[RawPlane::depth])},
-                {"normals", names_of(source[RawPlane::normal])},
-                {"source", source.rules->name}};
+                {"depth", names_of(source.channels[RawPlane::depth])},
+                {"normals", names_of(source.channels[RawPlane::normal])},
+                {"source", source.program.rules->name}};
   if (!has_camera) return values;
   values["camera by"] = source.camera_from.empty() ? "options" : source.camera_from;
-  values["near plane"] = plane_text(source.camera.near);
-  values["far plane"] = plane_text(source.camera.far);
+  values["near plane"] = plane_text(source.reading.camera.near);
+  values["far plane"] = plane_text(source.reading.camera.far);
   return values;
 }
 
 /// How a frame would be read by itself.
 std::string reading_of(const FrameSource& source) {
-  std::string text = word_of(source.depth_kind) + " depth";
-  if (source[RawPlane::normal].empty()) return text;
-  text += fmt::format(", {} normals, {}", word_of(source.normal_space),
-                      encoding_name(source.normal_encoding, source.normal_unorm));
-  if (to_string(source.flip_normal) != "none") text += ", flips " + to_string(source.flip_normal);
+  std::string text = word_of(source.reading.depth_kind) + " depth";
+  if (source.channels[RawPlane::normal].empty()) return text;
+  text += fmt::format(", {} normals, {}", word_of(source.reading.normal_space),
+                      encoding_name(source.reading.normal_encoding, source.reading.normal_unorm));
+  if (to_string(source.reading.flip_normal) != "none") text += ", flips " + to_string(source.reading.flip_normal);
   return text;
 }
 
@@ -94,15 +94,15 @@ double width_of(const Camera& camera) {
 /// A sequence being looked at.
 class SequenceInspector {
  public:
-  explicit SequenceInspector(const SequenceNames& names) : names_(names) {}
+  explicit SequenceInspector(const FramePlan& plan) : plan_(plan) {}
 
   Inspection inspect() {
     Inspection found = first_that_shows();
     shown_.shown = shown_frame_;
-    shown_.frames = names_.frames;
-    shown_.absent = names_.absent;
-    has_camera_ = look_for_camera(names_.of(shown_frame_), shown_frame_).lacking.empty();
-    for (const int frame : names_.frames) look_at_header(frame);
+    shown_.frames = plan_.frames();
+    shown_.absent = plan_.missing();
+    has_camera_ = look_for_camera(plan_.at(shown_frame_).input, shown_frame_).lacking.empty();
+    for (const int frame : plan_.frames()) look_at_header(frame);
     for (const int frame : few()) look_at_pixels(frame);
     sort_out();
     found.sequence = std::move(shown_);
@@ -112,10 +112,10 @@ class SequenceInspector {
  private:
   /// The frame that a run would settle the sequence by.
   Inspection first_that_shows() {
-    const CommandNames run{names_.named, "ao.%04d.exr", names_.said};
+    const CommandNames run{plan_.settings().input, "ao.%04d.exr", plan_.settings().frames.frames};
     std::optional<Inspection> first;
-    for (const int frame : names_.evidence) {
-      Inspection found = inspect_frame(names_.of(frame), frame, run);
+    for (const int frame : plan_.evidence()) {
+      Inspection found = inspect_frame(plan_.at(frame).input, frame, run);
       if (first && !found.shows_surfaces) continue;
       shown_frame_ = frame;
       first = std::move(found);
@@ -125,9 +125,9 @@ class SequenceInspector {
   }
 
   FrameSource open(int frame) const {
-    const InputSettings settings = names_.of(frame);
+    const InputSettings settings = plan_.at(frame).input;
     FrameSource source = find_frame(has_camera_ ? settings : with_some_camera(settings), false, frame);
-    source.camera_is_assumed = !has_camera_;
+    source.open.camera = !has_camera_;
     return source;
   }
 
@@ -135,7 +135,7 @@ class SequenceInspector {
     try {
       const FrameSource source = open(frame);
       for (const auto& [what, value] : values_of(source, has_camera_)) take(what, value, frame);
-      if (has_camera_) follow(source.camera, frame);
+      if (has_camera_) follow(source.reading.camera, frame);
     } catch (const Error& error) {
       refuse(error, frame);
     }
@@ -144,7 +144,7 @@ class SequenceInspector {
   /// Takes down that a frame is refused, without the name of its file, so that frames with one fault stand together.
   void refuse(const Error& error, int frame) {
     std::string text = error.what();
-    const std::string name = main_input(names_.of(frame)) + ": ";
+    const std::string name = main_input(plan_.at(frame).input) + ": ";
     if (text.starts_with(name)) text.erase(0, name.size());
     take(kRefused, text, frame);
   }
@@ -177,20 +177,20 @@ class SequenceInspector {
   /// The first frame, the last, and a few between them.
   std::set<int> few() const {
     std::set<int> frames{shown_frame_};
-    const std::size_t count = std::min(kReadFrames, names_.frames.size());
+    const std::size_t count = std::min(kReadFrames, plan_.frames().size());
     for (std::size_t i = 0; i < count; i++)
-      frames.insert(names_.frames[i * (names_.frames.size() - 1) / std::max<std::size_t>(1, count - 1)]);
+      frames.insert(plan_.frames()[i * (plan_.frames().size() - 1) / std::max<std::size_t>(1, count - 1)]);
     return frames;
   }
 
   void look_at_pixels(int frame) {
     try {
       FrameSource source = open(frame);
-      require_host_room(source.depth_path(), source.data);
-      const RawFrame raw = read_raw_frame(source);
-      const InputSettings settings = names_.of(frame);
-      settle(source, has_camera_ ? settings : with_some_camera(settings), raw.depth, raw.normal);
-      if (has_camera_ && source.has_evidence) take("reading", reading_of(source), frame);
+      require_host_room(source.depth_path(), source.reading.data);
+      const RawFrame raw = read_raw_frame(source, source.reading.data);
+      const InputSettings settings = plan_.at(frame).input;
+      settle(source, has_camera_ ? settings : with_some_camera(settings), {source.reading.data, raw.depth, raw.normal});
+      if (has_camera_ && source.evidence.tells) take("reading", reading_of(source), frame);
       for (const auto& note : source.suspicious) suspicious_[facts_of(note.code).meaning].insert(frame);
       shown_.depth.push_back({frame, distances_of(source, raw.depth)});
     } catch (const Error& error) {
@@ -212,7 +212,7 @@ class SequenceInspector {
 
   static constexpr const char* kRefused = "refused";
 
-  const SequenceNames& names_;
+  const FramePlan& plan_;
   int shown_frame_ = 0;
   bool has_camera_ = false;
   InspectedSequence shown_{};
@@ -224,6 +224,6 @@ class SequenceInspector {
 
 }  // namespace
 
-Inspection inspect_sequence(const SequenceNames& names) { return SequenceInspector(names).inspect(); }
+Inspection inspect_sequence(const FramePlan& plan) { return SequenceInspector(plan).inspect(); }
 
 }  // namespace alcove

@@ -142,9 +142,9 @@ FilePlanes read_depth(const CompareSettings& settings, CommonWindow& common) {
   input.fov = 90;  // the search for channels asks for a camera, which depth alone has no use for
   input.normal_space = NormalSpace::view;
   FrameSource source = find_frame(input, false, 0);
-  common.take(settings.depth, source.data, source.display);
-  FilePlanes depth{source.data, std::vector<float>(source.data.pixels())};
-  read_planes(source, {{&source[RawPlane::depth], depth.values.data()}});
+  common.take(settings.depth, source.reading.data, source.reading.display);
+  FilePlanes depth{source.reading.data, std::vector<float>(source.reading.data.pixels())};
+  read_planes(source, source.reading.data, {{&source.channels[RawPlane::depth], depth.values.data()}});
   return depth;
 }
 

@@ -120,7 +120,7 @@ class RunDevice {
     // Where frames run side by side no core is free for it.
     if (lanes_->count() == 1 && threads_ > 1)
       warm_up_.emplace(lanes_->device(), settings_.estimator, settings_.output, std::min(threads_, kWarmingThreads));
-    if (settled_) memory = beside_shot(memory, plan_, *settled_, settings_, frames_, lanes_->count());
+    if (settled_) memory = without_shared_frames(memory, plan_, *settled_, settings_, frames_, lanes_->count());
     room_ = room_of_lane(memory, lanes_->count(), info());
   }
 
@@ -148,8 +148,8 @@ class RunDevice {
     const FrameMemory frame = memory_with_others(plan_, *settled_, settings_);
     int lanes = int(std::min(frames_.size(), std::size_t(most)));
     const auto has_room = [&] {
-      const RunMemory left = beside_shot(memory, plan_, *settled_, settings_, frames_, lanes);
-      return frames_in(left, frame, settled_->file_data) >= std::uint64_t(lanes);
+      const RunMemory left = without_shared_frames(memory, plan_, *settled_, settings_, frames_, lanes);
+      return frames_in(left, frame, settled_->reading.data) >= std::uint64_t(lanes);
     };
     while (lanes > 1 && !has_room()) lanes--;
     return lanes;
@@ -179,7 +179,7 @@ class Batch {
     const std::uint64_t bytes = memory_of_host(settings.device).host_bytes;
     set_exr_memory(bytes / kCodecPart);
     const auto settled = plan_.is_sequence() ? look_.settle(bytes) : std::nullopt;
-    if (settled) note(FrameTally::notes_on(*settled));
+    if (settled) note(FrameTally::notes_on(*settled, settings.input));
     std::optional<DisplayTransform> transform;
     if (shows_composite(settings.output))
       transform.emplace(settings.output.ocio, settings.output.display, settings.output.view_transform);

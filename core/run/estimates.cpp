@@ -201,13 +201,13 @@ Settings of_estimate(Settings settings) {
 class EstimateRun {
  public:
   EstimateRun(const EstimateRoom& where, const FramePlan& plan, const Settings& settings, FrameSource& source,
-              const Others& others, PreparedOthers& took, EstimatedFrame& result)
+              const Others& others, PreparationCost& cost, EstimatedFrame& result)
       : where_(where),
         turn_(plan.turn_of(result.frame)),
         settings_(settings),
         source_(source),
         others_(others),
-        took_(took),
+        cost_(cost),
         result_(result),
         tally_(result.report) {
     wanted_.only_own = true;
@@ -216,8 +216,9 @@ class EstimateRun {
 
   /// Gives what was read.
   ReadPlanes run(const WindowLimits& limits) {
-    if (limits.allow(source_.data))
-      compute(source_.file_data);
+    const Window& whole = source_.reading.data;
+    if (limits.allow(whole))
+      compute(whole, whole);
     else
       compute_tiles(limits.in_parts(source_));
     for (const auto* planes : {&scales_, &bent_})
@@ -229,37 +230,35 @@ class EstimateRun {
   void compute_tiles(const WindowLimits& limits) {
     read_for_parts(source_, settings_, read_, limits.room.bytes - limits.kept);
     Surroundings surroundings(source_, settings_, read_[RawPlane::depth]);
-    for (const auto& row : tiles_of(source_.file_data, surroundings, limits, source_))
-      for (const auto& tile : row) {
-        source_.data = surroundings.around(tile);
-        compute(tile);
-      }
+    for (const auto& row : tiles_of(source_.reading.data, surroundings, limits, source_))
+      for (const auto& tile : row) compute(surroundings.around(tile), tile);
   }
 
-  void compute(const Window& part) {
-    if (where_.begin) where_.begin(source_.data);
-    FrameInputs inputs = load_frame(where_.gpu, source_, settings_, turn_, &read_);
+  /// Computes a window, and keeps a part of it.
+  void compute(const Window& window, const Window& part) {
+    if (where_.begin) where_.begin(window);
+    FrameInputs inputs = load_frame(where_.gpu, source_, window, settings_, turn_, &read_);
     inputs.others = others_.seen;
     inputs.turn = turn_;
-    if (part == source_.file_data) read_ = kept_planes(inputs);
+    if (part == source_.reading.data) read_ = kept_planes(inputs);
     const FrameOutputs outputs = run_chain(where_.gpu, inputs, settings_.estimator, wanted_);
     where_.gpu.run();
     const auto& passes = where_.gpu.passes();
-    took_.passes.insert(took_.passes.end(), passes.begin(), passes.end());
-    tally_.add_outputs(outputs, source_.data, false);
+    cost_.passes.insert(cost_.passes.end(), passes.begin(), passes.end());
+    tally_.add_outputs(outputs, window, false);
     const OwnEstimate& own = outputs.own.value();
     result_.depth_precision = own.gbuffer.depth_precision;
-    put(own.gbuffer.depth, part, result_.depth);
-    put(own.gbuffer.normal, part, result_.normal);
-    put(own.visibility.ao, part, result_.values);
-    put(own.visibility.scales, part, scales_);
-    put(own.visibility.bent, part, bent_);
+    put(own.gbuffer.depth, window, part, result_.depth);
+    put(own.gbuffer.normal, window, part, result_.normal);
+    put(own.visibility.ao, window, part, result_.values);
+    put(own.visibility.scales, window, part, scales_);
+    put(own.visibility.bent, window, part, bent_);
   }
 
   /// Copies a part of the planes that were computed into those of the whole frame.
   template <class T>
-  void put(const gpu::Buffer* planes, const Window& part, std::vector<T>& all) const {
-    if (planes) put_in(planes->as<const T>(), source_.data, part, source_.file_data, all);
+  void put(const gpu::Buffer* planes, const Window& window, const Window& part, std::vector<T>& all) const {
+    if (planes) put_in(planes->as<const T>(), window, part, source_.reading.data, all);
   }
 
   const EstimateRoom& where_;
@@ -267,7 +266,7 @@ class EstimateRun {
   const Settings& settings_;
   FrameSource& source_;
   const Others& others_;
-  PreparedOthers& took_;
+  PreparationCost& cost_;
   EstimatedFrame& result_;
   FrameTally tally_;
   Wanted wanted_{settings_.output};
@@ -290,10 +289,10 @@ std::string text_of(const TakenEstimates& taken) {
   return "frames " + frames_text(frames) + missing;
 }
 
-TakenEstimates SharedFrames::estimates_of(const EstimateRoom& where, int frame, PreparedOthers& took) {
+TakenEstimates SharedFrames::estimates_of(const EstimateRoom& where, int frame, PreparationCost& cost) {
   const FramesAround window = plan_.accumulated(frame);
   TakenEstimates taken{
-      {}, estimated_.of(window.there, [&](int other) { return estimate(where, other, took); }), window.missing};
+      {}, estimated_.of(window.there, [&](int other) { return estimate(where, other, cost); }), window.missing};
   {
     const std::lock_guard lock(mutex_);
     if (auto read = read_.extract(frame)) taken.read = std::move(read.mapped());
@@ -303,27 +302,27 @@ TakenEstimates SharedFrames::estimates_of(const EstimateRoom& where, int frame, 
   return taken;
 }
 
-EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, PreparedOthers& took) {
+EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, PreparationCost& cost) {
   const Settings settings = of_estimate(plan_.at(frame));
   FrameSource source = open_frame(settings, frame);
   if (settled_) settle_like(source, *settled_);
   require_place(source, frame, "--accumulate");
   EstimatedFrame result;
   result.frame = frame;
-  result.others = others_of(where.gpu, source, frame, took);
+  result.others = others_of(where.gpu, source, frame, cost);
   ReadPlanes read =
-      EstimateRun(where, plan_, settings, source, result.others, took, result)
+      EstimateRun(where, plan_, settings, source, result.others, cost, result)
           .run({memory_with_others(plan_, source, settings), where.room, longest_side(settings.estimator)});
   result.others.seen.clear();
-  result.camera = source.camera;
-  result.view = view_of(source.camera, source.file_data, source.display);
-  const auto moving = moving_by_vectors(where.gpu, frame, took, 0);
+  result.camera = source.reading.camera;
+  result.view = view_of(source.reading, source.reading.data);
+  const auto moving = moving_by_vectors(where.gpu, frame, cost, 0);
   for (std::size_t i = 0; moving && i < moving->size(); i++) {
     if (!(*moving)[i]) continue;
     result.depth[i] = -result.depth[i];
     result.has_moving = true;
   }
-  took.rows_read += source.rows_read;
+  cost.rows_read += source.rows_read;
   const std::lock_guard lock(mutex_);
   if (std::ranges::find(left_, frame) != left_.end()) read_.insert_or_assign(frame, std::move(read));
   return result;

@@ -56,7 +56,7 @@ Notes notes_on_names(const FramePlan& plan) {
 /// The frame with a camera that stands in for the one that is missing.
 FrameSource find_without_camera(const FramePlan& plan, int frame) {
   FrameSource source = find_frame(with_some_camera(plan.at(frame).input), false, frame);
-  source.camera_is_assumed = true;
+  source.open.camera = true;
   return source;
 }
 
@@ -123,7 +123,7 @@ std::optional<double> FirstLook::radius_of_first(const std::function<FrameSource
     try {
       FrameSource& source = look(frame);
       settle_by_rows(source, plan().at(frame).input);
-      if (const auto radius = proposed_radius(source.camera, source.median_depth)) return radius;
+      if (const auto radius = proposed_radius(source.reading.camera, source.evidence.median_depth)) return radius;
     } catch (const Error& failure) {
       opened_.erase(frame);  // which may be settled in part
       if (!error) error = failure;
@@ -204,8 +204,8 @@ std::optional<FrameSource> FirstLook::settle(std::uint64_t most_bytes) {
     try {
       FrameSource& source = opened(frame);
       if (!source.settled) settle_by_rows(source, plan().at(frame).input, most_bytes);
-      if (!best || source.has_evidence) best = frame;
-      if (source.has_evidence) break;
+      if (!best || source.evidence.tells) best = frame;
+      if (source.evidence.tells) break;
     } catch (const Error&) {
       // The frame is computed like all others, and its report says then what is wrong with it.
       opened_.erase(frame);
@@ -214,7 +214,7 @@ std::optional<FrameSource> FirstLook::settle(std::uint64_t most_bytes) {
   }
   std::optional<FrameSource> settled;
   // A frame that shows nothing, such as one of sky, must not have others read that are refused by themselves.
-  if (best && (!is_refused || opened(*best).has_evidence)) settled = std::move(opened(*best));
+  if (best && (!is_refused || opened(*best).evidence.tells)) settled = std::move(opened(*best));
   if (settled)
     for (auto& file : settled->files) file.close();
   opened_.clear();
@@ -255,22 +255,23 @@ std::string plan_text(FirstLook& look) {
   if (!plan.is_sequence() && !source.settled)
     settle_by_rows(source, first.input, memory_of_host(first.device).host_bytes);
   std::vector<std::string> channels;
-  for (const auto& plane : source.planes.entries)
+  for (const auto& plane : source.channels.planes.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);
   line("channels", fmt::format("{}", fmt::join(channels, ", ")));
   line("camera",
-       fmt::format("{}, {:.6g} x {:.6g} px {}", source.camera.orthographic ? "orthographic" : "perspective",
-                   source.camera.fx, source.camera.fy, source.camera.orthographic ? "per scene unit" : "focal length"));
+       fmt::format("{}, {:.6g} x {:.6g} px {}", source.reading.camera.orthographic ? "orthographic" : "perspective",
+                   source.reading.camera.fx, source.reading.camera.fy,
+                   source.reading.camera.orthographic ? "per scene unit" : "focal length"));
   const FrameMemory frame = memory_with_others(plan, source, first);
-  const std::uint64_t bytes = frame.of(source.file_data).host;
+  const std::uint64_t bytes = frame.of(source.reading.data).host;
   InputIdentities identities(plan);
   const auto wanted = frames_to_compute(plan, options_digest(first), identities);
   require_room_for_others(memory_of_host(first.device), plan, source, first, wanted);
-  const RunMemory run = beside_shot(memory_of_host(first.device), plan, source, first, wanted, 1);
+  const RunMemory run = without_shared_frames(memory_of_host(first.device), plan, source, first, wanted, 1);
   const std::uint64_t memory = run.host_bytes;
   line("size", to_string(written_picture(source)));
   const std::string at_once =
-      bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.file_data));
+      bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.reading.data));
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
   if (around_of(first.input) > 0)
     line("around",

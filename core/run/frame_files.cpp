@@ -32,24 +32,26 @@ namespace {
 /// The most that is put together at once, so that a beauty which is much larger than the depth needs no more memory.
 constexpr std::uint64_t kBytesAtOnce = 1 << 20;
 
-const Window& window_of_beauty(const FrameSource& source) { return source.part_of(source[RawPlane::beauty][0]).data; }
+const Window& window_of_beauty(const FrameSource& source) {
+  return source.part_of(source.channels[RawPlane::beauty][0]).data;
+}
 
 /// Of all planes.
 std::uint64_t row_bytes(const FrameSource& source) {
-  return sizeof(float) * source[RawPlane::beauty].size() * std::uint64_t(window_of_beauty(source).width);
+  return sizeof(float) * source.channels[RawPlane::beauty].size() * std::uint64_t(window_of_beauty(source).width);
 }
 
 /// The window of a frame's composite: the beauty's, or the part of a region that the beauty has.
 Window composite_window(const FrameSource& source) {
   const Window& beauty = window_of_beauty(source);
-  return source.region ? common_part(picture_of(source, *source.region), beauty) : beauty;
+  return source.region ? common_part(picture_of(source.reading, *source.region), beauty) : beauty;
 }
 
 /// The composite over a part of its window, so many planes: where `from` has pixels those of `planes`, elsewhere the
 /// beauty's, which are read then, and 1 in a plane of AO behind them. Fails as reading a frame does.
 std::vector<std::vector<float>> composite_over(FrameSource& source, std::size_t count, const Window& part,
                                                const Window& from, std::span<const std::span<const float>> planes) {
-  const auto& beauty = source[RawPlane::beauty];
+  const auto& beauty = source.channels[RawPlane::beauty];
   const Window& whole = window_of_beauty(source);
   const Window rows{whole.x, part.y, whole.width, part.height};
   const bool is_all_computed = common_part(part, from) == part;
@@ -69,7 +71,7 @@ std::vector<std::vector<float>> composite_over(FrameSource& source, std::size_t 
 }  // namespace
 
 std::uint64_t composite_bytes(const FrameSource& source) {
-  if (source[RawPlane::beauty].empty() || composite_window(source) == written_picture(source)) return 0;
+  if (source.channels[RawPlane::beauty].empty() || composite_window(source) == written_picture(source)) return 0;
   return 2 * std::max(kBytesAtOnce, kRowsOfOutput * row_bytes(source));  // what is read, and what is made of it
 }
 
@@ -182,21 +184,22 @@ std::vector<float> displayed(const Window& display, const Window& data, std::spa
   return interleaved;
 }
 
-/// A plane over source.data as pixels of the picture.
-std::vector<float> in_picture(const FrameSource& source, std::span<const float> plane) {
-  return middle_pixels(plane, source.data, source.display, source.supersampling);
+/// A plane over a window as pixels of the picture.
+std::vector<float> in_picture(const FrameSource& source, const Window& window, std::span<const float> plane) {
+  return middle_pixels(plane, window, source.reading.display, source.reading.supersampling);
 }
 
 /// The composite over a window, band by band, since the beauty's rows may be far longer than those of the display.
 /// Where nothing is computed it is the beauty.
-std::vector<float> shown_composite(FrameSource& source, const gpu::Buffer* computed, const Window& shown) {
+std::vector<float> shown_composite(FrameSource& source, const Window& window, const gpu::Buffer* computed,
+                                   const Window& shown) {
   constexpr int kBand = 64;  // rows; files compress no more together, but for a few
   std::vector<std::vector<float>> planes;
   const auto values = computed ? computed->as<const float>() : std::span<const float>();
-  for (std::size_t at = 0; at < values.size(); at += source.data.pixels())
-    planes.push_back(in_picture(source, values.subspan(at, source.data.pixels())));
-  const Window from = computed ? picture_of(source, source.data) : Window{};
-  const std::size_t count = source[RawPlane::beauty].size();
+  for (std::size_t at = 0; at < values.size(); at += window.pixels())
+    planes.push_back(in_picture(source, window, values.subspan(at, window.pixels())));
+  const Window from = computed ? picture_of(source.reading, window) : Window{};
+  const std::size_t count = source.channels[RawPlane::beauty].size();
   std::vector<float> pixels(count * shown.pixels());
   for (int y = shown.y; y < shown.y + shown.height; y += kBand) {
     const Window band{shown.x, y, shown.width, std::min(kBand, shown.y + shown.height - y)};
@@ -215,18 +218,19 @@ struct Shown {
 };
 
 /// AO by itself is data, and shown as it is.
-Shown shown_ao(const FrameSource& source, const gpu::Buffer& ao) {
-  const Window display = picture_of(source, source.display), data = picture_of(source, source.data);
-  const std::vector<float> pixels = in_picture(source, ao.as<float>());
+Shown shown_ao(const FrameSource& source, const Window& window, const gpu::Buffer& ao) {
+  const Window display = picture_of(source.reading, source.reading.display), data = picture_of(source.reading, window);
+  const std::vector<float> pixels = in_picture(source, window, ao.as<float>());
   const Window written = written_picture(source);
   return {display.width, 1, displayed(display, written, cropped(pixels, data, written), 1)};
 }
 
 /// A beauty, or a composite, through the view transform.
-Shown shown_colors(FrameSource& source, const gpu::Buffer* computed, const DisplayTransform* transform) {
-  const Window display = picture_of(source, source.display);
+Shown shown_colors(FrameSource& source, const Window& window, const gpu::Buffer* computed,
+                   const DisplayTransform* transform) {
+  const Window display = picture_of(source.reading, source.reading.display);
   const Window data = common_part(composite_window(source), display);
-  Shown shown{display.width, 3, displayed(display, data, shown_composite(source, computed, data), 3)};
+  Shown shown{display.width, 3, displayed(display, data, shown_composite(source, window, computed, data), 3)};
   if (transform) transform->apply(shown.pixels);
   return shown;
 }
@@ -249,23 +253,23 @@ Shown beside(const Shown& left, const Shown& right) {
   return both;
 }
 
-Shown preview_of(FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
-                 const std::string& style) {
-  if (!outputs.composite || style == "ao") return shown_ao(source, *outputs.ao);
-  const Shown composite = shown_colors(source, outputs.composite, transform);
-  return style == "split" ? beside(shown_colors(source, nullptr, transform), composite) : composite;
+Shown preview_of(FrameSource& source, const Window& window, const FrameOutputs& outputs,
+                 const DisplayTransform* transform, const std::string& style) {
+  if (!outputs.composite || style == "ao") return shown_ao(source, window, *outputs.ao);
+  const Shown composite = shown_colors(source, window, outputs.composite, transform);
+  return style == "split" ? beside(shown_colors(source, window, nullptr, transform), composite) : composite;
 }
 
 }  // namespace
 
-void write_pictures(FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
-                    const OutputSettings& settings, const Provenance& provenance) {
+void write_pictures(FrameSource& source, const Window& computed, const FrameOutputs& outputs,
+                    const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance) {
   const std::string text = made_by(provenance.options, provenance.inputs);
   for (const auto& plane : outputs.debug)
     write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y,
                      plane.values->as<float>(), text);
   if (settings.preview.empty()) return;
-  const Shown shown = preview_of(source, outputs, transform, settings.preview_style);
+  const Shown shown = preview_of(source, computed, outputs, transform, settings.preview_style);
   const int height = int(shown.pixels.size()) / shown.planes / shown.width;
   write_png(settings.preview, shown.width, height, shown.planes, shown.pixels, text);
 }
@@ -285,17 +289,17 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const W
                       const OutputSettings& settings, const Provenance& provenance) {
   ExrOutput output;
   output.data = data;
-  output.display = picture_of(source, source.display);
-  output.pixel_aspect = source.pixel_aspect;
+  output.display = picture_of(source.reading, source.reading.display);
+  output.pixel_aspect = source.reading.pixel_aspect;
   output.attributes = source.files[like.file].attributes(like.part);
   output.own_attributes = {{"alcove/version", kVersion},
                            {"alcove/options", provenance.options},
                            {"alcove/device", provenance.device},
                            {"alcove/inputs", provenance.inputs},
                            {"alcove/input", fs::path(source.depth_path()).filename().string()}};
-  if (source.supersampling > 1)
-    output.own_attributes["alcove/filter"] =
-        fmt::format("{} x {} px by {}", source.supersampling, source.supersampling, text_of(settings.filter));
+  if (source.reading.supersampling > 1)
+    output.own_attributes["alcove/filter"] = fmt::format("{} x {} px by {}", source.reading.supersampling,
+                                                         source.reading.supersampling, text_of(settings.filter));
   if (const std::string hidden = hidden_sources_text(source); !hidden.empty())
     output.own_attributes[kHiddenAttribute] = hidden;
   if (!provenance.others.empty()) {
@@ -310,7 +314,8 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const W
 /// The AO file, without pixels.
 ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator, const OutputSettings& settings,
                    const Provenance& provenance) {
-  ExrOutput output = output_like(source, source[RawPlane::depth][0], written_picture(source), settings, provenance);
+  ExrOutput output =
+      output_like(source, source.channels[RawPlane::depth][0], written_picture(source), settings, provenance);
   output.compression = settings.compression;
   const auto radii = estimator.radius ? radii_of(estimator) : std::vector<double>();
   if (needs_ao(settings)) output.own_attributes["alcove/radius"] = fmt::format("{}", fmt::join(radii, " "));
@@ -323,7 +328,7 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
   if (wants(settings, &FrameOutputs::scales))
     output.own_attributes["alcove/radii"] = fmt::format("{}", fmt::join(radii, " "));
   if (wants(settings, &FrameOutputs::normal) || wants(settings, &FrameOutputs::bent_normal))
-    output.own_attributes["alcove/normal_space"] = in_world(source.camera, settings) ? "world" : "view";
+    output.own_attributes["alcove/normal_space"] = in_world(source.reading.camera, settings) ? "world" : "view";
   return output;
 }
 
@@ -331,7 +336,7 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
 std::string composite_text(const FrameSource& source, const Settings& all) {
   const CompositeLook& look = all.output.look;
   std::string text = "multiply: beauty * ao";
-  if (!source[RawPlane::indirect].empty())
+  if (!source.channels[RawPlane::indirect].empty())
     text = fmt::format("ambient: beauty - D + D * ao, D = {}",
                        all.input.ambient.empty() ? "indirect diffuse" : all.input.ambient);
   if (all.output.multi_bounce) text += "; ao with multi-bounce";
@@ -353,20 +358,22 @@ SampleType type_of(const OutputSettings& settings) {
 
 /// Whether the composite is a copy of the beauty's file, which is an EXR.
 bool keeps_layers(const FrameSource& source, const OutputSettings& settings) {
-  return settings.composite_layers == "all" && source.files[source[RawPlane::beauty][0].file].codec_group() > 0;
+  return settings.composite_layers == "all" &&
+         source.files[source.channels[RawPlane::beauty][0].file].codec_group() > 0;
 }
 
 /// The composite, without pixels. Every channel keeps the beauty's precision.
 ExrOutput composite_file(const FrameSource& source, const Settings& all, const Provenance& provenance) {
   const OutputSettings& settings = all.output;
-  ExrOutput output = output_like(source, source[RawPlane::beauty][0], composite_window(source), settings, provenance);
+  ExrOutput output =
+      output_like(source, source.channels[RawPlane::beauty][0], composite_window(source), settings, provenance);
   output.own_attributes["alcove/composite"] = composite_text(source, all);
   output.compression = settings.composite_compression;
   const char* names[] = {"R", "G", "B", "A"};
-  for (std::size_t c = 0; c < source[RawPlane::beauty].size(); c++)
+  for (std::size_t c = 0; c < source.channels[RawPlane::beauty].size(); c++)
     output.planes.push_back(
         {names[c],
-         source.is_half(source[RawPlane::beauty][c]) ? SampleType::half_float : SampleType::single_float,
+         source.is_half(source.channels[RawPlane::beauty][c]) ? SampleType::half_float : SampleType::single_float,
          {}});
   if (!settings.append_ao.empty()) output.planes.push_back({appended_channel(settings), type_of(settings), {}});
   return output;
@@ -374,7 +381,7 @@ ExrOutput composite_file(const FrameSource& source, const Settings& all, const P
 
 /// The same as a copy of the beauty's file.
 ExrCopySettings composite_copy(const FrameSource& source, const ExrOutput& composite) {
-  const auto& beauty = source[RawPlane::beauty];
+  const auto& beauty = source.channels[RawPlane::beauty];
   ExrCopySettings copy{
       source.files[beauty[0].file].path(), composite.data, composite.compression, {}, composite.own_attributes};
   for (std::size_t c = 0; c < composite.planes.size(); c++) {
@@ -388,9 +395,9 @@ ExrCopySettings composite_copy(const FrameSource& source, const ExrOutput& compo
 
 /// Fails where the AO has no place in the composite.
 void require_place_for_ao(const FrameSource& source, const OutputSettings& settings) {
-  if (settings.append_ao.empty() || source[RawPlane::beauty].empty()) return;
+  if (settings.append_ao.empty() || source.channels[RawPlane::beauty].empty()) return;
   const std::string channel = appended_channel(settings);
-  const ChannelRef& beauty = source[RawPlane::beauty][0];
+  const ChannelRef& beauty = source.channels[RawPlane::beauty][0];
   const auto& there = source.part_of(beauty).channels;
   if (keeps_layers(source, settings) && std::ranges::find(there, channel, &ExrChannel::name) != there.end())
     fail(ErrorKind::input, "{}: it has a channel {} already: give --set append-ao another name",
@@ -404,14 +411,14 @@ void require_place_for_ao(const FrameSource& source, const OutputSettings& setti
 
 /// Fails with ErrorKind::input where a beauty has one colour all over: Blender writes a layer of zeros where it
 /// rendered none.
-void require_picture(const FrameSource& source, std::span<const float> beauty) {
-  const auto colors = beauty.first(3 * source.data.pixels());
-  if (source.data != source.file_data) return;  // a part may be of one colour
+void require_picture(const FrameSource& source, const Window& window, std::span<const float> beauty) {
+  const auto colors = beauty.first(3 * window.pixels());
+  if (window != source.reading.data) return;  // a part may be of one colour
   for (std::size_t c = 0; c < 3; c++) {
-    const auto plane = colors.subspan(c * source.data.pixels(), source.data.pixels());
+    const auto plane = colors.subspan(c * window.pixels(), window.pixels());
     if (std::ranges::any_of(plane, [&](float x) { return !(x == plane[0]); })) return;
   }
-  const ChannelRef& red = source[RawPlane::beauty][0];
+  const ChannelRef& red = source.channels[RawPlane::beauty][0];
   fail(ErrorKind::input,
        "{}: the beauty {} has one colour in all pixels{}: give the picture with --beauty, or name it with "
        "--set beauty-channels",
@@ -422,34 +429,35 @@ void require_picture(const FrameSource& source, std::span<const float> beauty) {
 /// Fails with ErrorKind::usage where deep samples beside a flat depth are of no use to the estimator. Only now it is
 /// known whether they are beside one.
 void require_use_of_deep(const FrameSource& source, const EstimatorSettings& settings) {
-  const bool has_use = searches_slices(settings) || settings.hidden == 0 || !source.deep;
-  if (has_use || source.part_of(source[RawPlane::depth][0]).deep) return;
+  const bool has_use = searches_slices(settings) || settings.hidden == 0 || !source.channels.deep;
+  if (has_use || source.part_of(source.channels[RawPlane::depth][0]).deep) return;
   fail(ErrorKind::usage,
        "{}: beside a flat depth --deep applies to --estimator gtao or bitmask only: give one of these, or --set "
        "hidden=0, "
        "or leave --deep out",
-       source.files[*source.deep].path());
+       source.files[source.channels.deep->file].path());
 }
 
 /// Fails with ErrorKind::input where a frame lacks what an output is made from.
 void require_for_outputs(const FrameSource& source, const OutputSettings& settings) {
   const std::string& file = source.depth_path();
-  if (settings.aov_space == NormalSpace::world && !source.camera.view_from_world)
+  if (settings.aov_space == NormalSpace::world && !source.reading.camera.view_from_world)
     fail(ErrorKind::input,
          "{}: --set aov-space=world needs a camera with world_to_camera: give a --camera file with it", file);
-  if (settings.multi_bounce && !source[RawPlane::beauty].empty() && source[RawPlane::indirect].empty())
+  if (settings.multi_bounce && !source.channels[RawPlane::beauty].empty() &&
+      source.channels[RawPlane::indirect].empty())
     fail(ErrorKind::input,
          "{}: --set multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite "
          "(--beauty)",
          file);
   require_place_for_ao(source, settings);
   for (const auto* view : debug_views_of(settings)) {
-    if (view->source == DebugSource::raw_depth && source[RawPlane::depth].size() > 1)
+    if (view->source == DebugSource::raw_depth && source.channels[RawPlane::depth].size() > 1)
       fail(ErrorKind::input,
            "{}: --set debug={} shows a depth, and the frame has positions: name one with --depth-channel, or see "
            "linear-depth",
            file, view->name);
-    if (view->source == DebugSource::normals_from_depth && source[RawPlane::normal].empty())
+    if (view->source == DebugSource::normals_from_depth && source.channels[RawPlane::normal].empty())
       fail(ErrorKind::input,
            "{}: --set debug={} compares the frame's normals with those from depth, and there are none (--normal, "
            "--normal-channels)",
@@ -460,8 +468,8 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
 /// Whether planes are all that the frame needs.
 bool are_of(const ReadPlanes& planes, const FrameSource& source) {
   return std::ranges::all_of(kRawPlanes, [&](const auto& row) {
-    return source[row.plane].empty() ||
-           planes[row.plane].size() == source[row.plane].size() * source.file_data.pixels();
+    return source.channels[row.plane].empty() ||
+           planes[row.plane].size() == source.channels[row.plane].size() * source.reading.data.pixels();
   });
 }
 
@@ -472,21 +480,21 @@ FrameSource open_frame(const Settings& settings, int frame) {
                                   settings.output.multi_bounce && !settings.input.albedo_value);
   require_use_of_deep(source, settings.estimator);
   if (settings.estimator.hidden == 0) {
-    source[RawPlane::behind].clear();
-    source.behind.clear();
+    source.channels[RawPlane::behind].clear();
+    source.reading.behind.clear();
   }
   if (settings.input.roi) source.region = region_of(source, *settings.input.roi);
-  if (source.region && !source[RawPlane::beauty].empty() && composite_window(source).pixels() == 0)
+  if (source.region && !source.channels[RawPlane::beauty].empty() && composite_window(source).pixels() == 0)
     fail(ErrorKind::usage,
          "{}: the beauty has no pixel of --roi, which is {}: give a region within it, or no --composite",
-         source.files[source[RawPlane::beauty][0].file].path(), to_string(*source.region));
+         source.files[source.channels[RawPlane::beauty][0].file].path(), to_string(*source.region));
   require_for_outputs(source, settings.output);
   return source;
 }
 
-const Window& written_of(const FrameSource& source) { return source.region ? *source.region : source.file_data; }
+const Window& written_of(const FrameSource& source) { return source.region ? *source.region : source.reading.data; }
 
-Window written_picture(const FrameSource& source) { return picture_of(source, written_of(source)); }
+Window written_picture(const FrameSource& source) { return picture_of(source.reading, written_of(source)); }
 
 ReadPlanes kept_planes(const FrameInputs& inputs) {
   ReadPlanes planes;
@@ -502,43 +510,45 @@ void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& k
   if (!are_of(known, source)) {
     std::vector<PlaneRead> reads;
     for (const auto& row : kRawPlanes) {
-      known[row.plane].resize(source[row.plane].size() * source.file_data.pixels());
-      reads.push_back({&source[row.plane], known[row.plane].data()});
+      known[row.plane].resize(source.channels[row.plane].size() * source.reading.data.pixels());
+      reads.push_back({&source.channels[row.plane], known[row.plane].data()});
     }
-    read_planes(source, reads);
+    read_planes(source, source.reading.data, reads);
   }
   if (!source.settled)
     settle_by_planes(source, settings.input, known[RawPlane::depth], known[RawPlane::normal], most_bytes);
 }
 
-FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame,
-                       const ReadPlanes* known) {
+FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& window, const Settings& settings,
+                       int frame, const ReadPlanes* known) {
   RawPlaneArray<gpu::Buffer*> planes;
   std::vector<PlaneRead> reads;
   const bool is_known = known && are_of(*known, source);
-  const std::size_t pixels = source.data.pixels(), of_file = source.file_data.pixels();
+  const Window& whole = source.reading.data;
+  const std::size_t pixels = window.pixels(), of_file = whole.pixels();
   for (const auto& row : kRawPlanes) {
-    const auto& channels = source[row.plane];
+    const auto& channels = source.channels[row.plane];
     if (channels.empty()) continue;
     planes[row.plane] = &gpu.buffer(row.name, channels.size() * pixels * sizeof(float), gpu::Use::upload);
     float* const to = planes[row.plane]->as<float>().data();
     if (!is_known) reads.push_back({&channels, to});
     for (std::size_t c = 0; is_known && c < channels.size(); c++)
-      copy_common((*known)[row.plane].data() + c * of_file, source.file_data, to + c * pixels, source.data);
+      copy_common((*known)[row.plane].data() + c * of_file, whole, to + c * pixels, window);
   }
-  if (!is_known) read_planes(source, reads);
+  if (!is_known) read_planes(source, window, reads);
   const auto values_of = [&](RawPlane plane) {
     return planes[plane] ? planes[plane]->as<float>() : std::span<float>();
   };
   for (const auto& row : kRawPlanes)
-    if (planes[row.plane]) fill_missing(source, row.plane, values_of(row.plane));
-  if (planes[RawPlane::beauty]) require_picture(source, values_of(RawPlane::beauty));
+    if (planes[row.plane]) fill_missing(source, window, row.plane, values_of(row.plane));
+  if (planes[RawPlane::beauty]) require_picture(source, window, values_of(RawPlane::beauty));
   if (!source.settled)
     settle_by_planes(source, settings.input, values_of(RawPlane::depth), values_of(RawPlane::normal));
-  FrameInputs inputs = inputs_of(source, planes, frame);
-  inputs.margin = margin_of(source.data, source.file_data);
+  FrameInputs inputs = inputs_of(over(source.reading, window), planes, frame);
+  inputs.margin = margin_of(window, whole);
   inputs.albedo_value = settings.input.albedo_value.value_or(0);
-  if (in_world(source.camera, settings.output)) inputs.aov_from_view = transposed(*source.camera.view_from_world);
+  if (in_world(source.reading.camera, settings.output))
+    inputs.aov_from_view = transposed(*source.reading.camera.view_from_world);
   return inputs;
 }
 
@@ -581,14 +591,15 @@ FrameWriter::FrameWriter(FrameSource& source, const Settings& all, const Provena
 }
 
 void FrameWriter::write(std::span<const std::span<const float>> planes) {
-  if (source_.supersampling == 1) return write_pixels(planes);
+  if (source_.reading.supersampling == 1) return write_pixels(planes);
   Window rows = written_of(source_);
   rows.y = row_;
   rows.height = int(planes[0].size() / std::size_t(rows.width));
   row_ += rows.height;
-  if (picture_of(source_, rows).pixels() == 0) return;
+  if (picture_of(source_.reading, rows).pixels() == 0) return;
   std::vector<std::vector<float>> pixels;
-  for (const auto& plane : planes) pixels.push_back(middle_pixels(plane, rows, source_.display, source_.supersampling));
+  for (const auto& plane : planes)
+    pixels.push_back(middle_pixels(plane, rows, source_.reading.display, source_.reading.supersampling));
   write_pixels(std::vector<std::span<const float>>(pixels.begin(), pixels.end()));
 }
 

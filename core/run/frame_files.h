@@ -34,10 +34,10 @@ ReadPlanes kept_planes(const FrameInputs& inputs);
 /// Reads all planes where `known` are not all of them, and settles what is open about the frame, in so many bytes.
 void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& known, std::uint64_t most_bytes);
 
-/// Puts the planes within source.data into upload buffers: from those of the whole frame that are known, where these
-/// are all, or else from the files. Settles what is open about the frame, and says what they mean.
-FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Settings& settings, int frame,
-                       const ReadPlanes* known = nullptr);
+/// Puts the planes over a window into upload buffers: from those of the whole frame that are known, where these are all,
+/// or else from the files. Settles what is open about the frame, which must be read whole then, and says what they mean.
+FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& window, const Settings& settings,
+                       int frame, const ReadPlanes* known = nullptr);
 
 /// The attribute that holds the warnings of an output's frame; an output without warnings has none.
 inline constexpr const char* kNotesAttribute = "alcove/notes";
@@ -119,10 +119,10 @@ class FrameWriter {
   std::optional<CompositeRows> composite_;  // where it has another window than the AO
 };
 
-/// Writes the preview and the debug views of a frame that was computed at once, over source.data; each picture is
-/// written whole or not at all. `transform` is for the preview of a composite, and may be null. Fails with
+/// Writes the preview and the debug views of a frame that was computed at once, over a window; each picture is written
+/// whole or not at all. `transform` is for the preview of a composite, and may be null. Fails with
 /// ErrorKind::output.
-void write_pictures(FrameSource& source, const FrameOutputs& outputs, const DisplayTransform* transform,
-                    const OutputSettings& settings, const Provenance& provenance);
+void write_pictures(FrameSource& source, const Window& computed, const FrameOutputs& outputs,
+                    const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance);
 
 }  // namespace alcove

@@ -25,15 +25,17 @@ void FrameTally::begin(const Window& computed) {
   report_.pixels_at_once = std::max<std::uint64_t>(report_.pixels_at_once, computed.pixels());
 }
 
-void FrameTally::add_inputs(const FrameSource& source, const FrameInputs& inputs, const Window& written) {
+void FrameTally::add_inputs(const FrameSource& source, const Window& computed, const FrameInputs& inputs,
+                            const Window& written) {
   const auto depth = inputs[RawPlane::depth]->as<float>();
-  sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, depth, source.data, written);
-  if (inputs[RawPlane::behind]) behind_.add(source, depth, inputs[RawPlane::behind]->as<float>(), source.data, written);
+  sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, depth, computed, written);
+  if (inputs[RawPlane::behind])
+    behind_.add(source.reading, depth, inputs[RawPlane::behind]->as<float>(), computed, written);
 }
 
-void FrameTally::add_others(const PreparedOthers& took) {
-  rows_of_others_ += took.rows_read;
-  for (const auto& pass : took.passes) {
+void FrameTally::add_others(const PreparationCost& cost) {
+  rows_of_others_ += cost.rows_read;
+  for (const auto& pass : cost.passes) {
     const std::string name = "others " + pass.name;
     auto found = std::ranges::find(report_.passes, name, &gpu::PassTime::name);
     if (found == report_.passes.end()) found = report_.passes.insert(found, {name});
@@ -122,17 +124,18 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
 }
 
 void FrameTally::finish(const FrameSource& source, const Settings& settings) {
-  if (report_.pixels == 0) report_.pixels = source.data.pixels();
+  if (report_.pixels == 0) report_.pixels = source.reading.data.pixels();
   report_.rows_read = source.rows_read + rows_of_others_;
   report_.sky_pixels = counts_.sky;
   report_.repaired_pixels =
       counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
-  report_.notes = notes_on(source);
+  report_.notes = notes_on(source, settings.input);
   add_new(report_.notes, behind_.notes(source));
   add_new(report_.notes, deep_notes(source));
   if (has_ao_) {
     const std::vector<double> radii = radii_of(settings.estimator);
-    add_new(report_.notes, sample_.notes(radii.front(), radii.back(), source.file_data.width, source.file_data.height));
+    add_new(report_.notes,
+            sample_.notes(radii.front(), radii.back(), source.reading.data.width, source.reading.data.height));
     report_.samples_per_pixel =
         samples_per_estimate(settings.estimator) * estimates_of(settings.estimator) / double(report_.pixels);
     // An estimator that completes nothing, and sky, are no reason to leave the share out: it is 0.
@@ -149,12 +152,12 @@ double FrameTally::estimates_of(const EstimatorSettings& settings) const {
 
 /// Says that pixels may have no normal because the file has none there.
 static std::string window_of_normals(const FrameSource& source) {
-  if (source[RawPlane::normal].empty()) return "";
-  const Window& data = source.part_of(source[RawPlane::normal][0]).data;
-  if (common_part(data, source.file_data) == source.file_data) return "";
+  if (source.channels[RawPlane::normal].empty()) return "";
+  const Window& data = source.part_of(source.channels[RawPlane::normal][0]).data;
+  if (common_part(data, source.reading.data) == source.reading.data) return "";
   return fmt::format(": the normals of {} cover {} only, and the depth {}",
-                     source.files[source[RawPlane::normal][0].file].path(), to_string(data),
-                     to_string(source.file_data));
+                     source.files[source.channels[RawPlane::normal][0].file].path(), to_string(data),
+                     to_string(source.reading.data));
 }
 
 void FrameTally::note_repairs(const FrameSource& source) {
@@ -185,14 +188,14 @@ void FrameTally::note_repairs(const FrameSource& source) {
                                  counts_.repaired_beauty)});
 }
 
-Notes FrameTally::notes_on(const FrameSource& source) {
+Notes FrameTally::notes_on(const FrameSource& source, const InputSettings& settings) {
   Notes notes = source.notes;
   add_new(notes, source.suspicious);
-  if (source[RawPlane::normal].empty() && !source.normals_left_out)
+  if (source.channels[RawPlane::normal].empty() && wants_normals(settings))
     notes.push_back(
         {NoteCode::no_normals,
          "there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)"});
-  if (!source[RawPlane::beauty].empty() && source[RawPlane::indirect].empty())
+  if (!source.channels[RawPlane::beauty].empty() && source.channels[RawPlane::indirect].empty())
     notes.push_back({NoteCode::no_indirect_light,
                      "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims "
                      "direct light too"});
@@ -235,8 +238,8 @@ class FrameRun {
                               longest_side(settings_.estimator)};
     require_room_for_preview(source, limits);
     take_others(source);
-    if (!source.region && limits.allow(source.data))
-      run_whole(source);
+    if (!source.region && limits.allow(source.reading.data))
+      run_whole(source, source.reading.data);
     else
       run_parts(source, limits.in_parts(source));
     if (report_.parts > 1) note_parts(source);
@@ -270,7 +273,7 @@ class FrameRun {
 
   /// Ends the frame before it is computed where what is known then counts as an error.
   void refuse_by_notes(const FrameSource& source) {
-    report_.notes = tally_.notes_on(source);
+    report_.notes = tally_.notes_on(source, settings_.input);
     refuse_warnings(report_.notes, settings_, report_.input);
   }
 
@@ -282,8 +285,7 @@ class FrameRun {
     const Window computed = surroundings.around(written_of(source));
     report_.read_ms += reading.ms();
     if (!limits.allow(computed)) return run_tiles(source, limits, surroundings);
-    source.data = computed;
-    run_whole(source);
+    run_whole(source, computed);
   }
 
   /// Whether the frame's own pass looks at what others see: not where all that it takes of them is in its estimate.
@@ -299,15 +301,15 @@ class FrameRun {
   void take_others(const FrameSource& source) {
     if (!run_.shot) return;
     const Stopwatch reading;
-    PreparedOthers took;
+    PreparationCost cost;
     // Where the device has no memory for a part of an estimate, smaller ones are computed as of the frame itself.
     const auto begin = [this](const Window& computed) {
       go_on();
       tally_.begin(computed);
     };
-    if (run_.takes_means) estimates_ = run_.shot->estimates_of({gpu_, room_, begin}, frame_, took);
-    if (needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, took);
-    tally_.add_others(took);
+    if (run_.takes_means) estimates_ = run_.shot->estimates_of({gpu_, room_, begin}, frame_, cost);
+    if (needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, cost);
+    tally_.add_others(cost);
     if (run_.takes_means) take_estimates();
     if (!others_.frames.empty() || !others_.missing.empty()) report_.frames_around = others_.frames;
     report_.read_ms += reading.ms();
@@ -323,19 +325,19 @@ class FrameRun {
     read_ = std::move(estimates_.read);
   }
 
-  /// Reads and computes source.data. reuses: what is as in the frame before is not computed again.
-  FrameOutputs compute(FrameSource& source, bool reuses) {
-    tally_.begin(source.data);
+  /// Reads and computes a window. reuses: what is as in the frame before is not computed again.
+  FrameOutputs compute(FrameSource& source, const Window& window, bool reuses) {
+    tally_.begin(window);
     watch_(++part_, parts_, 0);
     const Stopwatch reading;
-    FrameInputs inputs = load_frame(gpu_, source, settings_, frame_, &read_);
+    FrameInputs inputs = load_frame(gpu_, source, window, settings_, frame_, &read_);
     inputs.others = others_.seen;
     inputs.estimates = in_slots_;
-    inputs.estimates.corner = {source.data.x - source.file_data.x, source.data.y - source.file_data.y};
+    inputs.estimates.corner = {window.x - source.reading.data.x, window.y - source.reading.data.y};
     reuses = reuses && last_.is_worth_comparing(inputs);
     const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
     if (!reuses) last_.forget();
-    tally_.add_inputs(source, inputs, written_of(source));
+    tally_.add_inputs(source, window, inputs, written_of(source));
     report_.read_ms += reading.ms();
     refuse_by_notes(source);
 
@@ -349,7 +351,7 @@ class FrameRun {
       if (outputs.count) in_slots_.is_further_part = true;
     }
     if (reuses) last_.keep(outputs);
-    tally_.add_outputs(outputs, source.data, is_same);
+    tally_.add_outputs(outputs, window, is_same);
     go_on();
     return outputs;
   }
@@ -365,22 +367,22 @@ class FrameRun {
             text_of(estimates_)};
   }
 
-  void run_whole(FrameSource& source) {
+  void run_whole(FrameSource& source, const Window& computed) {
     const EstimatorSettings& estimator = settings_.estimator;
     const bool reuses =
         run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.takes_means;
-    const FrameOutputs outputs = compute(source, reuses);
+    const FrameOutputs outputs = compute(source, computed, reuses);
     finish_tally(source);
     const Stopwatch writing;
     std::vector<std::vector<float>> regions;
-    auto planes = result_planes(outputs, source.data, settings_.output);
+    auto planes = result_planes(outputs, computed, settings_.output);
     for (auto& plane : planes)
-      if (source.region) plane = regions.emplace_back(cropped(plane, source.data, *source.region));
+      if (source.region) plane = regions.emplace_back(cropped(plane, computed, *source.region));
     const Provenance by = provenance();
     make_folders(outputs_of(settings_.output), settings_.output);
     FrameWriter writer(source, settings_, by);
     writer.write(planes);
-    write_pictures(source, outputs, run_.transform, settings_.output, by);
+    write_pictures(source, computed, outputs, run_.transform, settings_.output, by);
     writer.finish(by.notes);
     report_.write_ms += writing.ms();
   }
@@ -427,10 +429,10 @@ class FrameRun {
     if (settings_.output.preview.empty()) return;
     constexpr std::uint64_t kBytes = 3 * (sizeof(float) + 1);  // per pixel: display values, and the bytes of a PNG
     const std::uint64_t side_by_side = settings_.output.preview_style == "split" ? 4 : 1;  // each, and both
-    const std::uint64_t bytes = picture_of(source, source.display).pixels() * kBytes * side_by_side;
+    const std::uint64_t bytes = picture_of(source.reading, source.reading.display).pixels() * kBytes * side_by_side;
     if (bytes > room_.bytes)
       limits.refuse(fmt::format("{}: a preview shows the display window, {}: leave out --preview", report_.input,
-                                to_string(source.display)),
+                                to_string(source.reading.display)),
                     bytes);
   }
 
@@ -449,11 +451,11 @@ class FrameRun {
                        row.front().height};
     std::vector<std::vector<float>> planes;
     for (const auto& tile : row) {
-      source.data = surroundings.around(tile);
-      const FrameOutputs outputs = compute(source, false);
-      const auto results = result_planes(outputs, source.data, settings_.output);
+      const Window computed = surroundings.around(tile);
+      const FrameOutputs outputs = compute(source, computed, false);
+      const auto results = result_planes(outputs, computed, settings_.output);
       planes.resize(results.size());
-      for (std::size_t i = 0; i < results.size(); i++) put_in(results[i], source.data, tile, whole, planes[i]);
+      for (std::size_t i = 0; i < results.size(); i++) put_in(results[i], computed, tile, whole, planes[i]);
       report_.parts++;
     }
     return planes;

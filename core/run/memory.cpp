@@ -48,8 +48,8 @@ FrameInputs rehearsed_inputs(gpu::Recorder& rehearsal, const FrameMemory& memory
 
 /// What copying the beauty's file into the composite takes: rows of its channels, and two codecs.
 std::uint64_t copied_bytes(const FrameSource& source, const OutputSettings& settings) {
-  if (source[RawPlane::beauty].empty() || settings.composite_layers != "all") return 0;
-  const ExrPart& part = source.part_of(source[RawPlane::beauty][0]);
+  if (source.channels[RawPlane::beauty].empty() || settings.composite_layers != "all") return 0;
+  const ExrPart& part = source.part_of(source.channels[RawPlane::beauty][0]);
   const std::uint64_t row = sizeof(float) * part.channels.size() * std::uint64_t(part.data.width);
   return kRowsOfOriginal * row + 2 * exr_codec_bytes(kRowsOfOutput * row);
 }
@@ -80,8 +80,8 @@ std::uint64_t FrameMemory::codec_bytes(std::uint64_t room) const {
 }
 
 FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
-  const bool appends_ao = !source[RawPlane::beauty].empty() && !settings.output.append_ao.empty();
-  std::size_t written = source[RawPlane::beauty].size() + (appends_ao ? 1 : 0);
+  const bool appends_ao = !source.channels[RawPlane::beauty].empty() && !settings.output.append_ao.empty();
+  std::size_t written = source.channels[RawPlane::beauty].size() + (appends_ao ? 1 : 0);
   for (const auto& aov : aovs_of(settings.output))
     written += channels_of(aov, planes_of(aov, settings.estimator)).size();
   // planes as shown, once more interleaved; two pictures, and both beside each other
@@ -90,9 +90,9 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   const std::size_t of_view = settings.output.debug.empty() ? 0 : 6;
   const std::size_t pictures = std::max(of_view, settings.output.preview.empty() ? 0 : of_preview);
   FrameMemory memory;
-  memory.reading = source;
-  memory.file_data = source.file_data;
-  for (const auto& row : kRawPlanes) memory.channels[row.plane] = source[row.plane].size();
+  memory.reading = source.reading;
+  memory.file_data = source.reading.data;
+  for (const auto& row : kRawPlanes) memory.channels[row.plane] = source.channels[row.plane].size();
   memory.estimator = settings.estimator;
   memory.estimator.radius = settings.estimator.radius.value_or(1);
   memory.wanted = settings.output;
@@ -101,7 +101,7 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   memory.written = sizeof(float) * written;
   // What is written may be there once more: cropped to a region, or as half.
   memory.beside = memory.written + sizeof(float) * pictures;
-  memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.file_data.width)};
+  memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.reading.data.width)};
   memory.fixed_bytes =
       exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output) + composite_bytes(source);
   for (const auto& file : source.files) {
@@ -113,8 +113,8 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
 
 std::uint64_t raw_bytes_of(const FrameSource& source) {
   std::uint64_t channels = 0;
-  for (const auto& plane : source.planes.entries) channels += plane.size();
-  return sizeof(float) * channels * source.file_data.pixels();
+  for (const auto& plane : source.channels.planes.entries) channels += plane.size();
+  return sizeof(float) * channels * source.reading.data.pixels();
 }
 
 // What a run may take.
@@ -215,14 +215,14 @@ std::uint64_t bytes_of_mean(const FramePlan& plan, const FrameSource& frame, con
   const std::size_t taken = std::min(plan.shot().size(), std::size_t(plan.turns())) * (2 + values / 2);
   // Suspects are a word for four pixels.
   const std::size_t own = 2 + values, sums = 1 + 2 * values, suspects = 1;
-  return sizeof(float) * (frame.file_data.pixels() * (taken + own + sums + suspects) + kMovedCells);
+  return sizeof(float) * (frame.reading.data.pixels() * (taken + own + sums + suspects) + kMovedCells);
 }
 
 /// What it takes to read the motion vectors of a frame, and to mark what moves: up to two pairs of planes.
 std::uint64_t bytes_of_motion(const FrameSource& frame, const InputSettings& settings) {
   if (settings.motion.empty() || !takes_frames(settings)) return 0;
   const std::size_t planes = settings.motion_channels.find(',') == std::string::npos ? 4 : 2;
-  return frame.file_data.pixels() * (planes * sizeof(float) + sizeof(std::uint8_t));
+  return frame.reading.data.pixels() * (planes * sizeof(float) + sizeof(std::uint8_t));
 }
 
 /// What one frame at a time takes with all around it: as a whole, or at least, in the smallest of tiles.
@@ -230,14 +230,14 @@ std::uint64_t bytes_of_one(const FramePlan& plan, const FrameSource& frame, cons
                            std::span<const int> frames, bool is_whole) {
   const FrameMemory memory = memory_with_others(plan, frame, settings);
   return bytes_of_shot(plan, frame, settings.input, 1) + bytes_of_estimates(plan, frame, settings, frames, 1) +
-         (is_whole ? memory.of(frame.file_data).host : memory.fixed_on_device + memory.fixed_bytes);
+         (is_whole ? memory.of(frame.reading.data).host : memory.fixed_on_device + memory.fixed_bytes);
 }
 
 /// Fails as require_buffers_for_others() does, with the estimates that frames take of each other.
 void require_buffers_for_estimates(std::uint64_t most_bytes, const FrameSource& frame, const Settings& settings) {
   if (settings.input.accumulate == 0) return;
   const std::size_t values = values_of(settings), planes = std::max(values, 2 + values / 2);
-  const std::uint64_t bytes = sizeof(float) * planes * frame.file_data.pixels();
+  const std::uint64_t bytes = sizeof(float) * planes * frame.reading.data.pixels();
   if (bytes <= most_bytes) return;
   fail(ErrorKind::device,
        "{}: --accumulate takes the estimates of frames whole, in a buffer of {} MiB, where the device has {} MiB at "
@@ -251,7 +251,7 @@ void require_buffers_for_estimates(std::uint64_t most_bytes, const FrameSource& 
 std::size_t most_others(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings) {
   const std::size_t around =
       around_of(settings) == 0 ? 0 : std::min(plan.shot().size(), 2 * std::size_t(around_of(settings)));
-  return around + (settings.other_views ? views_of(frame.files[frame[RawPlane::depth][0].file]).size() : 0);
+  return around + (settings.other_views ? views_of(frame.files[frame.channels[RawPlane::depth][0].file]).size() : 0);
 }
 
 FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, const Settings& settings) {
@@ -264,31 +264,33 @@ FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, 
   const int count = around_of(settings.input);
   const std::size_t judges = count == 0 ? 0 : std::min(plan.shot().size(), std::size_t(most_judges(count)));
   const std::size_t buffers = others == 0 ? 0 : kPlanesOfSeen * std::max(others, judges + 1);
-  const std::size_t prepared = frame[RawPlane::depth].size() + frame[RawPlane::normal].size() + kPlanesPrepared;
-  memory.fixed_on_device += sizeof(float) * frame.file_data.pixels() * (buffers + prepared);
+  const std::size_t prepared =
+      frame.channels[RawPlane::depth].size() + frame.channels[RawPlane::normal].size() + kPlanesPrepared;
+  memory.fixed_on_device += sizeof(float) * frame.reading.data.pixels() * (buffers + prepared);
   return memory;
 }
 
 std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes) {
   if (!takes_frames(settings)) return 0;
-  const std::uint64_t around = 2 * std::uint64_t(with_judges(around_of(settings))) + 1;
+  const std::uint64_t around = 2 * std::uint64_t(farthest_seen(around_of(settings))) + 1;
   // All frames of a mean look at others, and near the ends of the shot they all lie on one side. Frames that are
   // computed at once may lie far from each other.
   const std::uint64_t means = 2 * std::uint64_t(settings.accumulate);
   const std::uint64_t window = std::uint64_t(lanes) * (around + means) + means;
-  return kPlanesOfSeen * sizeof(float) * frame.file_data.pixels() * std::min<std::uint64_t>(plan.shot().size(), window);
+  return kPlanesOfSeen * sizeof(float) * frame.reading.data.pixels() *
+         std::min<std::uint64_t>(plan.shot().size(), window);
 }
 
 std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings,
                                  std::span<const int> frames, int lanes) {
   if (settings.input.accumulate == 0) return 0;
   // What was read of one is kept with its estimate until it is computed itself, as at first none of them is.
-  return (sizeof(float) * frame.file_data.pixels() * (2 + values_of(settings)) + raw_bytes_of(frame)) *
+  return (sizeof(float) * frame.reading.data.pixels() * (2 + values_of(settings)) + raw_bytes_of(frame)) *
          most_estimates(plan, frames, std::size_t(lanes));
 }
 
-RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                      const Settings& settings, std::span<const int> frames, int lanes) {
+RunMemory without_shared_frames(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+                                const Settings& settings, std::span<const int> frames, int lanes) {
   RunMemory left = memory;
   const std::uint64_t bytes = std::min(memory.host_bytes, bytes_of_shot(plan, frame, settings.input, lanes) +
                                                               bytes_of_estimates(plan, frame, settings, frames, lanes));
@@ -319,7 +321,9 @@ void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& fra
   require_buffers_for_estimates(most_bytes, frame, all);
   const InputSettings& settings = all.input;
   if (around_of(settings) == 0 && !settings.other_views) return;
-  const auto bytes_of = [&](RawPlane plane) { return sizeof(float) * frame[plane].size() * frame.file_data.pixels(); };
+  const auto bytes_of = [&](RawPlane plane) {
+    return sizeof(float) * frame.channels[plane].size() * frame.reading.data.pixels();
+  };
   const std::uint64_t of_depth = bytes_of(RawPlane::depth), of_normals = bytes_of(RawPlane::normal);
   if (std::max(of_depth, of_normals) <= most_bytes) return;
   const char* const option = settings.other_views ? "--set other-views" : "--around";

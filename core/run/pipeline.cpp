@@ -67,7 +67,7 @@ class Pipeline {
     changed_.notify_all();
   }
 
-  /// What is tried for one frame, and what became of it.
+  /// A try at one frame, with what was learned from earlier ones.
   struct Attempt {
     std::size_t place;  // of the frame, in the list
     Room room;

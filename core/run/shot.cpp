@@ -27,7 +27,7 @@ constexpr int kLeastJudges = 2;
 int judges_to_each_side(int count) { return std::max(count, kLeastJudges); }
 
 bool has_deep_depth(const FrameSource& source) {
-  const ChannelRef& depth = source[RawPlane::depth][0];
+  const ChannelRef& depth = source.channels[RawPlane::depth][0];
   return source.part_of(depth).deep.has_value();
 }
 
@@ -48,17 +48,17 @@ InputSettings of_first_surface(InputSettings input, const FrameSource* settled) 
 
 /// The same of a frame that was found: samples hold more than the first surface.
 void leave_out_hidden(FrameSource& source) {
-  source[RawPlane::behind].clear();
-  source.behind.clear();
-  if (!has_deep_depth(source)) source.deep.reset();
+  source.channels[RawPlane::behind].clear();
+  source.reading.behind.clear();
+  if (!has_deep_depth(source)) source.channels.deep.reset();
 }
 
 /// The views of a file beside the one that is looked at.
 std::vector<std::string> other_views_of(const FrameSource& source) {
-  std::vector<std::string> views = views_of(source.files[source[RawPlane::depth][0].file]);
+  std::vector<std::string> views = views_of(source.files[source.channels[RawPlane::depth][0].file]);
   if (views.size() < 2)
     fail(ErrorKind::input, "{}: it has no other view for --set other-views: leave that out", source.depth_path());
-  std::erase_if(views, [&](const std::string& view) { return same_name(view, source.view); });
+  std::erase_if(views, [&](const std::string& view) { return same_name(view, source.channels.view); });
   return views;
 }
 
@@ -98,7 +98,7 @@ OtherView filled(gpu::Recorder& gpu, const SeenFrame& seen, const Movement& movi
 /// What moves as the witnesses tell, or cannot stand for its surface.
 std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen,
                                   const std::vector<std::shared_ptr<const SeenFrame>>& witnesses,
-                                  PreparedOthers& took) {
+                                  PreparationCost& cost) {
   FrameInputs inputs;
   for (const auto& witness : witnesses)
     inputs.others.push_back(filled(gpu, *witness, {}, seen.camera, inputs.others.size()));
@@ -109,7 +109,7 @@ std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen,
   surfels(gpu, view, by, moving);
   gpu.download(moving);
   gpu.run();
-  took.passes.insert(took.passes.end(), gpu.passes().begin(), gpu.passes().end());
+  cost.passes.insert(cost.passes.end(), gpu.passes().begin(), gpu.passes().end());
   const auto values = moving.as<const std::uint32_t>();
   return {values.begin(), values.end()};
 }
@@ -133,7 +133,7 @@ bool is_same_place(const Camera& a, const Camera& b) {
 }  // namespace
 
 void require_place(const FrameSource& source, int frame, const char* option) {
-  if (!source.camera.view_from_world)
+  if (!source.reading.camera.view_from_world)
     fail(
         ErrorKind::input,
         "{}: {} needs to know where the camera of frame {} stands, and it has no world_to_camera: give a --camera file "
@@ -175,7 +175,7 @@ void SharedFrames::done(int frame) {
   const std::vector<int>& shot = plan_.shot();
   const auto place_of = [&](int number) { return std::ranges::lower_bound(shot, number) - shot.begin(); };
   const InputSettings input = plan_.at(frame).input;
-  const std::int64_t reach = std::int64_t(with_judges(around_of(input))) + 2 * std::int64_t(input.accumulate);
+  const std::int64_t reach = std::int64_t(farthest_seen(around_of(input))) + 2 * std::int64_t(input.accumulate);
   const auto is_seen = [&](int other) {
     return std::ranges::any_of(takers, [&](int taker) { return std::abs(place_of(taker) - place_of(other)) <= reach; });
   };
@@ -189,46 +189,41 @@ void SharedFrames::done(int frame) {
 }
 
 SeenFrame SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, int frame, const char* option,
-                                PreparedOthers& took) const {
+                                PreparationCost& cost) const {
   Settings settings;
   settings.input = input;
   FrameSource source = find_frame(input, false, frame);
   leave_out_hidden(source);
   require_place(source, frame, option);
   if (settled_) settle_like(source, *settled_);
-  const FrameInputs inputs = load_frame(gpu, source, settings, frame);
+  const FrameInputs inputs = load_frame(gpu, source, source.reading.data, settings, frame);
   upload(gpu, inputs);
   const GBuffer gbuffer = reconstruct(gpu, alcove::prepare(gpu, inputs, "other "));
   gpu.download(*gbuffer.depth);
   gpu.download(*gbuffer.normal);
   gpu.run();
-  took.rows_read += source.rows_read;
-  took.passes.insert(took.passes.end(), gpu.passes().begin(), gpu.passes().end());
+  cost.rows_read += source.rows_read;
+  cost.passes.insert(cost.passes.end(), gpu.passes().begin(), gpu.passes().end());
   const auto depth = gbuffer.depth->as<const float>();
   const auto normal = gbuffer.normal->as<const std::uint32_t>();
-  SeenFrame seen{source.camera,
-                 source.data,
-                 source.display,
-                 gbuffer.view,
-                 gbuffer.depth_precision,
-                 {depth.begin(), depth.end()},
-                 {normal.begin(), normal.end()}};
+  SeenFrame seen{source.reading.camera,   source.reading.data,          source.reading.display,        gbuffer.view,
+                 gbuffer.depth_precision, {depth.begin(), depth.end()}, {normal.begin(), normal.end()}};
   seen.hash = hash_of(seen.normal, hash_of(seen.depth));
   return seen;
 }
 
 std::vector<SharedFrames::Seen> SharedFrames::seen(gpu::Recorder& gpu, const std::vector<int>& frames,
-                                                   PreparedOthers& took) {
+                                                   PreparationCost& cost) {
   return seen_.of(frames, [&](int frame) {
     const InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
-    return prepare(gpu, input, frame, shot_option(input), took);
+    return prepare(gpu, input, frame, shot_option(input), cost);
   });
 }
 
-Movement SharedFrames::movement_of(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
-  const Seen here = seen(gpu, {frame}, took)[0];
-  const auto vectors = moving_by_vectors(gpu, frame, took, 1);
-  std::vector<std::uint32_t> moving = judged(gpu, *here, seen(gpu, judges_of(plan_, frame), took), took);
+Movement SharedFrames::movement_of(gpu::Recorder& gpu, int frame, PreparationCost& cost) {
+  const Seen here = seen(gpu, {frame}, cost)[0];
+  const auto vectors = moving_by_vectors(gpu, frame, cost, 1);
+  std::vector<std::uint32_t> moving = judged(gpu, *here, seen(gpu, judges_of(plan_, frame), cost), cost);
   // Vectors tell of one step: what another frame sees through has moved later or before. Who else has seen it does not
   // matter then.
   for (std::size_t i = 0; vectors && i < moving.size(); i++)
@@ -237,13 +232,13 @@ Movement SharedFrames::movement_of(gpu::Recorder& gpu, int frame, PreparedOthers
 }
 
 std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Recorder& gpu, int frame,
-                                                                         PreparedOthers& took, int around) {
+                                                                         PreparationCost& cost, int around) {
   const InputSettings input = plan_.at(frame).input;
   if (input.motion.empty()) return std::nullopt;
-  const Seen here = seen(gpu, {frame}, took)[0];
+  const Seen here = seen(gpu, {frame}, cost)[0];
   MotionFrame motion{here->depth, here->view, {}, {}};
   for (const int other : plan_.around(frame, 1).there) {
-    const Seen beside = seen(gpu, {other}, took)[0];
+    const Seen beside = seen(gpu, {other}, cost)[0];
     std::optional<FromThere>& there = other < frame ? motion.previous : motion.next;
     there.emplace(
         FromThere{view_from_view(beside->camera, here->camera), view_of(beside->camera, here->data, here->display)});
@@ -264,21 +259,22 @@ std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Re
        planes.path, frame);
 }
 
-std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame,
-                                                              Others& others, PreparedOthers& took) {
+std::vector<SharedFrames::SeenWithMovement> SharedFrames::frames_around(gpu::Recorder& gpu, const FrameSource& target,
+                                                                        int frame, Others& others,
+                                                                        PreparationCost& cost) {
   const int count = around_of(plan_.at(frame).input);
   const FramesAround around = plan_.around(frame, count);
   others.frames = around.there;
   others.missing = around.missing;
   require_place(target, frame, "--around");
-  seen(gpu, seen_around(plan_, frame), took);
-  const std::vector<Seen> frames = seen(gpu, around.there, took);
-  const auto moving = moving_.of(around.there, [&](int other) { return movement_of(gpu, other, took); });
-  std::vector<Judged> found;
+  seen(gpu, seen_around(plan_, frame), cost);
+  const std::vector<Seen> frames = seen(gpu, around.there, cost);
+  const auto moving = moving_.of(around.there, [&](int other) { return movement_of(gpu, other, cost); });
+  std::vector<SeenWithMovement> found;
   for (std::size_t i = 0; i < frames.size(); i++) {
     found.push_back({frames[i], moving[i]});
     const auto projection = [](const Camera& camera) { return camera.orthographic ? "orthographic" : "perspective"; };
-    const char *here = projection(target.camera), *there = projection(found.back().seen->camera);
+    const char *here = projection(target.reading.camera), *there = projection(found.back().seen->camera);
     if (std::string_view(here) != there)
       fail(
           ErrorKind::input,
@@ -288,33 +284,34 @@ std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu
   return found;
 }
 
-std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target, int frame,
-                                                            Others& others, PreparedOthers& took) const {
+std::vector<SharedFrames::SeenWithMovement> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target,
+                                                                      int frame, Others& others,
+                                                                      PreparationCost& cost) const {
   InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
   others.views = other_views_of(target);
   require_place(target, frame, "--set other-views");
-  std::vector<Judged> found;
+  std::vector<SeenWithMovement> found;
   for (const auto& view : others.views) {
     input.view = view;
-    const auto other = std::make_shared<const SeenFrame>(prepare(gpu, input, frame, "--set other-views", took));
-    if (is_same_place(other->camera, target.camera))
+    const auto other = std::make_shared<const SeenFrame>(prepare(gpu, input, frame, "--set other-views", cost));
+    if (is_same_place(other->camera, target.reading.camera))
       fail(ErrorKind::input,
            "{}: its views have one camera, and --set other-views needs that of each: give a --camera file with "
            "\"views\"",
            target.depth_path());
-    found.push_back({other, std::make_shared<const Movement>(movement(judged(gpu, *other, {}, took)))});
+    found.push_back({other, std::make_shared<const Movement>(movement(judged(gpu, *other, {}, cost)))});
   }
   return found;
 }
 
-Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took) {
+Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparationCost& cost) {
   const InputSettings input = plan_.at(frame).input;
   Others others;
-  std::vector<Judged> found;
-  if (around_of(input) > 0) found = frames_around(gpu, target, frame, others, took);
-  if (input.other_views) std::ranges::move(other_views(gpu, target, frame, others, took), std::back_inserter(found));
+  std::vector<SeenWithMovement> found;
+  if (around_of(input) > 0) found = frames_around(gpu, target, frame, others, cost);
+  if (input.other_views) std::ranges::move(other_views(gpu, target, frame, others, cost), std::back_inserter(found));
   for (const auto& [seen, moving] : found)
-    others.seen.push_back(filled(gpu, *seen, *moving, target.camera, others.seen.size()));
+    others.seen.push_back(filled(gpu, *seen, *moving, target.reading.camera, others.seen.size()));
   return others;
 }
 
@@ -341,7 +338,7 @@ std::vector<int> frames_seen_for(const FramePlan& plan, int frame) {
   return {seen.begin(), seen.end()};
 }
 
-int with_judges(int count) {
+int farthest_seen(int count) {
   const int judges = judges_to_each_side(count);
   // At the ends of the shot they all lie on one side.
   return count == kWholeShot ? count : std::max(count + judges, 2 * judges);

@@ -61,9 +61,9 @@ int line_reach(const EstimatorSettings& settings) {
 /// How far from a surface it is told which one closes its solid, and whether it is an occluder, in px; 0 where nothing
 /// is to be told.
 int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
-  const bool tells =
-      std::ranges::any_of(source.behind, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces; });
-  const int occluders = source[RawPlane::occluders].empty() ? 0 : kOccludersReach;
+  const bool tells = std::ranges::any_of(source.reading.behind,
+                                         [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces; });
+  const int occluders = source.channels[RawPlane::occluders].empty() ? 0 : kOccludersReach;
   return occluders + (tells && settings.hidden > 0 ? kEndsReach + kEndsBeyond : 0);
 }
 
@@ -84,29 +84,29 @@ double sphere_reach(double radius, double nearest, double tangent, double pixels
 }  // namespace
 
 Window region_of(const FrameSource& source, const Region& roi) {
-  const Window& data = source.file_data;
-  const Window picture = picture_of(source, source.display);
-  const Window region =
-      enlarged({picture.x + roi.x, picture.y + roi.y, roi.width, roi.height}, source.display, source.supersampling);
+  const Window& data = source.reading.data;
+  const Window picture = picture_of(source.reading, source.reading.display);
+  const Window region = enlarged({picture.x + roi.x, picture.y + roi.y, roi.width, roi.height}, source.reading.display,
+                                 source.reading.supersampling);
   const bool inside = region.x >= data.x && region.y >= data.y &&
                       std::int64_t(region.x) + region.width <= std::int64_t(data.x) + data.width &&
                       std::int64_t(region.y) + region.height <= std::int64_t(data.y) + data.height;
   if (!inside)
     fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it", source.depth_path(),
-         to_string(picture_of(source, region)), to_string(picture_of(source, data)));
+         to_string(picture_of(source.reading, region)), to_string(picture_of(source.reading, data)));
   return region;
 }
 
 Surroundings::Surroundings(const FrameSource& source, const Settings& settings, std::span<const float> depth)
     : source_(source),
       depth_(depth),
-      file_data_(source.file_data),
+      file_data_(source.reading.data),
       columns_((file_data_.width + kBlockWidth - 1) / kBlockWidth),
       blocks_(std::size_t(file_data_.height + kBlockHeight - 1) / kBlockHeight),
-      view_(view_of(source.camera, source.file_data, source.display)),
-      orthographic_(source.camera.orthographic),
+      view_(view_of(source.reading, source.reading.data)),
+      orthographic_(source.reading.camera.orthographic),
       radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
-      filters_(filter_reach(settings) + reduce_reach(settings.output.filter, source.supersampling)),
+      filters_(filter_reach(settings) + reduce_reach(settings.output.filter, source.reading.supersampling)),
       lines_(line_reach(settings.estimator)),
       pairs_(pair_reach(source, settings.estimator)),
       widest_run_(widest_run(settings.estimator)) {}
@@ -121,7 +121,7 @@ std::vector<float> Surroundings::nearest_depths(int block_row) {
   Window window = window_of(block_row, 0);
   window.width = file_data_.width;
   const std::vector<float> depth = cropped(depth_, file_data_, window);
-  const auto planar = planar_depths(depth, depth_map_of(source_), view_of(source_.camera, window, source_.display));
+  const auto planar = planar_depths(depth, depth_map_of(source_.reading), view_of(source_.reading, window));
   std::vector<float> nearest(std::size_t(columns_), kSkyDepth);
   for (std::size_t i = 0; i < planar.size(); i++) {
     float& of_block = nearest[i % std::size_t(window.width) / kBlockWidth];
@@ -267,10 +267,11 @@ void require_numbered_lines(const FrameSource& source, const EstimatorSettings& 
   if (!searches_exactly(settings)) return;
   // Slopes times steps from the display window's corner are of the type int: see lines.glsl.
   const std::int64_t farthest = std::numeric_limits<int>::max() / kSlopeUnit - 1;
-  const std::int64_t left = std::int64_t(source.file_data.x) - source.display.x;
-  const std::int64_t top = std::int64_t(source.file_data.y) - source.display.y;
+  const std::int64_t left = std::int64_t(source.reading.data.x) - source.reading.display.x;
+  const std::int64_t top = std::int64_t(source.reading.data.y) - source.reading.display.y;
   const std::int64_t reach =
-      std::max({-left, -top, left + source.file_data.width, top + source.file_data.height}) / int(settings.resolution);
+      std::max({-left, -top, left + source.reading.data.width, top + source.reading.data.height}) /
+      int(settings.resolution);
   if (reach > farthest)
     fail(ErrorKind::input,
          "{}: its pixels reach {} px from the display window's corner, and an exact search takes at most {}: give "
@@ -290,7 +291,7 @@ WindowLimits WindowLimits::in_parts(const FrameSource& source) const {
   limits.kept = raw_bytes_of(source);
   if (limits.kept < room.bytes) return limits;
   // That is enough to compute all of the frame at once; what its tiles take, only its depth tells.
-  const std::uint64_t enough = memory.of(source.file_data).host + (source.region ? limits.kept : 0);
+  const std::uint64_t enough = memory.of(source.reading.data).host + (source.region ? limits.kept : 0);
   refuse(fmt::format("{}: its pixels take {} MiB as they are read: use a smaller frame", source.depth_path(),
                      mebibytes_above(limits.kept)),
          enough);

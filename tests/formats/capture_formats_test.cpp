@@ -242,8 +242,8 @@ TEST_F(Formats, hostile_headers_are_errors) {
     write_bytes(frame, bytes);
     expect_error(ErrorKind::input, {"wall.0042.exr", word}, [&] {
       FrameSource source = find_frame(settings, false, 0);
-      std::vector<float> depth(source.data.pixels());
-      read_planes(source, {{&source[RawPlane::depth], depth.data()}});
+      std::vector<float> depth(source.reading.data.pixels());
+      read_planes(source, source.reading.data, {{&source.channels[RawPlane::depth], depth.data()}});
     });
   };
   const std::uint32_t most = 0x7fffffff, least = 0x80000000;

@@ -48,7 +48,7 @@ TEST_F(Views, hidden_surfaces_are_proposed_of_the_one_that_is_read) {
       InputSettings with = settings;
       with.behind[0] = settings.input;
       with.behind_channels = {name};
-      EXPECT_EQ(names_of(find_frame(with, false, 0)[RawPlane::behind]), Names{name});
+      EXPECT_EQ(names_of(find_frame(with, false, 0).channels[RawPlane::behind]), Names{name});
     }
   }
   write(std::vector<Part>{{"left", {"Z", "ZBack"}, kWidth, "left"}, {"right", {"Z"}, kWidth, "right"}});

@@ -63,24 +63,24 @@ double half(double z) {
 TEST_F(Doubts, values_of_half_floats_times_a_scale_do_not_end_where_half_floats_end) {
   give();
   write_depth([&](double z) { return 20000 * half(z); }, 1e12f);
-  EXPECT_TRUE(std::isinf(settled().found_sky)) << "surfaces reach beyond 65504";
+  EXPECT_TRUE(std::isinf(settled().reading.found_sky)) << "surfaces reach beyond 65504";
   write_depth(half, 65504);
-  EXPECT_EQ(settled().found_sky, 65504);
+  EXPECT_EQ(settled().reading.found_sky, 65504);
   settings.depth_kind = DepthKind::inverse;
   write_depth(half, 0);
-  EXPECT_GT(depth_map_of(settled()).sky_depth, 1e8) << "1/z of half floats reaches any distance";
+  EXPECT_GT(depth_map_of(settled().reading).sky_depth, 1e8) << "1/z of half floats reaches any distance";
 }
 
 TEST_F(Doubts, a_sky_may_be_blended_with_what_is_before_it_or_filtered_beyond_its_range) {
   give();
   write_depth([](double z) { return -z; }, 1000, [](int i) { return i % 20 == 0 ? float(300 + i % 13) : NAN; });
-  EXPECT_TRUE(settled().depth_range.negative);
+  EXPECT_TRUE(settled().reading.depth_range.negative);
   settings.depth_kind = DepthKind::planar;
   write_depth(itself, 1e6f, [](int i) { return i == 0 ? 7e5f : NAN; });
   EXPECT_THAT(said(), Contains(HasSubstr("--sky 1e+06")));
   set_range(DepthKind::normalized, 0, 100);
   write_depth(hundredths, 1, [](int i) { return i % 10 == 0 ? 1 + 1e-3f * float(i % 7 + 1) : NAN; });
-  EXPECT_FALSE(settled().depth_range.goes_beyond_far);
+  EXPECT_FALSE(settled().reading.depth_range.goes_beyond_far);
   expect(Reply::noted, {"what lies beyond counts as that, the sky"});
 }
 
@@ -157,12 +157,12 @@ TEST_F(Doubts, an_option_says_that_it_is_known) {
     write_depth(hundredths, 1e12f);
     expect(Reply::silent);
     write_depth(root, 1e12f);
-    EXPECT_EQ(settled().depth_kind, DepthKind::planar);
+    EXPECT_EQ(settled().reading.depth_kind, DepthKind::planar);
   }
   set_range(DepthKind::normalized, 0, 100, true);
   write_depth(falling, 0);
   expect(Reply::silent);
-  EXPECT_NEAR(*settled().median_depth, 4.5, 1) << "distances, and not fractions";
+  EXPECT_NEAR(*settled().evidence.median_depth, 4.5, 1) << "distances, and not fractions";
 }
 
 TEST_F(Doubts, options_that_the_kind_of_depth_takes_not_are_refused_and_named_but_those_of_presets_are_left_out) {
@@ -354,7 +354,7 @@ TEST_F(Doubts, normals_that_agree_with_nothing_are_refused_unless_depth_is_half)
   expect(Reply::refused, {"nor in any other space", "--normal-encoding", "--normal none"});
   settings.normal = "none";
   expect(Reply::silent);
-  EXPECT_THAT(settled()[RawPlane::normal], IsEmpty());
+  EXPECT_THAT(settled().channels[RawPlane::normal], IsEmpty());
   settings.normal.clear();
   Sources::give(wall_camera());
   FrameFile file = wall_frame();

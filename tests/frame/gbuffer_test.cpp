@@ -72,7 +72,7 @@ TEST_F(GBuffer, a_layer_of_normals_may_be_chosen_whatever_its_components_are_cal
                                 {"Odd.r", "Odd.g"}}) {
     write(channels + Names{"Z"});
     settings.normal_channels = "Odd";
-    EXPECT_EQ(names_of(find()[RawPlane::normal]), channels);
+    EXPECT_EQ(names_of(find().channels[RawPlane::normal]), channels);
   }
 }
 
@@ -81,7 +81,7 @@ TEST_F(GBuffer, a_file_of_the_depth_alone_may_call_its_one_channel_anything) {
     write(Names{name});
     expect_error({"no depth channel", "--depth-channel"});
     std::swap(settings.depth, settings.input);
-    EXPECT_THAT(names_of(find()[RawPlane::depth]), ElementsAre(name));
+    EXPECT_THAT(names_of(find().channels[RawPlane::depth]), ElementsAre(name));
     std::swap(settings.depth, settings.input);
   }
   write(Names{"distance", "other"});
@@ -105,17 +105,17 @@ TEST_F(GBuffer, a_frame_as_blender_writes_it) {
       all = all + xyz(std::string("ViewLayer.") + layer);
     write(all);
     const FrameSource source = find(true);
-    EXPECT_EQ(names_of(source[RawPlane::depth]), in("Depth", {"Z"}));
-    EXPECT_EQ(names_of(source[RawPlane::normal]), xyz("ViewLayer.Normal"));
-    EXPECT_EQ(names_of(source[RawPlane::beauty]), in("Combined", rgba));
-    EXPECT_EQ(names_of(source[RawPlane::indirect]), in(indirect, rgb));
-    EXPECT_EQ(names_of(source[RawPlane::diffuse_color]), in(colour, rgb));
+    EXPECT_EQ(names_of(source.channels[RawPlane::depth]), in("Depth", {"Z"}));
+    EXPECT_EQ(names_of(source.channels[RawPlane::normal]), xyz("ViewLayer.Normal"));
+    EXPECT_EQ(names_of(source.channels[RawPlane::beauty]), in("Combined", rgba));
+    EXPECT_EQ(names_of(source.channels[RawPlane::indirect]), in(indirect, rgb));
+    EXPECT_EQ(names_of(source.channels[RawPlane::diffuse_color]), in(colour, rgb));
   }
 }
 
 TEST_F(GBuffer, indirect_light_without_the_colour_that_it_needs_is_no_part) {
   write(Names{"Z", "R", "G", "B", "DiffInd.R", "DiffInd.G", "DiffInd.B"});
-  EXPECT_THAT(find(true)[RawPlane::indirect], IsEmpty());
+  EXPECT_THAT(find(true).channels[RawPlane::indirect], IsEmpty());
 }
 
 // What must not be mistaken.
@@ -137,7 +137,7 @@ TEST_F(GBuffer, positions_stand_in_for_a_depth_that_is_missing) {
        {Names{"P.X", "P.Y", "P.Z"}, {"ViewLayer.Position.X", "ViewLayer.Position.Y", "ViewLayer.Position.Z"}}) {
     write(channels);
     EXPECT_EQ(depth(), channels);
-    EXPECT_EQ(find().depth_kind, DepthKind::position);
+    EXPECT_EQ(find().reading.depth_kind, DepthKind::position);
     settings.depth_kind = DepthKind::planar;
     expect_error({"frame.exr", "no depth channel", "--depth-channel", channels[0]});
     settings.depth_kind = DepthKind::automatic;
@@ -316,9 +316,9 @@ TEST_F(GBuffer, depth_normals_and_beauty_are_found_or_it_is_said_which_there_are
         continue;
       }
       const FrameSource source = find(!beauty.empty());
-      EXPECT_EQ(names_of(source[RawPlane::depth]), depth);
-      EXPECT_EQ(names_of(source[RawPlane::normal]), normal);
-      EXPECT_EQ(names_of(source[RawPlane::beauty]), beauty);
+      EXPECT_EQ(names_of(source.channels[RawPlane::depth]), depth);
+      EXPECT_EQ(names_of(source.channels[RawPlane::normal]), normal);
+      EXPECT_EQ(names_of(source.channels[RawPlane::beauty]), beauty);
     }
   }
 }
@@ -335,7 +335,7 @@ TEST_F(GBuffer, a_layer_of_one_view_or_of_all_is_taken_of_the_view_that_is_said)
   }
   settings.view = settings.layer = "";
   settings.depth_channel = "right.depth.Z";
-  EXPECT_EQ(find().view, "right");
+  EXPECT_EQ(find().channels.view, "right");
   EXPECT_THAT(texts_of(find().notes), ElementsAre(HasSubstr("this is right")));
   settings.depth_channel = "";
   write({{"left", {"Z"}, kWidth, "left"}, {"right", {"Z"}, kWidth, "right"}});
@@ -357,17 +357,17 @@ TEST_F(GBuffer, options_win_over_the_camera_file_and_that_over_the_defaults) {
   };
   camera(R"(, "depth": "ray", "normal_space": "view")");
   settings.normal_space = NormalSpace::automatic;
-  EXPECT_EQ(find().depth_kind, DepthKind::ray);
-  EXPECT_EQ(find().normal_space, NormalSpace::view);
+  EXPECT_EQ(find().reading.depth_kind, DepthKind::ray);
+  EXPECT_EQ(find().reading.normal_space, NormalSpace::view);
   settings.depth_kind = DepthKind::inverse;
   settings.normal_space = NormalSpace::world;
-  EXPECT_EQ(find().depth_kind, DepthKind::inverse);
-  EXPECT_EQ(find().normal_space, NormalSpace::world);
+  EXPECT_EQ(find().reading.depth_kind, DepthKind::inverse);
+  EXPECT_EQ(find().reading.normal_space, NormalSpace::world);
   camera("");
   settings.depth_kind = DepthKind::automatic;
   settings.normal_space = NormalSpace::automatic;
-  EXPECT_EQ(find().depth_kind, DepthKind::planar);
-  EXPECT_EQ(find().normal_space, NormalSpace::world);
+  EXPECT_EQ(find().reading.depth_kind, DepthKind::planar);
+  EXPECT_EQ(find().reading.normal_space, NormalSpace::world);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ TEST_F(HeaderCameras, lens_shift_pixel_aspect_and_overscan_are_in_the_matrices) 
   header.insert("worldToNDC", matrix(ndc, true));
   header.dataWindow() = Imath::Box2i({0, 0}, {159, 119});
   write(settings.input);
-  const Camera camera = find_frame(settings, false, 0).camera;
+  const Camera camera = find_frame(settings, false, 0).reading.camera;
   EXPECT_NEAR(camera.fx, shot().camera.fx, 1e-3);
   EXPECT_NEAR(camera.fy, 2 * shot().camera.fy, 1e-3);
   EXPECT_NEAR(camera.cx, 0.6 * 160, 1e-3);
@@ -63,7 +63,7 @@ TEST_F(HeaderCameras, an_orthographic_projection_is_known_by_its_matrix) {
   header.insert("worldToCamera", matrix(view, true));
   header.insert("worldToNDC", matrix(ndc, true));
   write(settings.input);
-  const Camera camera = find_frame(settings, false, 0).camera;
+  const Camera camera = find_frame(settings, false, 0).reading.camera;
   EXPECT_TRUE(camera.orthographic);
   EXPECT_NEAR(camera.fx, 20, 1e-4);
   EXPECT_NEAR(camera.cx, 80, 1e-3);
@@ -219,8 +219,8 @@ TEST_F(HeaderCameras, world_to_camera_alone_and_a_field_of_view_are_a_camera) {
       header.insert("worldToCamera", matrix(world_to_camera(looks_along_z ? -1 : 1), row_vectors));
       expect_same("generic");
       const FrameSource source = find_frame(settings, false, 0);
-      EXPECT_EQ(source.camera.left_handed, looks_along_z);
-      EXPECT_EQ(source.camera.placement_from, "worldToCamera");
+      EXPECT_EQ(source.reading.camera.left_handed, looks_along_z);
+      EXPECT_EQ(source.reading.camera.placement_from, "worldToCamera");
     }
   settings.fov.reset();
   settings.focal = 50;
@@ -232,9 +232,9 @@ TEST_F(HeaderCameras, a_field_of_view_replaces_the_headers_and_leaves_the_camera
   add_matrices(header, true);
   settings.fov = 40;
   write(settings.input);
-  const Camera chosen = find_frame(settings, false, 0).camera;
+  const Camera chosen = find_frame(settings, false, 0).reading.camera;
   settings.fov.reset();
-  const Camera own = find_frame(settings, false, 0).camera;
+  const Camera own = find_frame(settings, false, 0).reading.camera;
   EXPECT_NEAR(chosen.fx, 80 / std::tan(20 * std::numbers::pi / 180), 1e-6);
   EXPECT_NE(chosen.fx, own.fx);
   ASSERT_TRUE(chosen.view_from_world.has_value());
@@ -249,7 +249,7 @@ TEST_F(HeaderCameras, transforms_of_redshift_and_vray_place_a_camera_too) {
   for (const auto& [name, sign] : {std::pair{"rs/camera/transform", -1.0}, {"cameraTransform", 1.0}}) {
     header.insert(name, matrix(camera_to_world(sign), true));
     write(settings.input);
-    EXPECT_EQ(find_frame(settings, false, 0).camera.placement_from, name);
+    EXPECT_EQ(find_frame(settings, false, 0).reading.camera.placement_from, name);
     const Difference d = difference(ao_of(read_host_frame(settings, 0), 1), ao_of(rendering().frame, 1));
     EXPECT_LE(d.max, 1e-3) << name;
     header.erase(name);

@@ -92,19 +92,19 @@ TEST_F(NormalFiles, of_the_other_side_of_some_things_leave_the_reading_as_it_is)
       });
       const FrameSource source = settled();
       const std::string what = testing::PrintToString(things) + (in_view ? " in view" : " in the world");
-      EXPECT_EQ(source.normal_space, in_view ? NormalSpace::view : NormalSpace::world)
+      EXPECT_EQ(source.reading.normal_space, in_view ? NormalSpace::view : NormalSpace::world)
           << what << testing::PrintToString(texts_of(source.notes));
-      EXPECT_EQ(to_string(source.flip_normal), "none") << what;
+      EXPECT_EQ(to_string(source.reading.flip_normal), "none") << what;
       EXPECT_THAT(codes_of(source.notes), Not(testing::Contains(NoteCode::normals_disagree))) << what;
     }
 }
 
 TEST_F(NormalFiles, that_are_all_zero_decide_nothing) {
   write([](Vec3, const test::Hit&) { return Vec3{}; });
-  EXPECT_EQ(settled().normal_space, NormalSpace::world) << "the usual one";
-  EXPECT_FALSE(settled().has_evidence) << "so that a sequence is read as a later frame";
+  EXPECT_EQ(settled().reading.normal_space, NormalSpace::world) << "the usual one";
+  EXPECT_FALSE(settled().evidence.tells) << "so that a sequence is read as a later frame";
   leave_camera_out();
-  EXPECT_EQ(settled().normal_space, NormalSpace::view) << "without a matrix";
+  EXPECT_EQ(settled().reading.normal_space, NormalSpace::view) << "without a matrix";
 }
 
 TEST_F(NormalFiles, that_may_be_flipped_or_mirrored_are_turned_round_and_both_causes_are_said) {
@@ -116,7 +116,7 @@ TEST_F(NormalFiles, that_may_be_flipped_or_mirrored_are_turned_round_and_both_ca
   write([](Vec3, const test::Hit& hit) {
     return hit.primitive == kBall ? Vec3{} : Vec3{-hit.normal.x, hit.normal.y, hit.normal.z};
   });
-  EXPECT_EQ(to_string(settled().flip_normal), "none");
+  EXPECT_EQ(to_string(settled().reading.flip_normal), "none");
   EXPECT_THAT(texts_of(settled().notes), testing::Contains(HasSubstr("give --flip-normal x")));
 }
 
@@ -126,7 +126,7 @@ TEST_F(NormalFiles, that_are_all_flipped_are_still_found) {
       const Vec3 w = world(hit.primitive == kBall ? -n : n);  // which is mirrored beside
       return Vec3{flips.x ? -w.x : w.x, flips.y ? -w.y : w.y, flips.z ? -w.z : w.z};
     });
-    EXPECT_EQ(to_string(settled().flip_normal), to_string(flips));
+    EXPECT_EQ(to_string(settled().reading.flip_normal), to_string(flips));
   }
 }
 
@@ -155,11 +155,11 @@ TEST_F(NormalFiles, are_of_the_space_that_fits_however_little_the_camera_is_turn
         const auto what = testing::Message() << degrees << " degrees, halves " << as_halves << ", bumps " << bumps;
         write(bumpy);
         FrameSource source = settled();
-        EXPECT_EQ(source.normal_space, NormalSpace::view) << what;
+        EXPECT_EQ(source.reading.normal_space, NormalSpace::view) << what;
         EXPECT_THAT(codes_of(source.notes), Not(testing::Contains(NoteCode::field_of_view))) << what;
         write([&](Vec3 n, const test::Hit& hit) { return world(bumpy(n, hit)); });
         source = settled();
-        EXPECT_EQ(source.normal_space, NormalSpace::world) << what;
+        EXPECT_EQ(source.reading.normal_space, NormalSpace::world) << what;
         EXPECT_THAT(source.notes, testing::Each(testing::Field(&Note::code, NoteCode::normals_disagree))) << what;
       }
   }
@@ -168,7 +168,7 @@ TEST_F(NormalFiles, are_of_the_space_that_fits_however_little_the_camera_is_turn
 TEST_F(NormalFiles, of_a_camera_that_is_not_turned_are_read_as_usual_and_nothing_is_said) {
   place(turned({1, 0, 0}, 0));
   write([](Vec3 n, const test::Hit&) { return n; });
-  EXPECT_EQ(settled().normal_space, NormalSpace::world);
+  EXPECT_EQ(settled().reading.normal_space, NormalSpace::world);
   EXPECT_THAT(settled().notes, IsEmpty());
 }
 
@@ -189,7 +189,7 @@ TEST_F(NormalFiles, of_the_world_without_a_matrix_are_refused_as_such) {
     SCOPED_TRACE(degrees);
     expect(Reply::refused, {"world space", "--camera", "--normal none"});
     write([](Vec3 n, const test::Hit&) { return n; });
-    EXPECT_EQ(settled().normal_space, NormalSpace::view) << degrees;
+    EXPECT_EQ(settled().reading.normal_space, NormalSpace::view) << degrees;
   }
 }
 
@@ -225,7 +225,7 @@ TEST_F(NormalFiles, that_were_scaled_or_moved_to_0_to_1_are_right_and_are_not_ca
   settings.normal_space = NormalSpace::world;
   for (const bool strict : {false, true}) {
     settings.strict = strict;
-    EXPECT_TRUE(settled().normal_unorm) << "proven by their lengths";
+    EXPECT_TRUE(settled().reading.normal_unorm) << "proven by their lengths";
     EXPECT_THAT(codes_of(noted()), ElementsAre(NoteCode::proven_reading));
     EXPECT_THAT(warnings_of(noted()), IsEmpty());
   }

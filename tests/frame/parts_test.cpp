@@ -16,9 +16,10 @@ TEST_F(GBuffer, planes_of_several_parts_are_read_each_from_its_own) {
   write(std::vector<Part>{{"rgba", {"B", "G", "R"}}, {"depth", {"Z"}}, {"N", {"X", "Y", "Z"}}});
   FrameSource source = find(true);
   std::vector<float> z(kPixels), n(3 * kPixels), rgb(3 * kPixels);
-  read_planes(source, {{&source[RawPlane::depth], z.data()},
-                       {&source[RawPlane::normal], n.data()},
-                       {&source[RawPlane::beauty], rgb.data()}});
+  read_planes(source, source.reading.data,
+              {{&source.channels[RawPlane::depth], z.data()},
+               {&source.channels[RawPlane::normal], n.data()},
+               {&source.channels[RawPlane::beauty], rgb.data()}});
   EXPECT_THAT(z, testing::Each(value_of(1, 0)));
   for (std::size_t i = 0; i < n.size(); i++) {
     EXPECT_EQ(n[i], value_of(2, i / kPixels)) << i;
@@ -36,11 +37,11 @@ TEST_F(GBuffer, every_aov_may_have_a_file_of_its_own) {
     write_parts(settings.normal, {{"", {"R", "G", "B"}}});
     write_parts(settings.beauty, {{"", {"R", "G", "B", "A"}}});
     FrameSource source = find(true);
-    EXPECT_THAT(names_of(source[RawPlane::depth]), ElementsAre(channels[0]));
-    EXPECT_THAT(names_of(source[RawPlane::normal]), ElementsAre("R", "G", "B"));
-    EXPECT_THAT(names_of(source[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
+    EXPECT_THAT(names_of(source.channels[RawPlane::depth]), ElementsAre(channels[0]));
+    EXPECT_THAT(names_of(source.channels[RawPlane::normal]), ElementsAre("R", "G", "B"));
+    EXPECT_THAT(names_of(source.channels[RawPlane::beauty]), ElementsAre("R", "G", "B", "A"));
     std::vector<float> n(3 * kPixels);
-    read_planes(source, {{&source[RawPlane::normal], n.data()}});
+    read_planes(source, source.reading.data, {{&source.channels[RawPlane::normal], n.data()}});
     EXPECT_EQ(n, (std::vector<float>{1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3}));
   }
   write_parts(settings.normal, {{"", {"X", "Y", "Z"}}});
@@ -65,7 +66,7 @@ TEST_F(GBuffer, normals_and_a_beauty_need_not_cover_the_same_pixels) {
     FrameSource source = find();
     EXPECT_THAT(source.notes, IsEmpty()) << "only surfaces without normals are worth a note";
     std::vector<float> n(3 * kPixels);
-    read_planes(source, {{&source[RawPlane::normal], n.data()}});
+    read_planes(source, source.reading.data, {{&source.channels[RawPlane::normal], n.data()}});
     for (std::size_t i = 0; i < n.size(); i++)
       EXPECT_TRUE(int(i % kWidth) < width ? n[i] == value_of(1, i / kPixels) : std::isnan(n[i])) << i;
   }

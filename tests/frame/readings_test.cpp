@@ -94,13 +94,13 @@ TEST_F(Readings, of_every_kind_of_depth_by_every_other_are_noted) {
     write(written);
     say_nothing();
     if (written.kind == DepthKind::planar || written.kind == DepthKind::ray)
-      EXPECT_EQ(settled().depth_kind, written.kind);
+      EXPECT_EQ(settled().reading.depth_kind, written.kind);
     if (written.kind == DepthKind::planar) expect(Reply::silent);
     if (written.kind == DepthKind::ray) expect(Reply::noted, {"--depth-kind"});
     for (const auto& read : all_depths()) {
       say(read);
       if (written.kind == DepthKind::ray && read.kind == DepthKind::planar)
-        EXPECT_EQ(settled().depth_kind, DepthKind::planar) << "it is what is said";
+        EXPECT_EQ(settled().reading.depth_kind, DepthKind::planar) << "it is what is said";
       // that is 1/z too, but for a scale and next to nothing
       if (written.kind == DepthKind::inverse && read.reversed) continue;
       if (&written == &read)
@@ -114,14 +114,14 @@ TEST_F(Readings, of_every_kind_of_depth_by_every_other_are_noted) {
 
 TEST_F(Readings, of_inverse_depth_beyond_1_need_no_option) {
   write({DepthKind::inverse, false, [](double z, double) { return 30 / z; }, 0});
-  EXPECT_EQ(settled().depth_kind, DepthKind::inverse);
+  EXPECT_EQ(settled().reading.depth_kind, DepthKind::inverse);
 }
 
 TEST_F(Readings, of_orthographic_depth_need_no_option_and_doubt_nothing_that_is_right) {
   static const Rendering parallel =
       render(test::scene(), Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120));
   write(kPlanar, as_it_is, false, parallel);
-  EXPECT_EQ(settled().depth_kind, DepthKind::planar);
+  EXPECT_EQ(settled().reading.depth_kind, DepthKind::planar);
   EXPECT_THAT(said(), testing::IsEmpty());
   settings.depth_kind = DepthKind::inverse;
   EXPECT_THAT(said(), testing::Contains(HasSubstr("--depth-kind")));
@@ -146,7 +146,7 @@ TEST_F(Readings, of_depth_that_ends_at_1_need_to_be_said) {
                                                               HasSubstr("--depth-kind normalized"), HasSubstr("--far"),
                                                               HasSubstr("log"), HasSubstr("--depth-kind planar"))));
       settings.depth_kind = DepthKind::planar;
-      EXPECT_EQ(settled().depth_kind, DepthKind::planar) << "what is said is taken";
+      EXPECT_EQ(settled().reading.depth_kind, DepthKind::planar) << "what is said is taken";
       settings.depth_kind = DepthKind::automatic;
     }
 }
@@ -201,10 +201,10 @@ TEST_F(Readings, of_every_encoding_are_found_and_by_every_other_are_noted) {
     say_nothing();
     const FrameSource found = settled();
     const auto vectors = [](NormalEncoding e) { return e == NormalEncoding::unorm ? NormalEncoding::signed_float : e; };
-    EXPECT_EQ(vectors(found.normal_encoding), vectors(written.encoding))
+    EXPECT_EQ(vectors(found.reading.normal_encoding), vectors(written.encoding))
         << int(written.encoding) << written.between_0_and_1;
-    EXPECT_EQ(found.normal_unorm, written.between_0_and_1) << int(written.encoding);
-    EXPECT_EQ(found.normal_space, NormalSpace::view);
+    EXPECT_EQ(found.reading.normal_unorm, written.between_0_and_1) << int(written.encoding);
+    EXPECT_EQ(found.reading.normal_space, NormalSpace::view);
     settings.normal_space = NormalSpace::view;
     for (const NormalEncoding read :
          {NormalEncoding::signed_float, NormalEncoding::unorm, NormalEncoding::octahedral, NormalEncoding::spheremap}) {
@@ -229,8 +229,8 @@ TEST_F(Readings, in_every_space_with_every_flip_are_found_and_by_every_other_are
           },
           in_view);
       say_nothing();
-      EXPECT_EQ(settled().normal_space, in_view ? NormalSpace::view : NormalSpace::world) << flips;
-      EXPECT_EQ(to_string(settled().flip_normal), to_string(written));
+      EXPECT_EQ(settled().reading.normal_space, in_view ? NormalSpace::view : NormalSpace::world) << flips;
+      EXPECT_EQ(to_string(settled().reading.flip_normal), to_string(written));
       for (const bool as_view : {false, true})
         for (const bool is_flipped : {false, true}) {
           settings.normal_space = as_view ? NormalSpace::view : NormalSpace::world;
@@ -279,8 +279,8 @@ TEST_F(Readings, of_a_z_buffer_need_its_planes_and_take_its_direction_from_the_s
     say(device);
     settings.depth_range.reversed = false;
     settings.depth_kind = DepthKind::automatic;
-    EXPECT_EQ(settled().depth_kind, DepthKind::device);
-    EXPECT_EQ(settled().depth_range.reversed, reversed);
+    EXPECT_EQ(settled().reading.depth_kind, DepthKind::device);
+    EXPECT_EQ(settled().reading.depth_range.reversed, reversed);
   }
   device.sky = 0.5f;
   write(device);
@@ -303,7 +303,7 @@ TEST_F(Readings, of_positions_that_are_not_on_their_pixels_are_refused) {
   for (const char* c : {"X", "Y", "Z"}) file.rename(std::string("N.") + c, std::string("P.") + c);
   file.planes.erase("Z");
   file.write(settings.input);
-  EXPECT_EQ(settled().position_space, PositionSpace::world);
+  EXPECT_EQ(settled().reading.position_space, PositionSpace::world);
   settings.position_space = PositionSpace::view;
   expect(Reply::refused, {"frame.exr", "pixels", "--set position-space", "--camera"});
 }
@@ -313,8 +313,8 @@ TEST_F(Readings, of_what_is_beyond_half_floats_are_sky) {
   write({DepthKind::planar, false, kPlanar.value, 65504});
   settings.depth_kind = DepthKind::planar;
   const FrameSource source = settled();
-  EXPECT_TRUE(std::isinf(planar_depth(depth_map_of(source), {65504, 0, 0}, 1)));
-  EXPECT_FALSE(std::isinf(planar_depth(depth_map_of(source), {65472, 0, 0}, 1)));
+  EXPECT_TRUE(std::isinf(planar_depth(depth_map_of(source.reading), {65504, 0, 0}, 1)));
+  EXPECT_FALSE(std::isinf(planar_depth(depth_map_of(source.reading), {65472, 0, 0}, 1)));
   EXPECT_THAT(texts_of(source.suspicious),
               testing::ElementsAre(testing::AllOf(HasSubstr("half float"), HasSubstr("0.0039"))));
 }

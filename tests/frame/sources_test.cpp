@@ -35,7 +35,7 @@ TEST_F(Sources, vray_with_either_kind_of_depth) {
   for (double (*value)(const test::Hit&) : {planar, ray}) {
     depth("VRayZDepth.R", value, 1e30f);
     expect_same("vray");
-    EXPECT_EQ(settled().depth_kind, value == planar ? DepthKind::planar : DepthKind::ray);
+    EXPECT_EQ(settled().reading.depth_kind, value == planar ? DepthKind::planar : DepthKind::ray);
   }
 }
 
@@ -115,7 +115,7 @@ TEST_F(Sources, moge_by_name) {
   settings.source = "moge";
   settings.fov = kFov;
   const FrameSource source = settled();
-  EXPECT_EQ(source.depth_kind, DepthKind::planar);
+  EXPECT_EQ(source.reading.depth_kind, DepthKind::planar);
   EXPECT_LE(difference(ao_of(read_host_frame(settings, 0), 1), ao_of(rendering().frame, 1)).max, 1e-3);
 }
 
@@ -147,8 +147,8 @@ TEST_F(Sources, corona_and_unity_need_the_planes_of_normalized_depth) {
   write(settings.normal);
   settings.input.clear();
   const FrameSource source = settled();
-  EXPECT_EQ(source.rules->name, "unity");
-  EXPECT_TRUE(source.normal_unorm);
+  EXPECT_EQ(source.program.rules->name, "unity");
+  EXPECT_TRUE(source.reading.normal_unorm);
   EXPECT_LE(difference(ao_of(read_host_frame(settings, 0), 1), ao_of(rendering().frame, 1)).max, 1e-3);
 }
 
@@ -189,8 +189,8 @@ TEST_F(Sources, unreal_with_several_cameras_needs_to_be_told_which) {
   settings.depth_channel = pass + "WorldDepth_Near.R";
   write(settings.input);
   const FrameSource source = find_frame(settings, false, 0);
-  EXPECT_EQ(source.rules->name, "unreal");
-  EXPECT_EQ(source[RawPlane::normal].at(0).channel, pass + "WorldNormal_Near.R");
+  EXPECT_EQ(source.program.rules->name, "unreal");
+  EXPECT_EQ(source.channels[RawPlane::normal].at(0).channel, pass + "WorldNormal_Near.R");
 }
 
 TEST_F(Sources, nuke_with_inverse_depth_or_with_distances_that_went_through_it) {
@@ -221,7 +221,7 @@ TEST_F(Sources, nuke_without_flat_surfaces_is_read_as_its_normals_say) {
       if (hit.primitive >= 0) plane[i] = float(inverse ? 1 / wavy(hit) : 0.1 * wavy(hit));
     }
     write(settings.input);
-    EXPECT_EQ(settled().depth_kind, inverse ? DepthKind::inverse : DepthKind::planar);
+    EXPECT_EQ(settled().reading.depth_kind, inverse ? DepthKind::inverse : DepthKind::planar);
   }
   planes.erase("N.X");
   for (float& d : planes["depth.Z"]) d = 0.3f + 0.1f * d;
@@ -268,14 +268,14 @@ TEST_F(Sources, what_went_through_nuke_is_not_nukes) {
   header.insert("nuke/version", Imf::StringAttribute("13.2"));
   settings.fov = kFov;
   write(settings.input);
-  EXPECT_EQ(find_frame(settings, false, 0).rules->name, "nuke");
+  EXPECT_EQ(find_frame(settings, false, 0).program.rules->name, "nuke");
   for (const auto& [attribute, program] : {std::pair{"exr/vrayInfo/camera", "vray"},
                                            {"nuke/exr/rs/camera/aspect", "redshift"},
                                            {"exr/unreal/frame", "unreal"}}) {
     const Imf::Header before = header;
     header.insert(attribute, Imf::StringAttribute("1"));
     write(settings.input);
-    EXPECT_EQ(find_frame(settings, false, 0).rules->name, program);
+    EXPECT_EQ(find_frame(settings, false, 0).program.rules->name, program);
     header = before;
   }
 }

@@ -37,7 +37,7 @@ class Memory : public testing::Test {
     gpu::Recorder gpu(device());
     FrameSource source = open_frame(settings, 0);
     const FrameMemory expected = memory_of(source, settings);
-    FrameInputs inputs = load_frame(gpu, source, settings, 0);
+    FrameInputs inputs = load_frame(gpu, source, source.reading.data, settings, 0);
     if (takes_others(settings.input)) inputs.others = {from_beside(gpu, inputs)};
     const std::size_t of_others = takes_others(settings.input) ? 3 * sizeof(float) * window.pixels() : 0;
     run_chain(gpu, inputs, settings.estimator, settings.output);

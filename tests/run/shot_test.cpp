@@ -160,11 +160,11 @@ TEST_F(Shots, keep_no_more_frames_than_their_windows) {
     SharedFrames shared(plan, nullptr, plan.frames());
     gpu::Recorder gpu(device());
     for (const int frame : plan.frames()) {
-      PreparedOthers took;
+      PreparationCost cost;
       FrameSource target = open_frame(plan.at(frame), frame);
       shared.begin(frame);
-      shared.others_of(gpu, target, frame, took);
-      EXPECT_LE(shared.seen_count(), std::size_t(2 * with_judges(2) + 1)) << order << " " << frame;
+      shared.others_of(gpu, target, frame, cost);
+      EXPECT_LE(shared.seen_count(), std::size_t(2 * farthest_seen(2) + 1)) << order << " " << frame;
       EXPECT_GE(shared.seen_count(), 5u) << order << " " << frame;
       shared.done(frame);
     }
@@ -308,7 +308,7 @@ TEST_F(Shots, take_memory_for_the_frames_around_and_for_motion_vectors) {
     settings.input.around = around;
     const FramePlan plan(settings);
     const FrameSource source = open_frame(plan.at(4), 4);
-    const std::uint64_t of_frame = memory_with_others(plan, source, settings).of(source.file_data).host;
+    const std::uint64_t of_frame = memory_with_others(plan, source, settings).of(source.reading.data).host;
     const std::uint64_t of_shot = bytes_of_shot(plan, source, settings.input, 1);
     // Two frames to each side tell what moves, if no more are taken.
     EXPECT_GE(of_frame, frame_before + (around == 2 ? 0 : 1)) << around;

@@ -88,15 +88,15 @@ class GBuffer : public testing::Test {
   void write(const Names& channels) const { write_parts(settings.input, {{"", channels}}); }
   FrameSource find(bool with_beauty = false) const { return find_frame(settings, with_beauty, 0); }
 
-  Names depth() const { return names_of(find()[RawPlane::depth]); }
-  Names normal() const { return names_of(find()[RawPlane::normal]); }
+  Names depth() const { return names_of(find().channels[RawPlane::depth]); }
+  Names normal() const { return names_of(find().channels[RawPlane::normal]); }
 
   /// The search must fail with ErrorKind::input, in one line that holds these.
   void expect_error(const Names& words, bool with_beauty = false) const {
     test::expect_error(ErrorKind::input, words, [&] {
       const FrameSource source = find(with_beauty);
-      ADD_FAILURE() << "found depth " << testing::PrintToString(names_of(source[RawPlane::depth])) << ", normal "
-                    << testing::PrintToString(names_of(source[RawPlane::normal]));
+      ADD_FAILURE() << "found depth " << testing::PrintToString(names_of(source.channels[RawPlane::depth]))
+                    << ", normal " << testing::PrintToString(names_of(source.channels[RawPlane::normal]));
     });
   }
 

@@ -138,7 +138,7 @@ class Sources : public SettledFile {
     write(settings.input);
     SCOPED_TRACE(program);
     const FrameSource source = settled();
-    EXPECT_EQ(source.rules->name, program);
+    EXPECT_EQ(source.program.rules->name, program);
     const Difference d = difference(ao_of(read_host_frame(settings, 0), scale), ao_of(rendering().frame, 1));
     EXPECT_LE(tolerance > 1e-3 ? d.rmse : d.max, tolerance) << place(d, rendering().frame);
   }
