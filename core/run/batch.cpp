@@ -241,19 +241,15 @@ class Batch {
     report_.on_cpu_by_default =
         device.info().type == gpu::DeviceType::cpu && lower_case(plan_.settings().device.device) == "auto";
     report_.at_once = device.lanes().count();
-    run_pipeline(device.lanes(), run, device.room(), frames,
-                 {[this](const FrameReport& frame) { return ends(frame); },
-                  [this](FrameReport&& frame) { take(std::move(frame)); }, watch_.working});
+    run_pipeline(
+        device.lanes(), run, device.room(), frames, [this](FrameReport&& frame) { take(std::move(frame)); },
+        watch_.working);
     report_.at_once = device.lanes().count();
     if (const int messages = device.lanes().validation_messages())
       fail(ErrorKind::device, "--validate: the validation layer reported {} messages", messages);
   }
 
-  /// Whether no frame is begun after this one. Called by any thread.
-  bool ends(const FrameReport& frame) const {
-    return frame.device_lost || (frame.state == FrameState::failed && !plan_.settings().frames.keep_going);
-  }
-
+  /// Counts a frame, and tells of it.
   void take(FrameReport&& frame) {
     if (frame.device_lost) lost_ = frame.error;
     if (frame.state == FrameState::dropped || frame.device_lost) return;

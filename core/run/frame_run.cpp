@@ -262,7 +262,7 @@ class FrameRun {
     return source;
   }
 
-  /// What was noted of the whole sequence comes before what this frame's own header told.
+  /// Puts the notes on the whole sequence before those of this frame's own header.
   static void take_over_notes(FrameSource& source, const FrameSource& settled) {
     const Notes own = std::exchange(source.notes, settled.notes);
     add_new(source.notes, own);
@@ -288,16 +288,14 @@ class FrameRun {
     run_whole(source, computed);
   }
 
-  /// Whether the frame's own pass looks at what others see: not where all that it takes of them is in its estimate.
+  /// Whether the frame's own pass looks at surfaces of others: not where its estimate holds all that it takes of them.
   bool needs_others() const {
     const auto& wanted = settings_.output;
-    const auto views = debug_views_of(wanted);
-    const bool shows_hidden = std::ranges::find(views, DebugSource::hidden, &DebugView::source) != views.end();
-    return !run_.takes_means || shows_hidden || wants(wanted, &FrameOutputs::hidden) ||
+    return !run_.takes_means || shows(wanted, DebugSource::hidden) || wants(wanted, &FrameOutputs::hidden) ||
            wants(wanted, &FrameOutputs::confidence);
   }
 
-  /// Finds what others see, once for all parts of the frame.
+  /// Finds the surfaces and estimates of others, once for all parts of the frame.
   void take_others(const FrameSource& source) {
     if (!run_.shot) return;
     const Stopwatch reading;
