@@ -23,12 +23,14 @@ struct BenchArguments {
   bool quiet = false, stability = false;
 };
 
-std::vector<RowOf<BenchArguments>> bench_rows() {
+CommandOf<BenchArguments> bench_syntax() {
   using S = BenchArguments;
-  std::vector<RowOf<BenchArguments>> rows;
-  OptionGroup(rows, "", Effect::none)
+  CommandOf<BenchArguments> command{"alcove bench",
+                                    "Measures device time against error for the candidates of a suite.\n\n"
+                                    "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n"};
+  OptionGroup(command.rows, "", Effect::none)
       .text("SUITE", &S::suite, "", "a suite file (TOML); all but --stability needs one");
-  OptionGroup options(rows, "Options", Effect::none);
+  OptionGroup options(command.rows, "Options", Effect::none);
   // A count of 0 stands for "not given", and no default is shown for it.
   const auto count = [&](const char* name, int BenchArguments::*value, const Range& range, const char* sentence) {
     options.number(name, value, "", range, sentence).default_text.clear();
@@ -53,7 +55,7 @@ std::vector<RowOf<BenchArguments>> bench_rows() {
   options.flag("--require-gpu", within(&S::device, &gpu::DeviceOptions::require_gpu),
                "measuring on the CPU is an error");
   options.flag("-q,--quiet", &S::quiet, "no progress and no table");
-  return rows;
+  return command;
 }
 
 /// Fails without a suite, and on options that --stability, which measures something else, would ignore.
@@ -70,13 +72,6 @@ void check_purpose(const BenchArguments& a) {
                                                                    {"--reference-slices", a.reference_slices >= 0}};
   for (const auto& [option, is_given] : others)
     if (is_given) fail(ErrorKind::usage, "{} does not apply with --stability; give only one of them", option);
-}
-
-CommandOf<BenchArguments> bench_syntax() {
-  return {"alcove bench",
-          "Measures device time against error for the candidates of a suite.\n\n"
-          "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n",
-          bench_rows()};
 }
 
 /// Whether the candidate names a radius of its own, as "--radius=0.5".

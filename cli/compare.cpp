@@ -25,16 +25,21 @@ struct CompareArguments {
   bool json = false, quiet = false;
 };
 
-std::vector<RowOf<CompareArguments>> compare_rows() {
+CommandOf<CompareArguments> compare_syntax() {
   using S = CompareSettings;
-  std::vector<RowOf<CompareArguments>> rows;
-  OptionGroup pictures(rows, "", Effect::none, &CompareArguments::settings);
+  CommandOf<CompareArguments> command{
+      "alcove compare",
+      "Measures how far a picture or a sequence is from a reference.\n\n"
+      "Examples:\n"
+      "  alcove compare ao.exr truth.exr --depth frame.exr --max-rmse 0.1\n"
+      "  alcove compare ao.%04d.exr truth.%04d.exr --depth frame.%04d.exr --motion frame.%04d.exr --json\n"};
+  OptionGroup pictures(command.rows, "", Effect::none, &CompareArguments::settings);
   pictures.text("RESULT", &S::result, "", "an EXR or any other picture; a pattern such as ao.%04d.exr for a sequence")
       .is_required = true;
   pictures.text("REFERENCE", &S::reference, "", "what it should be; a pattern too, or one picture for all frames")
       .is_required = true;
-  OptionGroup options(rows, "Options", Effect::none, &CompareArguments::settings);
-  OptionGroup reports(rows, "Options", Effect::none);
+  OptionGroup options(command.rows, "Options", Effect::none, &CompareArguments::settings);
+  OptionGroup reports(command.rows, "Options", Effect::none);
   options.text("--reference-b", &S::reference_b, "FILE",
                "a second render of the reference with independent noise: rmse is then free of the noise of both");
   options
@@ -61,7 +66,7 @@ std::vector<RowOf<CompareArguments>> compare_rows() {
                "write a self-contained page with table and pictures");
   reports.flag("-q,--quiet", &CompareArguments::quiet,
                "print no table and no warnings: the exit code says whether limits hold");
-  OptionGroup limits(rows, "Limits, for every frame; one that is broken ends with exit code 6", Effect::none,
+  OptionGroup limits(command.rows, "Limits, for every frame; one that is broken ends with exit code 6", Effect::none,
                      &CompareArguments::limits);
   limits.number("--max-rmse", &CompareLimits::max_rmse, "", at_least(0), "the largest rmse");
   limits.number("--max-p99", &CompareLimits::max_p99, "", at_least(0),
@@ -71,7 +76,7 @@ std::vector<RowOf<CompareArguments>> compare_rows() {
   limits.number("--max-bias", &CompareLimits::max_bias, "", at_least(0), "the largest size of the mean error");
   limits.number("--max-grain", &CompareLimits::max_grain, "", at_least(0),
                 "the largest grain, which needs --depth; a frame without plain surfaces ends with exit code 3");
-  return rows;
+  return command;
 }
 
 /// Refuses options that say something of a file that is not there.
@@ -84,15 +89,6 @@ void check_files(const CompareSettings& s) {
   require(!s.depth_channel.empty(), "--depth-channel", s.depth, "--depth");
   require(s.sky != CompareSettings().sky, "--sky", s.depth, "--depth");
   require(!s.motion_channels.empty(), "--motion-channels", s.motion, "--motion");
-}
-
-CommandOf<CompareArguments> compare_syntax() {
-  return {"alcove compare",
-          "Measures how far a picture or a sequence is from a reference.\n\n"
-          "Examples:\n"
-          "  alcove compare ao.exr truth.exr --depth frame.exr --max-rmse 0.1\n"
-          "  alcove compare ao.%04d.exr truth.%04d.exr --depth frame.%04d.exr --motion frame.%04d.exr --json\n",
-          compare_rows()};
 }
 
 std::string optional_number(std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; }

@@ -42,15 +42,6 @@ Inspection inspect_one(const FramePlan& plan, int frame) {
   return found;
 }
 
-SequenceNames names_of(const FramePlan& plan) {
-  return {plan.settings().input,
-          plan.frames(),
-          plan.missing(),
-          plan.evidence(),
-          plan.settings().frames.frames,
-          [&plan](int frame) { return plan.at(frame).input; }};
-}
-
 /// The camera of what was inspected, or of each frame that is there, as a file.
 void write_cameras(const std::string& path, const FramePlan& plan, const InputSettings& input, int frame,
                    const Inspection& inspected) {
@@ -75,7 +66,7 @@ int inspect_command(const std::vector<std::string>& arguments) {
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   const FramePlan plan = plan_of(options.settings);
   const int frame = frame_number_of(path);
-  const Inspection inspection = plan.is_sequence() ? inspect_sequence(names_of(plan)) : inspect_one(plan, frame);
+  const Inspection inspection = plan.is_sequence() ? inspect_sequence(plan) : inspect_one(plan, frame);
   fmt::print("{}",
              asked.json ? inspection_json(inspection) : inspection_text(inspection, options.settings.progress.verbose));
   if (inspection.unreadable) throw *inspection.unreadable;

@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -20,6 +19,7 @@
 #include "core/frame/flatness.h"
 #include "core/frame/gbuffer.h"
 #include "core/frame/matte.h"
+#include "core/run/plan.h"
 
 namespace alcove {
 
@@ -204,19 +204,9 @@ struct CameraSearch {
 /// Looks for a camera. A file that cannot be opened has none.
 CameraSearch look_for_camera(const InputSettings& settings, int frame);
 
-/// The frames of a sequence to inspect, and their files.
-struct SequenceNames {
-  InputSettings named;                   // as the user gave them, with places for the frame number
-  std::vector<int> frames;               // on the disk, in order, at least one
-  std::vector<int> absent;               // missing: asked for, or in a gap
-  std::vector<int> evidence;             // candidates for the frame that decides the reading of all
-  std::string said;                      // --frames, or empty
-  std::function<InputSettings(int)> of;  // the settings with the files of one frame
-};
-
 /// Inspects the frame by which a run would decide the reading of all, and adds changes along the sequence: by the
 /// headers of all frames, and by the pixels of a few. Fails as inspect_frame() does for that frame; faults of others
 /// are part of the answer.
-Inspection inspect_sequence(const SequenceNames& names);
+Inspection inspect_sequence(const FramePlan& plan);
 
 }  // namespace alcove

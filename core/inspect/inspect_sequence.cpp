@@ -94,15 +94,15 @@ double width_of(const Camera& camera) {
 /// A sequence being looked at.
 class SequenceInspector {
  public:
-  explicit SequenceInspector(const SequenceNames& names) : names_(names) {}
+  explicit SequenceInspector(const FramePlan& plan) : plan_(plan) {}
 
   Inspection inspect() {
     Inspection found = first_that_shows();
     shown_.shown = shown_frame_;
-    shown_.frames = names_.frames;
-    shown_.absent = names_.absent;
-    has_camera_ = look_for_camera(names_.of(shown_frame_), shown_frame_).lacking.empty();
-    for (const int frame : names_.frames) look_at_header(frame);
+    shown_.frames = plan_.frames();
+    shown_.absent = plan_.missing();
+    has_camera_ = look_for_camera(plan_.at(shown_frame_).input, shown_frame_).lacking.empty();
+    for (const int frame : plan_.frames()) look_at_header(frame);
     for (const int frame : few()) look_at_pixels(frame);
     sort_out();
     found.sequence = std::move(shown_);
@@ -112,10 +112,10 @@ class SequenceInspector {
  private:
   /// The frame that a run would settle the sequence by.
   Inspection first_that_shows() {
-    const CommandNames run{names_.named, "ao.%04d.exr", names_.said};
+    const CommandNames run{plan_.settings().input, "ao.%04d.exr", plan_.settings().frames.frames};
     std::optional<Inspection> first;
-    for (const int frame : names_.evidence) {
-      Inspection found = inspect_frame(names_.of(frame), frame, run);
+    for (const int frame : plan_.evidence()) {
+      Inspection found = inspect_frame(plan_.at(frame).input, frame, run);
       if (first && !found.shows_surfaces) continue;
       shown_frame_ = frame;
       first = std::move(found);
@@ -125,7 +125,7 @@ class SequenceInspector {
   }
 
   FrameSource open(int frame) const {
-    const InputSettings settings = names_.of(frame);
+    const InputSettings settings = plan_.at(frame).input;
     FrameSource source = find_frame(has_camera_ ? settings : with_some_camera(settings), false, frame);
     source.open.camera = !has_camera_;
     return source;
@@ -144,7 +144,7 @@ class SequenceInspector {
   /// Takes down that a frame is refused, without the name of its file, so that frames with one fault stand together.
   void refuse(const Error& error, int frame) {
     std::string text = error.what();
-    const std::string name = main_input(names_.of(frame)) + ": ";
+    const std::string name = main_input(plan_.at(frame).input) + ": ";
     if (text.starts_with(name)) text.erase(0, name.size());
     take(kRefused, text, frame);
   }
@@ -177,9 +177,9 @@ class SequenceInspector {
   /// The first frame, the last, and a few between them.
   std::set<int> few() const {
     std::set<int> frames{shown_frame_};
-    const std::size_t count = std::min(kReadFrames, names_.frames.size());
+    const std::size_t count = std::min(kReadFrames, plan_.frames().size());
     for (std::size_t i = 0; i < count; i++)
-      frames.insert(names_.frames[i * (names_.frames.size() - 1) / std::max<std::size_t>(1, count - 1)]);
+      frames.insert(plan_.frames()[i * (plan_.frames().size() - 1) / std::max<std::size_t>(1, count - 1)]);
     return frames;
   }
 
@@ -188,7 +188,7 @@ class SequenceInspector {
       FrameSource source = open(frame);
       require_host_room(source.depth_path(), source.reading.data);
       const RawFrame raw = read_raw_frame(source, source.reading.data);
-      const InputSettings settings = names_.of(frame);
+      const InputSettings settings = plan_.at(frame).input;
       settle(source, has_camera_ ? settings : with_some_camera(settings), {source.reading.data, raw.depth, raw.normal});
       if (has_camera_ && source.evidence.tells) take("reading", reading_of(source), frame);
       for (const auto& note : source.suspicious) suspicious_[facts_of(note.code).meaning].insert(frame);
@@ -212,7 +212,7 @@ class SequenceInspector {
 
   static constexpr const char* kRefused = "refused";
 
-  const SequenceNames& names_;
+  const FramePlan& plan_;
   int shown_frame_ = 0;
   bool has_camera_ = false;
   InspectedSequence shown_{};
@@ -224,6 +224,6 @@ class SequenceInspector {
 
 }  // namespace
 
-Inspection inspect_sequence(const SequenceNames& names) { return SequenceInspector(names).inspect(); }
+Inspection inspect_sequence(const FramePlan& plan) { return SequenceInspector(plan).inspect(); }
 
 }  // namespace alcove

@@ -90,9 +90,8 @@ void add_radius_rows(std::vector<SettingRow>& rows) {
   pixels.choice("--falloff", &S::falloff, "how a hit's weight fades towards the radius").others_idle(unless_fading);
   pixels
       .number("falloff-start", &S::falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins")
-      .others_idle([](const Settings& all) {
-        return first_of({unless_fading(all), all.estimator.falloff == Falloff::none ? "--falloff is none" : ""});
-      });
+      .others_idle(unless_fading)
+      .idle([](const Settings& all) { return all.estimator.falloff == Falloff::none ? "--falloff is none" : ""; });
   pixels
       .number("falloff-end", &S::falloff_end, "of the radius", above_to(0, 1),
               "where the falloff ends: nothing beyond blocks")
@@ -104,13 +103,11 @@ void add_search_rows(std::vector<SettingRow>& rows) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
   const auto unless_crytek = [](const Settings& all) { return unless_estimator(all, {Estimator::crytek}); };
   pixels.number("--slices", &S::slices, "per pixel", between(1, 64), "directions that are searched")
-      .idle([](const Settings& all) {
-        return first_of({unless_slices_anywhere(all), if_by_error_alone(all)});
-      });
+      .idle(unless_slices_anywhere)
+      .idle(if_by_error_alone);
   pixels.number("--steps", &S::steps, "per side", between(1, 4096), "samples to each side of a slice")
-      .idle([](const Settings& all) {
-        return first_of({unless_slices_anywhere(all), if_exact_alone(all)});
-      });
+      .idle(unless_slices_anywhere)
+      .idle(if_exact_alone);
   pixels
       .choice("--search", &S::search,
               "along a slice; steps: so many samples; exact: all pixels, by outlines; every-pixel: one by one")
@@ -153,10 +150,9 @@ void add_filter_rows(std::vector<SettingRow>& rows) {
   pixels
       .choice("density", &S::density,
               "uniform: an estimate for every so many pixels; adaptive: more where a surface shows few pixels")
-      .idle([](const Settings& all) {
-        return first_of(
-            {asks_for_confidence(all) ? "" : unless_ranges(all), if_exact_alone(all), unless_shared_estimates(all)});
-      });
+      .idle([](const Settings& all) { return asks_for_confidence(all) ? "" : unless_ranges(all); })
+      .idle(if_exact_alone)
+      .idle(unless_shared_estimates);
   pixels
       .own(
           {"stride", "auto|1|2|4|8|16", "", "", "pixels to an estimate; the denoiser gives the others theirs"},
@@ -210,8 +206,9 @@ void add_denoise_rows(std::vector<SettingRow>& rows) {
       .number("denoise-depth-sigma", &S::denoise_depth_sigma, "of the depth", between(0, 100),
               "depths that far apart weigh 1/e; 0: weighs by the distance from each other's plane")
       .others_idle([](const Settings& all) {
-        return first_of({unless_denoised(all, {Denoise::bilateral, Denoise::box}), if_by_error_alone(all)});
-      });
+        return unless_denoised(all, {Denoise::bilateral, Denoise::box});
+      })
+      .idle(if_by_error_alone);
 }
 
 void add_shape_rows(std::vector<SettingRow>& rows) {

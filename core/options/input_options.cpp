@@ -155,9 +155,8 @@ void add_channel_rows(std::vector<SettingRow>& rows) {
       .idle(unless_composite);
   pixels.text("material-ao-channel", &S::material_ao_channel, "NAME", "of the materials' AO, in its file or INPUT");
   pixels.text("albedo-channels", &S::albedo_channels, "LAYER|R,G,B", "the diffuse colour's layer, or its channels")
-      .idle([](const Settings& all) {
-        return first_of({unless_multi_bounce(all), all.input.albedo_value ? "albedo is a number" : ""});
-      });
+      .idle(unless_multi_bounce)
+      .idle([](const Settings& all) { return all.input.albedo_value ? "albedo is a number" : ""; });
   pixels.text("matte-channel", &S::matte_channel, "NAME",
               "of the matte, in its file or INPUT; or a Cryptomatte's layer");
   pixels.text("--matte-object", &S::matte_object, "NAME[,NAME...]",

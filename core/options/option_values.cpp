@@ -181,28 +181,19 @@ void require_effects(const Settings& settings) {
 // Each scale costs a search and a plane of its own.
 constexpr std::size_t kMostRadii = 8;
 
-/// Only an estimate by its error knows that error.
-void check_tolerance(const Settings& settings) {
+/// Outputs that a search does not make.
+void check_search(const Settings& settings) {
   const auto& e = settings.estimator;
   if (e.tolerance == 0 && wants(settings.output, &FrameOutputs::error))
     fail(ErrorKind::usage, "--aov error: only an estimate with a --tolerance knows its error");
+  if (shows(settings.output, DebugSource::tiles) && searches_exactly(e))
+    fail(ErrorKind::usage, "--set debug=tiles: an exact search leaves out none; --search steps does");
 }
 
-/// An exact search leaves out no tiles.
-void check_search(const Settings& settings) {
-  const auto& e = settings.estimator;
-  if (!searches_exactly(e)) return;
-  for (const auto* view : debug_views_of(settings.output))
-    if (view->source == DebugSource::tiles)
-      fail(ErrorKind::usage, "--set debug=tiles: an exact search leaves out none; --search steps does");
-}
-
-/// A view of what is completed needs something that is.
+/// A view of completed surfaces needs some.
 void check_completion(const Settings& settings) {
   const auto& e = settings.estimator;
-  const auto views = debug_views_of(settings.output);
-  const bool is_shown = std::ranges::find(views, DebugSource::completed, &DebugView::source) != views.end();
-  if (!is_shown || completes_anywhere(e)) return;
+  if (!shows(settings.output, DebugSource::completed) || completes_anywhere(e)) return;
   if (e.complete == Completion::none)
     fail(ErrorKind::usage,
          "--set debug=completed: with --set complete=none nothing is; border and all complete surfaces");
@@ -216,31 +207,24 @@ bool is_of_estimate(DebugSource source) {
          source == DebugSource::raw_ao || source == DebugSource::denoised_ao;
 }
 
-/// A mean of many frames has no tiles, sites or guesses of one.
+/// A mean of many frames has no tiles, sites or guesses of one, and one frame is no mean.
 void check_accumulation(const Settings& settings) {
-  if (settings.input.accumulate == 0) {
-    for (const auto* view : debug_views_of(settings.output))
-      if (view->source == DebugSource::count)
-        fail(ErrorKind::usage, "--set debug=count: a frame is its own estimate; --accumulate takes those of others");
-    return;
-  }
+  const bool is_mean = settings.input.accumulate > 0;
+  if (!is_mean && shows(settings.output, DebugSource::count))
+    fail(ErrorKind::usage, "--set debug=count: a frame is its own estimate; --accumulate takes those of others");
   for (const auto* view : debug_views_of(settings.output))
-    if (is_of_estimate(view->source))
+    if (is_mean && is_of_estimate(view->source))
       fail(ErrorKind::usage,
            "--set debug={}: it shows the estimate of one frame, and with --accumulate the AO is the mean of many: "
-           "leave one "
-           "of them out",
+           "leave one of them out",
            view->name);
 }
 
-/// What shows hidden surfaces needs some that are kept.
+/// Outputs of hidden surfaces need some that are kept.
 void check_hidden(const Settings& settings) {
-  const auto views = debug_views_of(settings.output);
-  const bool is_drawn = std::ranges::find(views, DebugSource::hidden, &DebugView::source) != views.end();
-  const char* const option = wants(settings.output, &FrameOutputs::hidden) ? "--aov "
-                             : is_drawn                                    ? "--set debug="
-                                                                           : nullptr;
-  if (!option) return;
+  const bool is_aov = wants(settings.output, &FrameOutputs::hidden);
+  if (!is_aov && !shows(settings.output, DebugSource::hidden)) return;
+  const char* const option = is_aov ? "--aov " : "--set debug=";
   if (settings.estimator.hidden == 0) fail(ErrorKind::usage, "{}hidden: with --set hidden=0 nothing is kept", option);
   if (!has_hidden_sources(settings.input))
     fail(ErrorKind::usage, "{}hidden: nothing says what is hidden: --behind, --deep, --around and --set other-views do",
@@ -281,7 +265,6 @@ void check_settings(const Settings& settings) {
   if (!settings.estimator.radius && !settings.estimator.radius_auto && needs_ao(settings.output))
     fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
   require_effects(settings);
-  check_tolerance(settings);
   check_search(settings);
   check_completion(settings);
   check_accumulation(settings);

@@ -65,15 +65,15 @@ struct RowOf : OptionRow {
   // Takes a value. Fails with ErrorKind::usage, naming the option, its mistake, and the nearest words. Null: the
   // option is of the command line alone, and no part of `Options`.
   std::function<void(Options&, const Words&)> read = nullptr;
-  // Tells why the value has no effect beside the others, in a sentence; "" where it has one, or asks for nothing. What
-  // is typed and has none is refused; of a preset it is left out. Null: it always has one.
-  std::function<std::string(const Options&)> why_without_effect = nullptr;
+  // Each tells why the value has no effect beside the others, in a sentence; "" where it has one, or asks for nothing. A
+  // value without effect that is typed is refused; of a preset it is left out.
+  std::vector<std::function<std::string(const Options&)>> idle_reasons = {};
   Words usual = {};                 // the words of the default
   bool usual_asks_nothing = false;  // the default is no mistake, whatever is beside it
 
-  /// Sets the reason by which a value may have no effect. Reads as "idle unless denoised".
+  /// Adds a reason by which a value may have no effect. Reads as "idle unless denoised".
   RowOf& idle(std::function<std::string(const Options&)> why) {
-    why_without_effect = std::move(why);
+    idle_reasons.push_back(std::move(why));
     return *this;
   }
   /// The same of a row whose default asks for nothing.
@@ -194,8 +194,9 @@ class OptionGroup {
           return number ? Words{fmt::format("{}", *number)} : Words{};
         },
         [=](Struct& s, const Words& words) {
-          const auto read = std::is_integral_v<Value> ? whole_number_in : number_in;
-          std::invoke(member, s) = Value(read(range, words.front()));
+          const std::string& text = words.front();
+          std::invoke(member, s) =
+              Value(std::is_integral_v<Value> ? whole_number_in(range, text) : number_in(range, text));
         });
   }
 

@@ -121,7 +121,7 @@ class RunDevice {
     // Where frames run side by side no core is free for it.
     if (lanes_->count() == 1 && threads_ > 1)
       warm_up_.emplace(lanes_->device(), settings_.estimator, settings_.output, std::min(threads_, kWarmingThreads));
-    if (settled_) memory = beside_shot(memory, plan_, *settled_, settings_, frames_, lanes_->count());
+    if (settled_) memory = without_shared_frames(memory, plan_, *settled_, settings_, frames_, lanes_->count());
     room_ = room_of_lane(memory, lanes_->count(), info());
   }
 
@@ -149,7 +149,7 @@ class RunDevice {
     const FrameMemory frame = memory_with_others(plan_, *settled_, settings_);
     int lanes = int(std::min(frames_.size(), std::size_t(most)));
     const auto has_room = [&] {
-      const RunMemory left = beside_shot(memory, plan_, *settled_, settings_, frames_, lanes);
+      const RunMemory left = without_shared_frames(memory, plan_, *settled_, settings_, frames_, lanes);
       return frames_in(left, frame, settled_->reading.data) >= std::uint64_t(lanes);
     };
     while (lanes > 1 && !has_room()) lanes--;
@@ -242,19 +242,15 @@ class Batch {
     report_.on_cpu_by_default =
         device.info().type == gpu::DeviceType::cpu && lower_case(plan_.settings().device.device) == "auto";
     report_.at_once = device.lanes().count();
-    run_pipeline(device.lanes(), run, device.room(), frames,
-                 {[this](const FrameReport& frame) { return ends(frame); },
-                  [this](FrameReport&& frame) { take(std::move(frame)); }, watch_.working});
+    run_pipeline(
+        device.lanes(), run, device.room(), frames, [this](FrameReport&& frame) { take(std::move(frame)); },
+        watch_.working);
     report_.at_once = device.lanes().count();
     if (const int messages = device.lanes().validation_messages())
       fail(ErrorKind::device, "--validate: the validation layer reported {} messages", messages);
   }
 
-  /// Whether no frame is begun after this one. Called by any thread.
-  bool ends(const FrameReport& frame) const {
-    return frame.device_lost || (frame.state == FrameState::failed && !plan_.settings().frames.keep_going);
-  }
-
+  /// Counts a frame, and tells of it.
   void take(FrameReport&& frame) {
     if (frame.device_lost) lost_ = frame.error;
     if (frame.state == FrameState::dropped || frame.device_lost) return;

@@ -196,81 +196,14 @@ Settings of_estimate(Settings settings) {
   return settings;
 }
 
-/// Estimates one frame for others, whole or in tiles.
-class EstimateRun {
- public:
-  EstimateRun(const EstimateRoom& where, const FramePlan& plan, const Settings& settings, FrameSource& source,
-              const Others& others, PreparedOthers& took, EstimatedFrame& result)
-      : where_(where),
-        turn_(plan.turn_of(result.frame)),
-        settings_(settings),
-        source_(source),
-        others_(others),
-        took_(took),
-        result_(result),
-        tally_(result.report) {
-    wanted_.only_own = true;
-    wanted_.visibility = true;
-  }
+/// Copies the results over a part of a window into the planes of the whole frame.
+struct PartCopy {
+  const Window &computed, &part, &whole;
 
-  /// Gives what was read.
-  ReadPlanes run(const WindowLimits& limits) {
-    const Window& whole = source_.reading.data;
-    if (limits.allow(whole))
-      compute(whole, whole);
-    else
-      compute_tiles(limits.in_parts(source_));
-    for (const auto* planes : {&scales_, &bent_})
-      result_.values.insert(result_.values.end(), planes->begin(), planes->end());
-    return std::move(read_);
-  }
-
- private:
-  void compute_tiles(const WindowLimits& limits) {
-    read_for_parts(source_, settings_, read_, limits.room.bytes - limits.kept);
-    Surroundings surroundings(source_, settings_, read_[RawPlane::depth]);
-    for (const auto& row : tiles_of(source_.reading.data, surroundings, limits, source_))
-      for (const auto& tile : row) compute(surroundings.around(tile), tile);
-  }
-
-  /// Computes a window, and keeps a part of it.
-  void compute(const Window& window, const Window& part) {
-    if (where_.begin) where_.begin(window);
-    FrameInputs inputs = load_frame(where_.gpu, source_, window, settings_, turn_, &read_);
-    inputs.others = others_.seen;
-    inputs.turn = turn_;
-    if (part == source_.reading.data) read_ = kept_planes(inputs);
-    const FrameOutputs outputs = run_chain(where_.gpu, inputs, settings_.estimator, wanted_);
-    where_.gpu.run();
-    const auto& passes = where_.gpu.passes();
-    took_.passes.insert(took_.passes.end(), passes.begin(), passes.end());
-    tally_.add_outputs(outputs, window, false);
-    const OwnEstimate& own = outputs.own.value();
-    result_.depth_precision = own.gbuffer.depth_precision;
-    put(own.gbuffer.depth, window, part, result_.depth);
-    put(own.gbuffer.normal, window, part, result_.normal);
-    put(own.visibility.ao, window, part, result_.values);
-    put(own.visibility.scales, window, part, scales_);
-    put(own.visibility.bent, window, part, bent_);
-  }
-
-  /// Copies a part of the planes that were computed into those of the whole frame.
   template <class T>
-  void put(const gpu::Buffer* planes, const Window& window, const Window& part, std::vector<T>& all) const {
-    if (planes) put_in(planes->as<const T>(), window, part, source_.reading.data, all);
+  void operator()(const gpu::Buffer* planes, std::vector<T>& all) const {
+    if (planes) put_in(planes->as<const T>(), computed, part, whole, all);
   }
-
-  const EstimateRoom& where_;
-  const int turn_;
-  const Settings& settings_;
-  FrameSource& source_;
-  const Others& others_;
-  PreparedOthers& took_;
-  EstimatedFrame& result_;
-  FrameTally tally_;
-  Wanted wanted_{settings_.output};
-  ReadPlanes read_;
-  std::vector<float> scales_, bent_;  // over the whole frame
 };
 
 }  // namespace
@@ -288,10 +221,10 @@ std::string text_of(const TakenEstimates& taken) {
   return "frames " + frames_text(frames) + missing;
 }
 
-TakenEstimates SharedFrames::estimates_of(const EstimateRoom& where, int frame, PreparedOthers& took) {
+TakenEstimates SharedFrames::estimates_of(const EstimateRoom& where, int frame, PreparationCost& cost) {
   const FramesAround window = plan_.accumulated(frame);
   TakenEstimates taken{
-      {}, estimated_.of(window.there, [&](int other) { return estimate(where, other, took); }), window.missing};
+      {}, estimated_.of(window.there, [&](int other) { return estimate(where, other, cost); }), window.missing};
   {
     const std::lock_guard lock(mutex_);
     if (auto read = read_.extract(frame)) taken.read = std::move(read.mapped());
@@ -301,27 +234,60 @@ TakenEstimates SharedFrames::estimates_of(const EstimateRoom& where, int frame, 
   return taken;
 }
 
-EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, PreparedOthers& took) {
+EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, PreparationCost& cost) {
   const Settings settings = of_estimate(plan_.at(frame));
   FrameSource source = open_frame(settings, frame);
   if (settled_) settle_like(source, *settled_);
   require_place(source, frame, "--accumulate");
+  const Window whole = source.reading.data;
   EstimatedFrame result;
   result.frame = frame;
-  result.others = others_of(where.gpu, source, frame, took);
-  ReadPlanes read =
-      EstimateRun(where, plan_, settings, source, result.others, took, result)
-          .run({memory_with_others(plan_, source, settings), where.room, longest_side(settings.estimator)});
+  result.others = others_of(where.gpu, source, frame, cost);
+  FrameTally tally(result.report);
+  Wanted wanted{settings.output};
+  wanted.only_own = wanted.visibility = true;
+  ReadPlanes read;
+  std::vector<float> scales, bent;  // over the whole frame
+  const auto compute = [&](const Window& window, const Window& part) {
+    if (where.begin) where.begin(window);
+    FrameInputs inputs = load_frame(where.gpu, source, window, settings, plan_.turn_of(frame), &read);
+    inputs.others = result.others.seen;
+    inputs.turn = plan_.turn_of(frame);
+    if (part == whole) read = kept_planes(inputs);
+    const FrameOutputs outputs = run_chain(where.gpu, inputs, settings.estimator, wanted);
+    where.gpu.run();
+    cost.passes.insert(cost.passes.end(), where.gpu.passes().begin(), where.gpu.passes().end());
+    tally.add_outputs(outputs, window, false);
+    const OwnEstimate& own = outputs.own.value();
+    result.depth_precision = own.gbuffer.depth_precision;
+    const PartCopy copy{window, part, whole};
+    copy(own.gbuffer.depth, result.depth);
+    copy(own.gbuffer.normal, result.normal);
+    copy(own.visibility.ao, result.values);
+    copy(own.visibility.scales, scales);
+    copy(own.visibility.bent, bent);
+  };
+  const WindowLimits limits{memory_with_others(plan_, source, settings), where.room, longest_side(settings.estimator)};
+  if (limits.allow(whole)) {
+    compute(whole, whole);
+  } else {
+    const WindowLimits of_parts = limits.in_parts(source);
+    read_for_parts(source, settings, read, of_parts.room.bytes - of_parts.kept);
+    Surroundings surroundings(source, settings, read[RawPlane::depth]);
+    for (const auto& row : tiles_of(whole, surroundings, of_parts, source))
+      for (const auto& tile : row) compute(surroundings.around(tile), tile);
+  }
+  for (const auto* planes : {&scales, &bent}) result.values.insert(result.values.end(), planes->begin(), planes->end());
   result.others.seen.clear();
   result.camera = source.reading.camera;
-  result.view = view_of(source.reading, source.reading.data);
-  const auto moving = moving_by_vectors(where.gpu, frame, took, 0);
+  result.view = view_of(source.reading, whole);
+  const auto moving = moving_by_vectors(where.gpu, frame, cost, 0);
   for (std::size_t i = 0; moving && i < moving->size(); i++) {
     if (!(*moving)[i]) continue;
     result.depth[i] = -result.depth[i];
     result.has_moving = true;
   }
-  took.rows_read += source.rows_read;
+  cost.rows_read += source.rows_read;
   const std::lock_guard lock(mutex_);
   if (std::ranges::find(left_, frame) != left_.end()) read_.insert_or_assign(frame, std::move(read));
   return result;

@@ -53,13 +53,6 @@ Notes notes_on_names(const FramePlan& plan) {
   return notes;
 }
 
-/// The frame with a camera that stands in for the one that is missing.
-FrameSource find_without_camera(const FramePlan& plan, int frame) {
-  FrameSource source = find_frame(with_some_camera(plan.at(frame).input), false, frame);
-  source.open.camera = true;
-  return source;
-}
-
 }  // namespace
 
 Notes notes_on_number(const FramePlan& plan) {
@@ -91,8 +84,12 @@ const FramePlan& FirstLook::plan() {
 
 FrameSource& FirstLook::opened(int frame) {
   const auto found = opened_.find(frame);
-  return found != opened_.end() ? found->second
-                                : opened_.emplace(frame, open_frame(plan().at(frame), frame)).first->second;
+  if (found != opened_.end()) return found->second;
+  const Settings settings = plan().at(frame);
+  FrameSource source =
+      lacks_camera_ ? find_frame(with_some_camera(settings.input), false, frame) : open_frame(settings, frame);
+  source.open.camera = lacks_camera_;
+  return opened_.emplace(frame, std::move(source)).first->second;
 }
 
 FrameSource FirstLook::open(const Settings& settings, int frame) {
@@ -117,12 +114,12 @@ bool FirstLook::has_camera() {
 }
 
 /// The radius that is proposed for the first frame that shows a surface, and why others could not be looked at.
-std::optional<double> FirstLook::radius_of_first(const std::function<FrameSource&(int)>& look,
-                                                 std::optional<Error>& error) {
+std::optional<double> FirstLook::radius_of_first(std::optional<Error>& error) {
   for (const int frame : plan().evidence()) {
     try {
-      FrameSource& source = look(frame);
-      settle_by_rows(source, plan().at(frame).input);
+      FrameSource& source = opened(frame);
+      const InputSettings input = plan().at(frame).input;
+      if (!source.settled) settle_by_rows(source, lacks_camera_ ? with_some_camera(input) : input);
       if (const auto radius = proposed_radius(source.reading.camera, source.evidence.median_depth)) return radius;
     } catch (const Error& failure) {
       opened_.erase(frame);  // which may be settled in part
@@ -142,20 +139,15 @@ MissingOptions FirstLook::missing_options() {
   if (missing.input || !(missing.radius || missing.output || !has_option)) return missing;
   try {
     notes_on_number(plan());  // or the command that is proposed would be refused
-    missing.camera = !has_camera();
+    missing.camera = lacks_camera_ = !has_camera();
     if (missing.camera) {
       try {
-        find_without_camera(plan(), plan().evidence().front());
+        opened(plan().evidence().front());
       } catch (const Error& error) {
         missing.no_channels = error;
       }
     }
-    std::optional<FrameSource> source;
-    const auto look = [&](int frame) -> FrameSource& {
-      return source.emplace(missing.camera ? find_without_camera(plan(), frame)
-                                           : find_frame(plan().at(frame).input, false, frame));
-    };
-    if (missing.radius) missing.proposed_radius = radius_of_first(look, missing.unreadable);
+    if (missing.radius) missing.proposed_radius = radius_of_first(missing.unreadable);
   } catch (const Error& error) {
     // A name that no command could have comes first, since it would be a part of the one that is proposed.
     if (error.kind() == ErrorKind::usage) throw;
@@ -179,7 +171,7 @@ void FirstLook::take_proposed_radius(Notes& notes) {
   const FramePlan& frames = plan();
   notes_on_number(frames);  // which fails before a camera is taken of which nothing tells
   std::optional<Error> error;
-  const auto radius = radius_of_first([&](int frame) -> FrameSource& { return opened(frame); }, error);
+  const auto radius = radius_of_first(error);
   if (!radius && error) throw *error;
   if (!radius)
     fail(ErrorKind::input, "{}: --radius auto finds no surface in {}: give --radius NUMBER, in scene units",
@@ -258,33 +250,31 @@ std::string plan_text(FirstLook& look) {
   for (const auto& plane : source.channels.planes.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);
   line("channels", fmt::format("{}", fmt::join(channels, ", ")));
-  line("camera",
-       fmt::format("{}, {:.6g} x {:.6g} px {}", source.reading.camera.orthographic ? "orthographic" : "perspective",
-                   source.reading.camera.fx, source.reading.camera.fy,
-                   source.reading.camera.orthographic ? "per scene unit" : "focal length"));
+  const Camera& camera = source.reading.camera;
+  line("camera", fmt::format("{}, {:.6g} x {:.6g} px {}", camera.orthographic ? "orthographic" : "perspective",
+                             camera.fx, camera.fy, camera.orthographic ? "per scene unit" : "focal length"));
   const FrameMemory frame = memory_with_others(plan, source, first);
   const std::uint64_t bytes = frame.of(source.reading.data).host;
   InputIdentities identities(plan);
   const auto wanted = frames_to_compute(plan, options_digest(first), identities);
   require_room_for_others(memory_of_host(first.device), plan, source, first, wanted);
-  const RunMemory run = beside_shot(memory_of_host(first.device), plan, source, first, wanted, 1);
+  const RunMemory run = without_shared_frames(memory_of_host(first.device), plan, source, first, wanted, 1);
   const std::uint64_t memory = run.host_bytes;
   line("size", to_string(written_picture(source)));
   const std::string at_once =
       bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.reading.data));
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
+  const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared) {
+    line(name, fmt::format("up to {} of the {} frames of the shot: {} MiB of {} for each at once, beside what it takes "
+                           "itself",
+                           count, plan.shot().size(), shared >> 20, kind));
+  };
   if (around_of(first.input) > 0)
-    line("around",
-         fmt::format("up to {} of the {} frames of the shot: {} MiB of prepared frames for each at once, beside "
-                     "what it takes itself",
-                     most_others(plan, source, first.input), plan.shot().size(),
-                     bytes_of_shot(plan, source, first.input, 1) >> 20));
+    line_of_shared("around", most_others(plan, source, first.input), "prepared frames",
+                   bytes_of_shot(plan, source, first.input, 1));
   if (first.input.accumulate > 0)
-    line("accumulate",
-         fmt::format("up to {} of the {} frames of the shot: {} MiB of estimates for each at once, beside "
-                     "what it takes itself",
-                     std::min(plan.shot().size(), std::size_t(plan.turns())), plan.shot().size(),
-                     bytes_of_estimates(plan, source, first, wanted, 1) >> 20));
+    line_of_shared("accumulate", std::min(plan.shot().size(), std::size_t(plan.turns())), "estimates",
+                   bytes_of_estimates(plan, source, first, wanted, 1));
   if (wanted.size() < plan.frames().size())
     line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));
   return text;

@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -59,11 +58,12 @@ class FirstLook {
  private:
   FrameSource& opened(int frame);
   bool has_camera();
-  std::optional<double> radius_of_first(const std::function<FrameSource&(int)>& look, std::optional<Error>& error);
+  std::optional<double> radius_of_first(std::optional<Error>& error);
   void take_proposed_radius(Notes& notes);
 
   const Settings settings_;
   std::optional<FramePlan> plan_;
+  bool lacks_camera_ = false;  // frames are opened with one that stands in for it
   std::map<int, FrameSource> opened_;
 };
 

@@ -32,9 +32,9 @@ void FrameTally::add_inputs(const FrameSource& source, const Window& computed, c
     behind_.add(source.reading, depth, inputs[RawPlane::behind]->as<float>(), computed, written);
 }
 
-void FrameTally::add_others(const PreparedOthers& took) {
-  rows_of_others_ += took.rows_read;
-  for (const auto& pass : took.passes) {
+void FrameTally::add_others(const PreparationCost& cost) {
+  rows_of_others_ += cost.rows_read;
+  for (const auto& pass : cost.passes) {
     const std::string name = "others " + pass.name;
     auto found = std::ranges::find(report_.passes, name, &gpu::PassTime::name);
     if (found == report_.passes.end()) found = report_.passes.insert(found, {name});
@@ -261,7 +261,7 @@ class FrameRun {
     return source;
   }
 
-  /// What was noted of the whole sequence comes before what this frame's own header told.
+  /// Puts the notes on the whole sequence before those of this frame's own header.
   static void take_over_notes(FrameSource& source, const FrameSource& settled) {
     const Notes own = std::exchange(source.notes, settled.notes);
     add_new(source.notes, own);
@@ -287,28 +287,26 @@ class FrameRun {
     run_whole(source, computed);
   }
 
-  /// Whether the frame's own pass looks at what others see: not where all that it takes of them is in its estimate.
+  /// Whether the frame's own pass looks at surfaces of others: not where its estimate holds all that it takes of them.
   bool needs_others() const {
     const auto& wanted = settings_.output;
-    const auto views = debug_views_of(wanted);
-    const bool shows_hidden = std::ranges::find(views, DebugSource::hidden, &DebugView::source) != views.end();
-    return !run_.takes_means || shows_hidden || wants(wanted, &FrameOutputs::hidden) ||
+    return !run_.takes_means || shows(wanted, DebugSource::hidden) || wants(wanted, &FrameOutputs::hidden) ||
            wants(wanted, &FrameOutputs::confidence);
   }
 
-  /// Finds what others see, once for all parts of the frame.
+  /// Finds the surfaces and estimates of others, once for all parts of the frame.
   void take_others(const FrameSource& source) {
     if (!run_.shot) return;
     const Stopwatch reading;
-    PreparedOthers took;
+    PreparationCost cost;
     // Where the device has no memory for a part of an estimate, smaller ones are computed as of the frame itself.
     const auto begin = [this](const Window& computed) {
       go_on();
       tally_.begin(computed);
     };
-    if (run_.takes_means) estimates_ = run_.shot->estimates_of({gpu_, room_, begin}, frame_, took);
-    if (needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, took);
-    tally_.add_others(took);
+    if (run_.takes_means) estimates_ = run_.shot->estimates_of({gpu_, room_, begin}, frame_, cost);
+    if (needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, cost);
+    tally_.add_others(cost);
     if (run_.takes_means) take_estimates();
     if (!others_.frames.empty() || !others_.missing.empty()) report_.frames_around = others_.frames;
     report_.read_ms += reading.ms();

@@ -31,18 +31,18 @@ class FrameTally {
   void begin(const Window& computed);
   /// What was read of that window; `written` is all that is written of the frame.
   void add_inputs(const FrameSource& source, const Window& computed, const FrameInputs& inputs, const Window& written);
-  /// What preparing others took comes before the passes of the frame.
-  void add_others(const PreparedOthers& took);
-  /// What the frame's own estimate found, where it is a mean of many; `others`: that the frame itself takes beside it.
+  /// The cost of preparing others comes before the passes of the frame.
+  void add_others(const PreparationCost& cost);
+  /// The findings of the frame's own estimate, where it is a mean of many; `others`: those it takes beside it.
   void add_estimate(const FrameReport& estimate, const Others& others);
   void add_passes(std::span<const gpu::PassTime> passes);
   /// is_same: all results were kept from the frame before.
   void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
 
-  /// What the user should know before the frame is computed.
+  /// The notes on the frame before it is computed.
   static Notes notes_on(const FrameSource& source, const InputSettings& settings);
 
-  /// Writes the sums into the report, and what the user should know. Fails with ErrorKind::input where the pixels show
+  /// Writes the sums and the notes into the report. Fails with ErrorKind::input where the pixels show
   /// that a layer of hidden surfaces cannot be one.
   void finish(const FrameSource& source, const Settings& settings);
 
@@ -63,7 +63,7 @@ class FrameTally {
 
 // The frame.
 
-/// What all frames of a run have in common.
+/// The common state of all frames of a run.
 struct RunContext {
   FirstLook& look;
   const FramePlan& plan;

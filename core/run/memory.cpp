@@ -272,7 +272,7 @@ FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, 
 
 std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes) {
   if (!takes_frames(settings)) return 0;
-  const std::uint64_t around = 2 * std::uint64_t(with_judges(around_of(settings))) + 1;
+  const std::uint64_t around = 2 * std::uint64_t(farthest_seen(around_of(settings))) + 1;
   // All frames of a mean look at others, and near the ends of the shot they all lie on one side. Frames that are
   // computed at once may lie far from each other.
   const std::uint64_t means = 2 * std::uint64_t(settings.accumulate);
@@ -289,8 +289,8 @@ std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame
          most_estimates(plan, frames, std::size_t(lanes));
 }
 
-RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                      const Settings& settings, std::span<const int> frames, int lanes) {
+RunMemory without_shared_frames(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+                                const Settings& settings, std::span<const int> frames, int lanes) {
   RunMemory left = memory;
   const std::uint64_t bytes = std::min(memory.host_bytes, bytes_of_shot(plan, frame, settings.input, lanes) +
                                                               bytes_of_estimates(plan, frame, settings, frames, lanes));

@@ -23,7 +23,7 @@ constexpr std::uint64_t kCodecPart = 8;
 /// step along a line in 16 bits.
 int longest_side(const EstimatorSettings& settings);
 
-/// What windows of a frame take while they are computed.
+/// The memory that windows of a frame take while they are computed.
 struct FrameMemory {
   /// Upper bounds, in bytes.
   struct Bytes {
@@ -56,7 +56,7 @@ std::uint64_t raw_bytes_of(const FrameSource& source);
 
 // What a run may take.
 
-/// What a run may take: as much as the user says, or half of what is free.
+/// The memory that a run may take: as much as the user says, or half of the free memory.
 struct RunMemory {
   std::uint64_t program_bytes = 0;  // of host memory: the process with one lane, and without frames
   std::uint64_t lane_bytes = 0;     // of host memory: each further lane without its frame
@@ -72,7 +72,7 @@ RunMemory memory_for_frames(const DeviceSettings& settings, const gpu::DeviceInf
 /// The number of frames of which this window is computed that the memory has room for, at least 1.
 std::uint64_t frames_in(const RunMemory& memory, const FrameMemory& frame, const Window& computed);
 
-/// What one frame in flight may take.
+/// The memory that one frame in flight may take.
 struct Room {
   static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
 
@@ -85,7 +85,7 @@ struct Room {
   bool is_chosen = false;
 };
 
-/// What each of `lanes` frames in flight may take.
+/// The room of each of `lanes` frames in flight.
 Room room_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& device);
 
 // What frames see of each other.
@@ -93,20 +93,20 @@ Room room_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& dev
 /// The number of others that a frame takes at most.
 std::size_t most_others(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings);
 
-/// What a frame of the plan takes, and what its lane takes for its others.
+/// The memory of a frame of the plan, with the share of its lane in its others.
 FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, const Settings& settings);
 
-/// What the prepared frames take that so many lanes keep, bytes of host memory.
+/// Bytes of host memory of the prepared frames that so many lanes keep.
 std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes);
 
-/// What the estimates take that so many lanes keep for the means of these frames, which are computed in this order:
-/// bytes of host memory.
+/// Bytes of host memory of the estimates that so many lanes keep for the means of these frames, which are computed in
+/// this order.
 std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings,
                                  std::span<const int> frames, int lanes);
 
-/// What is left for the frames themselves.
-RunMemory beside_shot(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                      const Settings& settings, std::span<const int> frames, int lanes);
+/// The memory that is left when prepared frames and estimates are taken off.
+RunMemory without_shared_frames(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+                                const Settings& settings, std::span<const int> frames, int lanes);
 
 /// Fails with ErrorKind::usage where --memory has no room for the frames around one, naming how many it has room for,
 /// and what would be enough; with ErrorKind::device where nobody has said --memory.

@@ -21,8 +21,14 @@ constexpr std::chrono::seconds kTold{1};  // between two times that it is told h
 class Pipeline {
  public:
   Pipeline(Lanes& lanes, const RunContext& run, const Room& room, std::span<const int> frames,
-           const PipelineWatch& watch)
-      : lanes_(lanes), run_(run), frames_(frames), watch_(watch), room_(room), most_in_flight_(lanes.count()) {}
+           const TakeReport& take_report, const TakeProgress& take_progress)
+      : lanes_(lanes),
+        run_(run),
+        frames_(frames),
+        take_report_(take_report),
+        take_progress_(take_progress),
+        room_(room),
+        most_in_flight_(lanes.count()) {}
 
   /// Starts a thread for each lane. Where the system gives no more threads the run ends with its error, once those that
   /// have begun are done.
@@ -41,7 +47,7 @@ class Pipeline {
   /// Tells of the frames in their order, until all have ended.
   void tell() {
     try {
-      while (auto report = next_report()) watch_.tell(std::move(*report));
+      while (auto report = next_report()) take_report_(std::move(*report));
     } catch (...) {
       end_with(std::current_exception());
     }
@@ -67,7 +73,7 @@ class Pipeline {
     changed_.notify_all();
   }
 
-  /// What is tried for one frame, and what became of it.
+  /// A try at one frame, with what was learned from earlier ones.
   struct Attempt {
     std::size_t place;  // of the frame, in the list
     Room room;
@@ -159,7 +165,8 @@ class Pipeline {
     in_flight_--;
     // Later frames begin with what this one has learned.
     if (report.state == FrameState::done) room_.pixels = std::min(room_.pixels, room.pixels);
-    if (watch_.ends(report)) ended_ = true;
+    const bool ends_run = report.state == FrameState::failed && !run_.plan.settings().frames.keep_going;
+    if (report.device_lost || ends_run) ended_ = true;
     if (const auto work = working_on_.find(report.frame); work != working_on_.end()) work->second.has_ended = true;
     finished_.emplace(place, std::move(report));
     changed_.notify_all();
@@ -181,7 +188,7 @@ class Pipeline {
     while (!changed_.wait_for(lock, kTold, [&] { return finished_.contains(told_) || working_ == 0; })) {
       const auto frames = in_work();
       lock.unlock();
-      if (watch_.working) watch_.working(frames);
+      if (take_progress_) take_progress_(frames);
       lock.lock();
     }
     const auto found = finished_.find(told_);
@@ -212,7 +219,8 @@ class Pipeline {
   Lanes& lanes_;
   const RunContext& run_;
   const std::span<const int> frames_;
-  const PipelineWatch& watch_;
+  const TakeReport& take_report_;
+  const TakeProgress& take_progress_;
 
   std::mutex mutex_;  // of all below
   std::condition_variable changed_;
@@ -231,8 +239,8 @@ class Pipeline {
 }  // namespace
 
 void run_pipeline(Lanes& lanes, const RunContext& run, const Room& room, std::span<const int> frames,
-                  const PipelineWatch& watch) {
-  Pipeline pipeline(lanes, run, room, frames, watch);
+                  const TakeReport& take_report, const TakeProgress& take_progress) {
+  Pipeline pipeline(lanes, run, room, frames, take_report, take_progress);
   {
     std::vector<std::jthread> workers;
     pipeline.start(workers);

@@ -98,7 +98,7 @@ OtherView filled(gpu::Recorder& gpu, const SeenFrame& seen, const Movement& movi
 /// What moves as the witnesses tell, or cannot stand for its surface.
 std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen,
                                   const std::vector<std::shared_ptr<const SeenFrame>>& witnesses,
-                                  PreparedOthers& took) {
+                                  PreparationCost& cost) {
   FrameInputs inputs;
   for (const auto& witness : witnesses)
     inputs.others.push_back(filled(gpu, *witness, {}, seen.camera, inputs.others.size()));
@@ -109,7 +109,7 @@ std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen,
   surfels(gpu, view, by, moving);
   gpu.download(moving);
   gpu.run();
-  took.passes.insert(took.passes.end(), gpu.passes().begin(), gpu.passes().end());
+  cost.passes.insert(cost.passes.end(), gpu.passes().begin(), gpu.passes().end());
   const auto values = moving.as<const std::uint32_t>();
   return {values.begin(), values.end()};
 }
@@ -175,7 +175,7 @@ void SharedFrames::done(int frame) {
   const std::vector<int>& shot = plan_.shot();
   const auto place_of = [&](int number) { return std::ranges::lower_bound(shot, number) - shot.begin(); };
   const InputSettings input = plan_.at(frame).input;
-  const std::int64_t reach = std::int64_t(with_judges(around_of(input))) + 2 * std::int64_t(input.accumulate);
+  const std::int64_t reach = std::int64_t(farthest_seen(around_of(input))) + 2 * std::int64_t(input.accumulate);
   const auto is_seen = [&](int other) {
     return std::ranges::any_of(takers, [&](int taker) { return std::abs(place_of(taker) - place_of(other)) <= reach; });
   };
@@ -189,7 +189,7 @@ void SharedFrames::done(int frame) {
 }
 
 SeenFrame SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, int frame, const char* option,
-                                PreparedOthers& took) const {
+                                PreparationCost& cost) const {
   Settings settings;
   settings.input = input;
   FrameSource source = find_frame(input, false, frame);
@@ -202,8 +202,8 @@ SeenFrame SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, 
   gpu.download(*gbuffer.depth);
   gpu.download(*gbuffer.normal);
   gpu.run();
-  took.rows_read += source.rows_read;
-  took.passes.insert(took.passes.end(), gpu.passes().begin(), gpu.passes().end());
+  cost.rows_read += source.rows_read;
+  cost.passes.insert(cost.passes.end(), gpu.passes().begin(), gpu.passes().end());
   const auto depth = gbuffer.depth->as<const float>();
   const auto normal = gbuffer.normal->as<const std::uint32_t>();
   SeenFrame seen{source.reading.camera,   source.reading.data,          source.reading.display,        gbuffer.view,
@@ -213,17 +213,17 @@ SeenFrame SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, 
 }
 
 std::vector<SharedFrames::Seen> SharedFrames::seen(gpu::Recorder& gpu, const std::vector<int>& frames,
-                                                   PreparedOthers& took) {
+                                                   PreparationCost& cost) {
   return seen_.of(frames, [&](int frame) {
     const InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
-    return prepare(gpu, input, frame, shot_option(input), took);
+    return prepare(gpu, input, frame, shot_option(input), cost);
   });
 }
 
-Movement SharedFrames::movement_of(gpu::Recorder& gpu, int frame, PreparedOthers& took) {
-  const Seen here = seen(gpu, {frame}, took)[0];
-  const auto vectors = moving_by_vectors(gpu, frame, took, 1);
-  std::vector<std::uint32_t> moving = judged(gpu, *here, seen(gpu, judges_of(plan_, frame), took), took);
+Movement SharedFrames::movement_of(gpu::Recorder& gpu, int frame, PreparationCost& cost) {
+  const Seen here = seen(gpu, {frame}, cost)[0];
+  const auto vectors = moving_by_vectors(gpu, frame, cost, 1);
+  std::vector<std::uint32_t> moving = judged(gpu, *here, seen(gpu, judges_of(plan_, frame), cost), cost);
   // Vectors tell of one step: what another frame sees through has moved later or before. Who else has seen it does not
   // matter then.
   for (std::size_t i = 0; vectors && i < moving.size(); i++)
@@ -232,13 +232,13 @@ Movement SharedFrames::movement_of(gpu::Recorder& gpu, int frame, PreparedOthers
 }
 
 std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Recorder& gpu, int frame,
-                                                                         PreparedOthers& took, int around) {
+                                                                         PreparationCost& cost, int around) {
   const InputSettings input = plan_.at(frame).input;
   if (input.motion.empty()) return std::nullopt;
-  const Seen here = seen(gpu, {frame}, took)[0];
+  const Seen here = seen(gpu, {frame}, cost)[0];
   MotionFrame motion{here->depth, here->view, {}, {}};
   for (const int other : plan_.around(frame, 1).there) {
-    const Seen beside = seen(gpu, {other}, took)[0];
+    const Seen beside = seen(gpu, {other}, cost)[0];
     std::optional<FromThere>& there = other < frame ? motion.previous : motion.next;
     there.emplace(
         FromThere{view_from_view(beside->camera, here->camera), view_of(beside->camera, here->data, here->display)});
@@ -259,17 +259,18 @@ std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Re
        planes.path, frame);
 }
 
-std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame,
-                                                              Others& others, PreparedOthers& took) {
+std::vector<SharedFrames::SeenWithMovement> SharedFrames::frames_around(gpu::Recorder& gpu, const FrameSource& target,
+                                                                        int frame, Others& others,
+                                                                        PreparationCost& cost) {
   const int count = around_of(plan_.at(frame).input);
   const FramesAround around = plan_.around(frame, count);
   others.frames = around.there;
   others.missing = around.missing;
   require_place(target, frame, "--around");
-  seen(gpu, seen_around(plan_, frame), took);
-  const std::vector<Seen> frames = seen(gpu, around.there, took);
-  const auto moving = moving_.of(around.there, [&](int other) { return movement_of(gpu, other, took); });
-  std::vector<Judged> found;
+  seen(gpu, seen_around(plan_, frame), cost);
+  const std::vector<Seen> frames = seen(gpu, around.there, cost);
+  const auto moving = moving_.of(around.there, [&](int other) { return movement_of(gpu, other, cost); });
+  std::vector<SeenWithMovement> found;
   for (std::size_t i = 0; i < frames.size(); i++) {
     found.push_back({frames[i], moving[i]});
     const auto projection = [](const Camera& camera) { return camera.orthographic ? "orthographic" : "perspective"; };
@@ -283,31 +284,32 @@ std::vector<SharedFrames::Judged> SharedFrames::frames_around(gpu::Recorder& gpu
   return found;
 }
 
-std::vector<SharedFrames::Judged> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target, int frame,
-                                                            Others& others, PreparedOthers& took) const {
+std::vector<SharedFrames::SeenWithMovement> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target,
+                                                                      int frame, Others& others,
+                                                                      PreparationCost& cost) const {
   InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
   others.views = other_views_of(target);
   require_place(target, frame, "--set other-views");
-  std::vector<Judged> found;
+  std::vector<SeenWithMovement> found;
   for (const auto& view : others.views) {
     input.view = view;
-    const auto other = std::make_shared<const SeenFrame>(prepare(gpu, input, frame, "--set other-views", took));
+    const auto other = std::make_shared<const SeenFrame>(prepare(gpu, input, frame, "--set other-views", cost));
     if (is_same_place(other->camera, target.reading.camera))
       fail(ErrorKind::input,
            "{}: its views have one camera, and --set other-views needs that of each: give a --camera file with "
            "\"views\"",
            target.depth_path());
-    found.push_back({other, std::make_shared<const Movement>(movement(judged(gpu, *other, {}, took)))});
+    found.push_back({other, std::make_shared<const Movement>(movement(judged(gpu, *other, {}, cost)))});
   }
   return found;
 }
 
-Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took) {
+Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparationCost& cost) {
   const InputSettings input = plan_.at(frame).input;
   Others others;
-  std::vector<Judged> found;
-  if (around_of(input) > 0) found = frames_around(gpu, target, frame, others, took);
-  if (input.other_views) std::ranges::move(other_views(gpu, target, frame, others, took), std::back_inserter(found));
+  std::vector<SeenWithMovement> found;
+  if (around_of(input) > 0) found = frames_around(gpu, target, frame, others, cost);
+  if (input.other_views) std::ranges::move(other_views(gpu, target, frame, others, cost), std::back_inserter(found));
   for (const auto& [seen, moving] : found)
     others.seen.push_back(filled(gpu, *seen, *moving, target.reading.camera, others.seen.size()));
   return others;
@@ -336,7 +338,7 @@ std::vector<int> frames_seen_for(const FramePlan& plan, int frame) {
   return {seen.begin(), seen.end()};
 }
 
-int with_judges(int count) {
+int farthest_seen(int count) {
   const int judges = judges_to_each_side(count);
   // At the ends of the shot they all lie on one side.
   return count == kWholeShot ? count : std::max(count + judges, 2 * judges);

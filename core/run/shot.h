@@ -85,7 +85,7 @@ class MadeOnce {
   std::map<int, Value> values_;  // null: in the making
 };
 
-/// What one view of a frame sees, in host memory.
+/// The first surface that one view of a frame sees, in host memory.
 struct SeenFrame {
   Camera camera;
   Window data, display;
@@ -102,7 +102,7 @@ struct Movement {
   std::uint64_t hash = 0;            // of them
 };
 
-/// What a frame takes from others.
+/// Surfaces that a frame takes from others.
 struct Others {
   std::vector<OtherView> seen;
   std::vector<int> frames, missing;  // around it: those that it takes, and those that are not there
@@ -112,7 +112,7 @@ struct Others {
 /// Names them, for a header; empty where it takes none: "frames 3-5, 7; missing 6; views right".
 std::string text_of(const Others& others);
 
-/// What one frame has estimated, in host memory: planes over all of it.
+/// The estimate of one frame, in host memory: planes over all of it.
 struct EstimatedFrame {
   int frame = 0;
   Camera camera;
@@ -140,12 +140,12 @@ struct TakenEstimates {
 std::string text_of(const TakenEstimates& taken);
 
 /// Passes run and rows read for other frames.
-struct PreparedOthers {
+struct PreparationCost {
   std::uint64_t rows_read = 0;
   std::vector<gpu::PassTime> passes = {};
 };
 
-/// Where a frame is estimated.
+/// The recorder and the memory for the estimate of a frame.
 struct EstimateRoom {
   gpu::Recorder& gpu;
   const Room& room;
@@ -172,10 +172,10 @@ class SharedFrames {
 
   /// Gives what a frame takes from others, in upload buffers of the recorder, which is free before and after. Fails
   /// with ErrorKind::input, naming the file, where one of them cannot be read or its camera says not where it stands.
-  Others others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparedOthers& took);
+  Others others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparationCost& cost);
 
   /// Gives the estimates around a frame. Fails as others_of() does.
-  TakenEstimates estimates_of(const EstimateRoom& where, int frame, PreparedOthers& took);
+  TakenEstimates estimates_of(const EstimateRoom& where, int frame, PreparationCost& cost);
 
   /// From here on what this frame takes is kept.
   void begin(int frame);
@@ -188,26 +188,26 @@ class SharedFrames {
 
  private:
   using Seen = MadeOnce<SeenFrame>::Value;
-  struct Judged {
+  struct SeenWithMovement {
     Seen seen;
     MadeOnce<Movement>::Value moving;
   };
 
-  std::vector<Judged> frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
-                                    PreparedOthers& took);
-  std::vector<Judged> other_views(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
-                                  PreparedOthers& took) const;
-  std::vector<Seen> seen(gpu::Recorder& gpu, const std::vector<int>& frames, PreparedOthers& took);
-  Movement movement_of(gpu::Recorder& gpu, int frame, PreparedOthers& took);
-  /// What of a frame moves by its motion vectors: 1 for each pixel that does, and up to `around` pixels beside it, else
-  /// 0. None where the settings name no vectors, and at an end of the shot where they lead out of it. Fails where no
+  std::vector<SeenWithMovement> frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
+                                              PreparationCost& cost);
+  std::vector<SeenWithMovement> other_views(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
+                                            PreparationCost& cost) const;
+  std::vector<Seen> seen(gpu::Recorder& gpu, const std::vector<int>& frames, PreparationCost& cost);
+  Movement movement_of(gpu::Recorder& gpu, int frame, PreparationCost& cost);
+  /// Marks pixels of a frame that move by its motion vectors, and up to `around` pixels beside each, with 1, all others
+  /// with 0. None where the settings name no vectors, and at an end of the shot where they lead out of it. Fails where no
   /// reading of the vectors is right.
-  std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparedOthers& took,
+  std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparationCost& cost,
                                                              int around);
   /// `option`: by which it is taken.
   SeenFrame prepare(gpu::Recorder& gpu, const InputSettings& settings, int frame, const char* option,
-                    PreparedOthers& took) const;
-  EstimatedFrame estimate(const EstimateRoom& where, int frame, PreparedOthers& took);
+                    PreparationCost& cost) const;
+  EstimatedFrame estimate(const EstimateRoom& where, int frame, PreparationCost& cost);
 
   const FramePlan& plan_;
   const FrameSource* settled_;
@@ -227,8 +227,8 @@ int most_judges(int count);
 
 /// All frames that change what a frame takes: those around it, and their judges. In order.
 std::vector<int> frames_seen_for(const FramePlan& plan, int frame);
-/// How far from a frame they lie at most, in frames of the shot.
-int with_judges(int count);
+/// The distance of the farthest of them from a frame, in frames of the shot.
+int farthest_seen(int count);
 
 /// The upload buffers of a lane that frames' estimates are put into. What is there for one frame is there for the next.
 class EstimateSlots {

@@ -182,7 +182,7 @@ class Said : public testing::Test {
 TEST_F(Said, settings_that_may_have_no_effect_are_those_of_the_cases) {
   std::set<std::string> with_reason, with_case;
   for (const auto& row : option_table())
-    if (row.why_without_effect) with_reason.insert(row.long_name());
+    if (!row.idle_reasons.empty()) with_reason.insert(row.long_name());
   for (const auto& [ones, others, why] : rivals())
     for (const auto& key : joined(ones, others)) with_reason.insert(row_of_key(key).long_name());
   for (const auto& one : cases_without_effect()) with_case.insert(one.option());

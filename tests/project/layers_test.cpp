@@ -109,7 +109,7 @@ const std::map<std::string, Names> kRooms = {
     {"core/run", {"core/base", "core/formats", "core/frame", "core/chain", "core/gpu", "core/options", "kernels"}},
     {"core/reference", {"core/base", "core/frame", "kernels"}},
     {"core/measure", {"core/base", "core/formats", "core/frame"}},
-    {"core/inspect", {"core/base", "core/formats", "core/frame", "core/chain"}},
+    {"core/inspect", {"core/base", "core/formats", "core/frame", "core/chain", "core/run"}},
     {"core/bench",
      {"core/base", "core/gpu", "core/formats", "core/frame", "core/chain", "core/run", "core/reference",
       "core/measure"}},

@@ -109,9 +109,9 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
     EstimateSlots slots;
     std::size_t most = 0;
     for (std::size_t i = 0; i < frames.size(); i++) {
-      PreparedOthers took;
+      PreparationCost cost;
       shot.begin(frames[i]);
-      const TakenEstimates taken = shot.estimates_of({gpu, kMuchRoom}, frames[i], took);
+      const TakenEstimates taken = shot.estimates_of({gpu, kMuchRoom}, frames[i], cost);
       EXPECT_EQ(taken.of.size(), 3u);
       slots.filled(gpu, plan, taken, frames[i], kMuchRoom.buffer_bytes);
       all.insert(all.end(), taken.of.begin(), taken.of.end());
@@ -144,9 +144,9 @@ TEST_F(AccumulatedShots, where_fewer_frames_count_as_many_are_listed) {
   const FramePlan plan(settings);
   SharedFrames shot(plan, nullptr, plan.frames());
   gpu::Recorder gpu(device());
-  PreparedOthers took;
+  PreparationCost cost;
   EstimateSlots slots;
-  TakenEstimates taken = shot.estimates_of({gpu, kMuchRoom}, 3, took);
+  TakenEstimates taken = shot.estimates_of({gpu, kMuchRoom}, 3, cost);
   for (const uint count : {4u, 3u, 1u}) {
     const auto is_other = [](const auto& estimated) { return estimated->frame != 3; };
     while (taken.of.size() > count + 1) taken.of.erase(std::ranges::find_if(taken.of, is_other));
@@ -175,9 +175,9 @@ TEST_F(AccumulatedShots, no_more_of_what_estimates_see_is_kept_than_is_counted) 
   SharedFrames shot(plan, nullptr, plan.frames());
   gpu::Recorder gpu(device());
   for (const int frame : plan.frames()) {
-    PreparedOthers took;
+    PreparationCost cost;
     shot.begin(frame);
-    shot.estimates_of({gpu, kMuchRoom}, frame, took);
+    shot.estimates_of({gpu, kMuchRoom}, frame, cost);
     EXPECT_LE(shot.seen_count(), counted()) << frame;
     shot.done(frame);
   }

@@ -1,5 +1,7 @@
 // What is looked at before a run: holes of sequences, the frame's number, all that is missing, the radius.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cli/options.h"
+#include "core/run/batch.h"
 #include "tests/support/exr_header.h"
 #include "tests/support/sequence_folder.h"
 
@@ -180,6 +182,15 @@ TEST_F(SingleFrame, of_which_nothing_is_used_is_said) {
               AllOf(HasSubstr("no channel of " + frame), HasSubstr("--normal"), HasSubstr("[unused-input]")));
   for (const char* more : {"--normal-channels foo", "--normal none"})
     EXPECT_THAT(run(joined(by_depth, typed(more))).err, Not(HasSubstr("unused-input"))) << more;
+}
+
+TEST_F(SingleFrame, is_opened_once) {
+  RunOptions options;
+  ASSERT_TRUE(parse_run_options({frame, "-o", ao, "--camera", camera, "--radius", "auto"}, options));
+  FirstLook look(options.settings);
+  look.prepare();
+  fs::remove(frame);  // which stays readable for those who have it open
+  EXPECT_EQ(run_frames(look, {}).done, 1);
 }
 
 class Missing : public CommandLine {};

@@ -152,11 +152,11 @@ TEST_F(Shots, keep_no_more_frames_than_their_windows) {
     SharedFrames shared(plan, nullptr, plan.frames());
     gpu::Recorder gpu(device());
     for (const int frame : plan.frames()) {
-      PreparedOthers took;
+      PreparationCost cost;
       FrameSource target = open_frame(plan.at(frame), frame);
       shared.begin(frame);
-      shared.others_of(gpu, target, frame, took);
-      EXPECT_LE(shared.seen_count(), std::size_t(2 * with_judges(2) + 1)) << order << " " << frame;
+      shared.others_of(gpu, target, frame, cost);
+      EXPECT_LE(shared.seen_count(), std::size_t(2 * farthest_seen(2) + 1)) << order << " " << frame;
       EXPECT_GE(shared.seen_count(), 5u) << order << " " << frame;
       shared.done(frame);
     }

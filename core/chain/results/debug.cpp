@@ -71,6 +71,11 @@ std::vector<const DebugView*> debug_views_of(const OutputSettings& settings) {
   return views;
 }
 
+bool shows(const OutputSettings& settings, DebugSource source) {
+  const auto views = debug_views_of(settings);
+  return std::ranges::find(views, source, &DebugView::source) != views.end();
+}
+
 std::string debug_path(const OutputSettings& settings, const DebugView& view) {
   const std::string& output = settings.output;
   return (output.ends_with(".exr") ? output.substr(0, output.size() - 4) : output) + "." + view.name + ".png";

@@ -45,6 +45,8 @@ std::vector<std::string> debug_view_names();
 
 /// The rows that the settings ask for. Fails with ErrorKind::usage on a name that is not in the table, listing what is.
 std::vector<const DebugView*> debug_views_of(const OutputSettings& settings);
+/// Whether the settings ask for a view of this source.
+bool shows(const OutputSettings& settings, DebugSource source);
 
 /// Where the picture of a view goes: beside the AO, ao.exr -> ao.raw-depth.png.
 std::string debug_path(const OutputSettings& settings, const DebugView& view);
