@@ -13,7 +13,7 @@
 namespace alcove {
 
 enum class DebugScale { fixed, fixed_logarithmic, percentile, percentile_logarithmic };
-/// What kernels/results/debug.comp takes beside the G-buffer.
+/// The input of kernels/results/debug.comp beside the G-buffer.
 enum class DebugSource {
   none,
   raw_depth,
@@ -46,7 +46,7 @@ std::vector<std::string> debug_view_names();
 /// The rows that the settings ask for. Fails with ErrorKind::usage on a name that is not in the table, listing what is.
 std::vector<const DebugView*> debug_views_of(const OutputSettings& settings);
 
-/// Where the picture of a view goes: beside the AO, ao.exr -> ao.raw-depth.png.
+/// The path of a view's picture: beside the AO, ao.exr -> ao.raw-depth.png.
 std::string debug_path(const OutputSettings& settings, const DebugView& view);
 
 /// One number per pixel for a debug view; kSkyDepth for sky.
