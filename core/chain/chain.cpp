@@ -17,7 +17,7 @@
 namespace alcove {
 namespace {
 
-/// What a frame shows.
+/// The G-buffers of a frame.
 struct Surfaces {
   GBuffer frame;
   GBuffer wide;  // with the margin in which other frames and views show more; else the same
@@ -90,7 +90,7 @@ Seen visibility_of(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces&
                                 : own_visibility(gpu, frame, surfaces, settings, wanted);
 }
 
-/// What the passes have counted on their way.
+/// The counts of the passes.
 FrameOutputs counts_of(const Surfaces& surfaces, const Seen& seen) {
   return {.counts = surfaces.frame.counts,
           .layer_counts = surfaces.frame.layer_counts,
@@ -103,7 +103,7 @@ FrameOutputs counts_of(const Surfaces& surfaces, const Seen& seen) {
           .count = seen.count};
 }
 
-/// What the frame hands to others.
+/// The estimate that the frame hands to others.
 FrameOutputs handed_out(const Surfaces& surfaces, const Seen& seen) {
   FrameOutputs out = counts_of(surfaces, seen);
   out.own = OwnEstimate{surfaces.frame, seen.visibility};

@@ -20,7 +20,7 @@ using HostPlanes = RawPlaneArray<std::span<const float>>;
 FrameInputs upload(gpu::Recorder& gpu, const Reading& reading, const HostPlanes& planes, int frame);
 FrameInputs upload(gpu::Recorder& gpu, const HostFrame& frame);
 
-/// What the chain makes of a frame in host memory.
+/// The chain's result for a frame in host memory.
 struct HostResult {
   std::vector<float> ao;  // one value per pixel: visibility in [0, 1]
   std::uint32_t sky_pixels = 0;

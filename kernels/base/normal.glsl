@@ -22,7 +22,7 @@ vec3 octahedral_direction(vec2 p) {
 
 vec3 unpack_normal(uint word) { return normalize(octahedral_direction(unpackSnorm2x16(word))); }
 
-/// How far a normal is at least turned to the eye, as a cosine. Were it smaller, the slices at grazing angles would
+/// Normals are turned to the eye by at least this cosine. Were it smaller, the slices at grazing angles would
 /// lose their weight to rounding.
 const float kLeastFacing = 1e-3;
 

@@ -4,12 +4,12 @@
 /// Surfaces are one if they are no farther apart than so many times what a depth may be off.
 const float kPrecisions = 4.0;
 
-/// How many scene units a pixel is wide at planar depth z.
+/// The width of a pixel at planar depth z, scene units.
 float pixel_width(View view, float z) { return view.tangent_per_pixel.x * (view.orthographic != 0 ? 1.0 : z); }
 
 float error_at(vec3 error, float z) { return error.x + z * (error.y + z * error.z); }
 
-/// How far from a surface at planar depth z another one is another one.
+/// Two surfaces at planar depth z are two if they are farther apart than this, scene units.
 float separation_at(Reprojection r, float z) {
   return r.separation >= 0.0 ? r.separation : kPrecisions * error_at(r.depth_precision, z) + pixel_width(r.to, z);
 }

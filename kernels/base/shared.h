@@ -91,7 +91,7 @@ ALCOVE_CONSTANT int kTileBlock = 2;  // tiles a side of the blocks that are judg
 /// Of a listed tile: hidden surfaces may count. Without it nothing is hidden so near that an estimator looks at it.
 ALCOVE_CONSTANT uint kTileLayered = 0x80000000u;
 
-/// How many tiles are listed, and why the others are not.
+/// The numbers of tiles: of those that are listed, and of the others by their reason.
 struct TileCounts {
   GroupCount groups;  // that hold the listed ones
   uint listed;
@@ -105,14 +105,14 @@ struct TileCounts {
 ALCOVE_CONSTANT int kSiteReach = 13;
 ALCOVE_CONSTANT uint kLattices = 5;  // of one pixel of 16, 8, 4, 2 and 1: see tiles.glsl
 
-/// How many sites are listed: pixels that are to be estimated.
+/// The number of listed sites: pixels that are to be estimated.
 struct SiteCounts {
   GroupCount groups;  // that hold them
   uint listed;
   uint of_lattice[kLattices];  // of them, those on a lattice and on no wider one; from the widest on
 };
 
-/// How many runs of pixels a filter is listed for.
+/// The number of runs of pixels that a filter is listed for.
 struct RunCounts {
   GroupCount groups;
   uint listed;
@@ -123,7 +123,7 @@ ALCOVE_CONSTANT uint kTileOpen = 0;    // its visibility is 1: it is sky, or not
 ALCOVE_CONSTANT uint kTileListed = 1;  // it is to be estimated
 ALCOVE_CONSTANT uint kTileKept = 2;    // its visibility is as in the frame before, and so are its depth and normals
 
-/// What the kernels count over a frame.
+/// Counts of the kernels over a frame.
 struct FrameCounts {
   uint sky;                // pixels
   uint repaired_depth;     // pixels whose depth was NaN or negative: treated as sky

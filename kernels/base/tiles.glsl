@@ -23,7 +23,7 @@ uint lattice_row(ivec2 first, int spacing) {
   return row >> turn | row << ((32u - turn) & 31u);
 }
 
-/// Where the words of a tile begin.
+/// The index of a tile's first word.
 int words_of_tile(ivec2 tile, ivec2 tiles) { return (tile.y * tiles.x + tile.x) * 8; }
 
 /// The word of the row of a tile in which a pixel lies.
@@ -57,7 +57,7 @@ struct ListedPlace {
   uint pixel;
 };
 
-/// Which of the pixels of all listed tiles an invocation is for.
+/// The pixel that an invocation is for, of those of all listed tiles.
 ListedPlace listed_place(uvec2 group, uint invocation) {
   const uint place = (group.y * kListedRow + group.x) * (kGroupX * kGroupY) + invocation;
   return ListedPlace(place / kTilePixels, place % kTilePixels);
@@ -74,7 +74,7 @@ ivec2 unpack_run(uint packed) { return ivec2(packed & 0xffffu, packed >> 16); }
 
 ivec2 pixel_of_tile(ivec2 tile, uint pixel) { return tile * kTile + ivec2(pixel % uint(kTile), pixel / uint(kTile)); }
 
-/// How many tiles there are if they count from the display window's corner, `origin` pixels before the image's, so that
+/// The number of tiles if they count from the display window's corner, `origin` pixels before the image's, so that
 /// a crop has those of the whole.
 ivec2 anchored_tiles_of(ivec2 size, ivec2 origin) { return tiles_of(size + (origin & (kTile - 1))); }
 
@@ -89,7 +89,7 @@ uint invocation_of_tile(ivec2 tiles, uvec2 invocation) {
   return invocation.y * row + invocation.x;
 }
 
-/// What the estimators store of a mean open direction. It lies in [0, 1], so that filters of visibility take it as it
+/// A mean open direction as the estimators store it. It lies in [0, 1], so that filters of visibility take it as it
 /// is.
 vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
 

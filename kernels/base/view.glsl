@@ -1,7 +1,7 @@
 // Pixel <-> view space, for perspective and orthographic projections. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 
-/// Where the ray of an image point meets the plane at unit depth (perspective), or its place in the plane
+/// The point where the ray of an image point meets the plane at unit depth (perspective), or its place in the plane
 /// (orthographic).
 vec2 tangent_of(View view, vec2 point_px) { return (point_px - view.center) * view.tangent_per_pixel; }
 
@@ -23,7 +23,7 @@ ivec2 pixel_of(View view, vec3 position) {
 /// The unit vector from a position towards the eye.
 vec3 toward_eye(View view, vec3 position) { return view.orthographic != 0 ? vec3(0, 0, 1) : normalize(-position); }
 
-/// How far the surface of a pixel is from the eye (perspective), or from the eye's plane.
+/// The distance of a pixel's surface from the eye (perspective), or from the eye's plane.
 float eye_distance(View view, ivec2 pixel, float z) {
   const vec2 t = tangent_of(view, vec2(pixel) + 0.5);
   return view.orthographic != 0 ? z : z * sqrt(1.0 + dot(t, t));

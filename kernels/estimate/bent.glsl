@@ -4,9 +4,10 @@
 // On one side of a slice, theta is the angle from the view ray V towards that side's tangent T, gamma that of the
 // projected normal. The integral of cos(theta - gamma) sin(theta) (sin(theta), cos(theta)) over the angles that are
 // open, along T and V, times the length of the normal's projection, is what the side adds to the mean open direction.
-// Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, in closed form; the tests hold
-// it to quadrature. Any set of intervals is a sum of differences of bent_to(). Nothing blocked: 2/3 of the normal, on
-// the mean over all slices.
+// Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, have it in closed form
+// (equations 20 and 21 of the edition of 2019); here in powers of cosine and sine. The tests hold it to quadrature. Any
+// set of intervals is a sum of differences of bent_to(). Nothing blocked: 2/3 of the normal, on the mean over all
+// slices.
 
 /// The integral from the view ray to the angle of (cosine, sine), in [0, pi].
 vec2 bent_to(float cosine, float sine, float cos_gamma, float sin_gamma) {

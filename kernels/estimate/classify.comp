@@ -5,11 +5,15 @@
 // In: depth, bounds of what is hidden, changes against the frame before, needed tiles.
 // Out: a list of the tiles that are left, and the visibility of sky, which is 1.
 //
-// Where nothing is hidden within kFarEnd radii of the receivers, nor closes a solid whose front is there, an estimator
-// finds what it finds where nothing is hidden at all, to the bit (surfaces.glsl). Such tiles are listed without
-// kTileLayered. Distances are those of the boxes in space that hold receivers and hidden surfaces.
-//
-// Where another frame's estimates still lie and nothing within reach is other than it was, they stay.
+// Each row of a workgroup takes a block of 2 x 2 tiles. The steps have their numbers at the code:
+//  1. The invocations of a row find the tiles of their block that show a surface which anybody needs, and the nearest
+//     and farthest depth.
+//  2. The box in space that holds the receivers, and the part of the image within their reach, follow from these.
+//  3. If another frame's estimates still lie there, and nothing within reach has changed, they stay.
+//  4. If nothing is hidden within kFarEnd radii of the receivers, nor closes a solid whose front is there, an estimator
+//     finds what it finds where nothing is hidden at all, to the bit (surfaces.glsl). Such tiles are listed without
+//     kTileLayered. Distances are those of the boxes in space that hold receivers and hidden surfaces.
+//  5. The tiles that are left are counted and listed; the others get what estimators write for sky.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
@@ -192,7 +196,7 @@ void main() {
     layered[row] = kLayered && !kSkips ? 1u : 0u;
   }
   barrier();
-  // Each invocation looks down its own column of the tiles, until it has seen a surface in each of them or, where
+  // 1. Each invocation looks down its own column of the tiles, until it has seen a surface in each of them or, where
   // depths must be known, to the end.
   const bool asks_depths = kReuses || kTellsLayered;
   float near = kSkyDepth;
@@ -217,12 +221,15 @@ void main() {
   bool is_kept = false;
   if (asks_depths && tile.x < count.x && surfaces[row] != 0u) {
     const float farthest_here = uintBitsToFloat(farthest[row]);
+    // 2.
     const Box box = box_of(view, block, uintBitsToFloat(nearest[row]), farthest_here);
     const float reach = reach_of_samples(view, params.radius, farthest_here);
     const Rect rect = image_of_reach(view, box, reach);
-    if (kReuses) is_kept = is_as_before(rect);
+    if (kReuses) is_kept = is_as_before(rect);  // 3.
+    // 4.
     if (kTellsLayered && !is_kept && is_hidden_near(view, box, reach, rect)) atomicOr(layered[row], 1u);
   }
+  // 5.
   if (tile == ivec2(0) && gl_LocalInvocationID.x == 0u) counts.groups.z = 1u;
   const uint first_place = row * uint(kTilesOfBlock);
   for (int i = int(gl_LocalInvocationID.x); i < kTilesOfBlock; i += int(kGroupX)) {

@@ -51,7 +51,7 @@ const float kMostDepths = 15.9;
 /// normal and the view ray, which is 1 long along the optical axis.
 const float kLeastFacingToGoOn = -0.02;
 
-/// How a surface goes on beyond the border its last 4 pixels say, and at least 3 must.
+/// A surface's last 4 pixels, and at least 3, tell how it goes on beyond the border.
 const int kStepsAtBorder = 3;
 const int kLeastStepsAtBorder = 2;
 
@@ -105,7 +105,7 @@ struct Opens {
   Open a, b, c;
 };
 
-/// What a walk along the line knows of the vertices behind it.
+/// The vertices that a walk along the line has passed.
 struct Walk {
   int way;               // 1 or -1
   uint begins, is_last;  // the flags of vertices, as the walk meets them
@@ -148,7 +148,7 @@ float change_on_plane(View view, Lines lines, LinePlane plane, int line, Corner 
   return is_known ? change : otherwise;
 }
 
-/// What goes on from the walk's last vertex, along the line through `inner` and that.
+/// The surface that goes on from the walk's last vertex, along the line through `inner` and that vertex.
 Open from_end(View view, Lines lines, LinePlane plane, int line, Walk walk, Corner inner, int index) {
   const bool perspective = view.orthographic == 0;
   const Corner end = walk.before;

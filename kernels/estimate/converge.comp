@@ -26,7 +26,8 @@ writeonly buffer Judged { JudgedTile judged[]; };  // one per tile
 readonly buffer List { uint list[]; };             // one uint per tile that had more directions, from refine
 readonly buffer Counts { TileCounts counts; };     // from refine
 
-/// Of the difference between both estimates, the error of the better one: measured on rendered frames, 0.60 to 0.75.
+/// The error of the better estimate, as a part of the difference between both: measured on rendered frames, 0.60 to
+/// 0.75.
 const float kErrorShare = 0.75;
 
 void main() {

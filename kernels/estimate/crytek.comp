@@ -39,18 +39,18 @@ readonly buffer Sites { uint sites[]; };                       // one uint per s
 readonly buffer SiteCountsBuffer { SiteCounts site_counts; };  // only if sparse
 readonly buffer Counts { TileCounts counts; };
 
-/// How far a pixel's ray must turn towards the tangent plane to meet it at a place worth the name.
+/// The least turn of a pixel's ray towards the tangent plane with which it meets the plane at a usable place.
 const float kLeastSlope = 1e-4;
 const float kTwoPi = 6.28318530717958648;
 
-/// How far sample i lies from the receiver, in radii, by a random number in [0, 1). Clustered samples spread with the
-/// square of their number from a tenth of the radius on, as engines usually scale them.
+/// The distance of sample i from the receiver, in radii, by a random number in [0, 1). Clustered samples spread with
+/// the square of their number from a tenth of the radius on, as engines usually scale them.
 float reach_of(uint i, float random) {
   const float x = float(i) / float(kSamples);
   return params.uniform_volume != 0 ? pow(x + random / float(kSamples), 1.0 / 3.0) : (0.1 + 0.9 * x * x) * random;
 }
 
-/// How much a hit counts whose depth differs by this much from the receiver's.
+/// The weight of a hit whose depth differs by this much from the receiver's.
 float range_weight(float depth_difference) {
   if (params.range_check == kRangeNone) return 1.0;
   const float dz = abs(depth_difference);

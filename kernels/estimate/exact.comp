@@ -6,21 +6,26 @@
 // Out: the sums of blocked and of whole arcs; after the last direction visibility, 1 = open. The same of the mean open
 // direction (see bent.glsl), where it is asked for.
 //
-// What horizon.comp samples, this kernel searches without gaps. A receiver walks from vertex to vertex of the profile
-// of its line (profile.comp), whose strokes hold all pixels in between, until the sphere of the radius is left behind.
-// - Slices are even on the image and shared by all pixels. Each weighs 1 / (ray_length of the line's foot * cosine from
-//   it), the Jacobian to azimuth about the view ray.
-// - The receiver is moved onto its line's plane along its tangent plane, by half a pixel at most: a flat surface stays
-//   flat.
-// - Every stroke is cut to what the sphere holds of it, and blocks from its front to its back, which lies as far along
-//   the eye's ray as its run is wide ("width as thickness"). What goes on from the receiver is its own surface: it
-//   blocks all below its horizon.
-// - Where hidden surfaces are known, the line has a profile in each of several slots. The receiver's own surface goes
-//   on in the slot that it is in; all others add what blocks to the same union. A run there that passes behind the
-//   receiver is cut at the eye's ray. Where a vertex knows how thick its surface's solid is, that counts.
-// - What is blocked is a union of intervals. It is exact for what joins the horizon; all others are counted in 24
-//   sectors (sectors.glsl).
-// - The result is 1 - (sum of blocked arcs) / (sum of whole arcs).
+// horizon.comp takes samples; this kernel searches without gaps. It has the same slices and integrals. The steps have
+// their numbers at the code:
+//  1. Slices are even on the image and shared by all pixels. Each weighs 1 / (ray_length of the line's foot * cosine
+//     from it), the Jacobian to azimuth about the view ray.
+//  2. The receiver is moved onto its line's plane along its tangent plane, by half a pixel at most: a flat surface
+//     stays flat.
+//  3. On each side the receiver walks from vertex to vertex of the profile of its line (profile.comp), whose strokes
+//     hold all pixels in between, until the sphere of the radius is left behind.
+//  4. Where hidden surfaces are known, the line has a profile in each of several slots, and a walk goes along each. The
+//     receiver's own surface goes on in the slot that it is in; all others add what they block to the same union. A run
+//     there that passes behind the receiver is cut at the eye's ray. A vertex that knows how thick its surface's solid
+//     is has that thickness.
+//  5. Where surfaces are completed, a stroke is drawn on to where its surface goes on unseen (complete.comp). The
+//     surface that goes on towards the receiver behind the end of a walk is the last one.
+//  6. Every stroke is cut to the part within the sphere.
+//  7. A stroke blocks from its front to its back, which lies as far along the eye's ray as its run is wide ("width as
+//     thickness"). What goes on from the receiver is its own surface: it blocks all below its horizon.
+//  8. What is blocked is a union of intervals. It is exact for what joins the horizon; all others are counted in 24
+//     sectors (sectors.glsl). Its arcs are integrated in closed form (slice.glsl).
+//  9. The result is 1 - (sum of blocked arcs) / (sum of whole arcs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/exact.h"
@@ -89,7 +94,7 @@ struct Stroke {
   vec2 from, to;
 };
 
-/// What the sphere of the radius holds of a stroke.
+/// 6. The part of a stroke within the sphere of the radius.
 struct Clipped {
   vec2 near, far;
   bool is_within;  // whether it holds anything
@@ -174,7 +179,19 @@ struct Search {
   float unit;                      // scene units: a power of two near the receiver's depth
 };
 
-/// What is found to block on a side.
+/// One side of a receiver's line: what all steps of its search share.
+struct Context {
+  View view;
+  LinePlane plane;
+  Point point;
+  Side side;
+  Search search;
+  int row;          // index of the line's column 0 in each plane of the profile
+  int slot;         // of the receiver's own surface
+  float radius_sq;  // of the sphere beyond which nothing blocks
+};
+
+/// The blocked directions of a side.
 struct Blocked {
   float own;     // slope_of() up to which the receiver's own surface blocks
   uint sectors;  // that other runs block
@@ -202,11 +219,38 @@ Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
   return point;
 }
 
-/// Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set apart.
-/// least: the height above the tangent plane that it must have somewhere. goes_on: from `bend` on it is not seen, or up
-/// to there, and need not be straight with what is; both hang together there, so they block one interval.
-void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, bool goes_on, vec2 bend, float eye_distance,
-           float least, float radius_sq) {
+/// A vertex as the receiver sees it, and the place up to which its surface goes on unseen.
+struct Corner {
+  vec2 place, unseen;  // in (across, toward)
+  float least;         // the height above the tangent plane that blocks
+};
+
+/// A place in the plane of the line, as seen from the receiver.
+vec2 from_receiver(Context c, vec2 place) {
+  const vec2 offset = place - c.point.place;
+  return vec2(dot(offset, c.search.across), dot(offset, c.point.eye));
+}
+
+Corner corner_at(Context c, int at, int step, float z, bool toward) {
+  Corner corner;
+  const float scale = c.view.orthographic != 0 ? 1.0 : z;
+  corner.least = c.search.least_height + scale * c.search.least_rise * float(abs(step - c.search.from));
+  corner.place = from_receiver(c, place_at(c.view, c.plane, float(step), z));
+  corner.unseen = corner.place;
+  if (kCompletes != kCompletesNothing) {
+    const uint further = goes_on[at];
+    const float until = float(step) + float(toward ? -c.search.step : c.search.step) * steps_of_goes_on(further);
+    corner.unseen = from_receiver(c, place_at(c.view, c.plane, until, z * depths_of_goes_on(further)));
+  }
+  return corner;
+}
+
+/// 7. Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set
+/// apart. It belongs to the vertex at a corner. goes_on: from there on it is not seen, or up to there, and need not be
+/// straight with what is; both hang together there, so they block one interval.
+void block(inout Blocked blocked, Walk walk, Context c, Clipped stroke, Corner corner, bool goes_on) {
+  const Search search = c.search;
+  const float eye_distance = c.point.eye_distance, radius_sq = c.radius_sq;
   const float near_slope = slope_of(stroke.near);
   const float far_slope = slope_of(stroke.far);
   float high = max(near_slope, far_slope);
@@ -217,15 +261,16 @@ void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, bool
   IF_ANY (kSlots > 1u && walk.change != 0.0)
     back = min(back, back_of(stroke.near, eye_distance, walk.thickness + stroke.parts.x * walk.change, radius_sq));
   if (kCompletes != kCompletesNothing) {
-    const bool bends = both(goes_on, dot(bend, bend) < radius_sq);
-    const float slope = slope_of(bend), back_of_bend = back_of(bend, eye_distance, thickness, radius_sq);
+    const bool bends = both(goes_on, dot(corner.place, corner.place) < radius_sq);
+    const float slope = slope_of(corner.place),
+                back_of_bend = back_of(corner.place, eye_distance, thickness, radius_sq);
     high = bends ? max(high, slope) : high;
     low = bends ? min(low, slope) : low;
-    height = bends ? max(height, dot(bend, search.normal)) : height;
+    height = bends ? max(height, dot(corner.place, search.normal)) : height;
     back = bends ? min(back, back_of_bend) : back;
   }
   const bool rises = both(min(stroke.near.x, stroke.far.x) > 0.0, high > search.lowest);
-  const float top = both(stroke.is_within, both(rises, height > least)) ? high : -1.0;
+  const float top = both(stroke.is_within, both(rises, height > corner.least)) ? high : -1.0;
   const float bottom = walk.is_own ? -1.0 : min(low, back);
   const bool onto_own = bottom <= blocked.own;
   blocked.sectors |=
@@ -233,30 +278,11 @@ void block(inout Blocked blocked, Walk walk, Search search, Clipped stroke, bool
   blocked.own = onto_own ? max(blocked.own, top) : blocked.own;
 }
 
-/// What is seen of a vertex, and where its surface goes on to unseen.
-struct Corner {
-  vec2 place, unseen;  // in (across, toward)
-};
-
-Corner corner_at(View view, LinePlane plane, Point point, Search search, int at, int step, float z, bool toward) {
-  Corner corner;
-  const vec2 offset = place_at(view, plane, float(step), z) - point.place;
-  corner.place = vec2(dot(offset, search.across), dot(offset, point.eye));
-  corner.unseen = corner.place;
-  if (kCompletes != kCompletesNothing) {
-    const uint further = goes_on[at];
-    const float until = float(step) + float(toward ? -search.step : search.step) * steps_of_goes_on(further);
-    const vec2 to_unseen = place_at(view, plane, until, z * depths_of_goes_on(further)) - point.place;
-    corner.unseen = vec2(dot(to_unseen, search.across), dot(to_unseen, point.eye));
-  }
-  return corner;
-}
-
 /// The column of the nearest vertex beyond the end of a walk at `at` whose surface goes on towards the receiver behind
 /// that end.
-uint vertex_beyond(View view, Search search, int at) {
-  const uint columns = behind[kSlots > 1u ? at - int(kSlots) * view.size.x * view.size.y : at];
-  return search.step > 0 ? columns >> 16 : columns & kNoVertex;
+uint vertex_beyond(Context c, int at) {
+  const uint columns = behind[kSlots > 1u ? at - int(kSlots) * c.view.size.x * c.view.size.y : at];
+  return c.search.step > 0 ? columns >> 16 : columns & kNoVertex;
 }
 
 /// The blocked part of a side's arc integral.
@@ -341,16 +367,15 @@ float thickness_at(uint marked) {
 
 /// A walk that comes to the vertex at an index from the one before, where there are several. A run that passes behind
 /// the receiver is cut beside the eye's ray.
-void come_to(inout Walk walk, View view, LinePlane plane, Point point, Search search, int at, vec2 place) {
+void come_to(inout Walk walk, Context c, int at, vec2 place) {
   const float here = thickness_at(mark[at]);
   walk.thickness = here;
   walk.change = 0.0;
-  IF_ANY (!walk.starts && (mark[at] & search.begins) == 0u) {
-    const int before = at - search.step, from_step = int(mark[before] >> 16);
-    const vec2 offset = place_at(view, plane, float(from_step), abs(vertex[before])) - point.place;
-    const vec2 from = vec2(dot(offset, search.across), dot(offset, point.eye));
+  IF_ANY (!walk.starts && (mark[at] & c.search.begins) == 0u) {
+    const int before = at - c.search.step, from_step = int(mark[before] >> 16);
+    const vec2 from = from_receiver(c, place_at(c.view, c.plane, float(from_step), abs(vertex[before])));
     const float least = kBesideReceiver * place.x;
-    const bool is_behind = both((from_step - search.from) * search.step <= 0, from.x < least);
+    const bool is_behind = both((from_step - c.search.from) * c.search.step <= 0, from.x < least);
     const float part = is_behind ? (place.x - least) / (place.x - from.x) : 1.0;
     const float change = here - thickness_at(mark[before]);
     walk.last = is_behind ? place + part * (from - place) : from;
@@ -364,104 +389,130 @@ bool ends_at(uint marked, Corner corner, Search search) {
   return (marked & search.last) != 0u || !(dot(corner.place, search.leaving) < params.radius);
 }
 
-/// `row` is the index of the line's column 0 in each plane of the profile, `slot` that of the receiver's own surface.
-BlockedArcs blocked_arcs(View view, LinePlane plane, Point point, Side side, Search search, int row, int slot) {
-  const int pixels = view.size.x * view.size.y;
-  const float radius = params.radius;
-  const float radius_sq = radius * radius;
-  const float thickness = params.thickness;
+/// The directions that a side's strokes block.
+struct Found {
+  Blocked all;
+  Blocked seen;  // without what completed surfaces block; only where kCompletes is kCompletesApart
+};
+
+/// 5. to 7. Adds the stroke that ends at a vertex. goes_on: its surface goes on there unseen.
+void add_stroke(inout Found found, Walk walk, Context c, Stroke stroke, Corner corner, bool begins, bool goes_on) {
+  if (kCompletes == kCompletesApart)
+    block(found.seen, walk, c, clip_to_sphere(stroke, c.radius_sq, c.search.unit), corner, false);
+  // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
+  // beyond the sphere, only the former matters.
+  const bool is_first_beyond = both(walk.starts, dot(corner.place, corner.place) > c.radius_sq);
+  const bool draws_on = kCompletes != kCompletesNothing && goes_on && !is_first_beyond;
+  if (kCompletes != kCompletesNothing) {
+    const Stroke whole = with_unseen(stroke, begins, corner.unseen);
+    stroke.from = draws_on ? whole.from : stroke.from;
+    stroke.to = draws_on ? whole.to : stroke.to;
+  }
+  block(found.all, walk, c, clip_to_sphere(stroke, c.radius_sq, c.search.unit), corner, draws_on);
+}
+
+/// 5. Adds the surface that goes on towards the receiver behind the end of a walk. last: the walk's last vertex; below
+/// 0: there is none.
+void add_beyond(inout Found found, Walk walk, Context c, int last) {
+  const bool looks_beyond = kCompletes != kCompletesNothing && (kSlots == 1u || kUnseen != 0u) && last >= 0;
+  const uint beyond = looks_beyond ? vertex_beyond(c, last) : kNoVertex;
+  IF_ANY (beyond != kNoVertex) {
+    const int at = (kWalks - 1) * c.view.size.x * c.view.size.y + c.row + int(beyond);
+    const uint marked = mark[at];
+    const int to = int(marked >> 16);
+    const Corner corner = corner_at(c, at, to, abs(vertex[at]), true);
+    walk.is_own = false;
+    walk.thickness = params.thickness == 0.0 || kWalks > 1 ? thickness_at(marked) : params.thickness;
+    walk.change = 0.0;
+    const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
+    block(found.all, walk, c, clip_to_sphere(stroke, c.radius_sq, c.search.unit), corner, true);
+  }
+}
+
+/// 8. The integrals over what is blocked.
+BlockedArcs arcs_of(Context c, Found found) {
+  const float arc = arc_of(c.side, c.search, found.all);
+  return BlockedArcs(arc, kCompletes == kCompletesApart ? arc - arc_of(c.side, c.search, found.seen) : 0.0,
+                     kBent ? bent_of(c.side, c.search, found.all) : vec2(0));
+}
+
+/// 3. Where the line has one profile: a walk along it.
+BlockedArcs blocked_by_one(Context c) {
+  const Search search = c.search;
+  const uint first = first_column(search, c.row + search.from);
+  if (first == kNoVertex) return BlockedArcs(0.0, 0.0, vec2(0));
+  const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
+  Found found = Found(nothing, nothing);
+  Walk walk = Walk(vec2(0), true, true, params.thickness, 0.0);
+  int at = c.row + int(first), last = at;
+  for (bool goes = true; goes; at += search.step) {
+    last = at;
+    const uint marked = mark[at];
+    const int to = int(marked >> 16), steps = abs(to - search.from);
+    const float stored = vertex[at], z = kCompletes != kCompletesNothing ? abs(stored) : stored;
+    const bool begins = (marked & search.begins) != 0u;
+    const Corner corner = corner_at(c, at, to, z, begins);
+    walk.is_own = begins ? false : walk.is_own;
+    walk.thickness = begins && params.thickness == 0.0 ? unpack_width(marked) : walk.thickness;
+    const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+    add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0);
+    goes = !ends_at(marked, corner, search);
+    walk.last = corner.place;
+    walk.starts = false;
+  }
+  add_beyond(found, walk, c, last);
+  return arcs_of(c, found);
+}
+
+/// 4. Where the line has several profiles: a walk along each, vertex by vertex as they come.
+BlockedArcs blocked_by_several(Context c) {
+  const Search search = c.search;
+  const int pixels = c.view.size.x * c.view.size.y;
   Next next;
   bool goes = false;
   for (int i = 0; i < kWalks; i++) {
-    const int first = i * pixels + row;
+    const int first = i * pixels + c.row;
     const uint column = first_column(search, first + search.from);
     go_to(next, search, i, first + int(column), column == kNoVertex);
     goes = goes || column != kNoVertex;
   }
   if (!goes) return BlockedArcs(0.0, 0.0, vec2(0));
-  Walk walk = Walk(vec2(0), true, true, thickness, 0.0);
-  bool is_own = true, starts = true;  // the walk along the receiver's own slot: where there are several
-  Blocked all = Blocked(slope_of(side.ahead), 0u);
-  Blocked seen = all;
-  int last = kWalks == 1 || next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
+  const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
+  Found found = Found(nothing, nothing);
+  Walk walk = Walk(vec2(0), true, true, params.thickness, 0.0);
+  bool is_own = true, starts = true;                    // the walk along the receiver's own slot
+  int last = next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
   for (; goes;) {
-    const int i = kWalks == 1 ? 0 : nearest_walk(next);
+    const int i = nearest_walk(next);
     int at = next.at[0];
     for (int k = 1; k < kWalks; k++) at = k == i ? next.at[k] : at;
     const bool is_unseen = kUnseen != 0u && i == kWalks - 1;
     const uint marked = mark[at];
     const int to = int(marked >> 16), steps = abs(to - search.from);
     const float stored = vertex[at], z = kCompletes != kCompletesNothing ? abs(stored) : stored;
-    const float scale = view.orthographic != 0 ? 1.0 : z;
-    const float least = search.least_height + scale * search.least_rise * float(steps);
     const bool begins = (marked & search.begins) != 0u;
     // The walk for what is unseen has the same vertex where the run begins or ends there too.
     const int unseen_at = next.at[kWalks - 1];
     bool is_twin = kUnseen != 0u && !is_unseen && next.away[kWalks - 1] == steps && next.z[kWalks - 1] == z;
     is_twin = is_twin && ((mark[is_twin ? unseen_at : at] ^ marked) & (kVertexBegins | kVertexEnds)) == 0u;
     const bool twin_goes_on = is_twin && vertex[is_twin ? unseen_at : at] < 0.0;
-    const Corner corner = corner_at(view, plane, point, search, twin_goes_on ? unseen_at : at, to, z, begins);
-    if (kWalks == 1) {
-      walk.is_own = begins ? false : walk.is_own;
-      walk.thickness = begins && thickness == 0.0 ? unpack_width(marked) : walk.thickness;
-    } else {
-      is_own = i == slot && begins ? false : is_own;
-      walk.is_own = i == slot && is_own;
-      walk.starts = i == slot && starts;
-      starts = i == slot ? false : starts;
-      come_to(walk, view, plane, point, search, at, corner.place);
-    }
-    Stroke stroke = stroke_to(corner.place, walk, begins, steps);
-    if (kCompletes == kCompletesApart && !is_unseen)
-      block(seen, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), false, corner.place, point.eye_distance,
-            least, radius_sq);
-    // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
-    // beyond the sphere, only the former matters.
-    const bool is_first_beyond = both(walk.starts, dot(corner.place, corner.place) > radius_sq);
-    const bool goes_on = kCompletes != kCompletesNothing && (stored < 0.0 || twin_goes_on) && !is_first_beyond;
-    if (kCompletes != kCompletesNothing) {
-      const Stroke whole = with_unseen(stroke, begins, corner.unseen);
-      stroke.from = goes_on ? whole.from : stroke.from;
-      stroke.to = goes_on ? whole.to : stroke.to;
-    }
+    const Corner corner = corner_at(c, twin_goes_on ? unseen_at : at, to, z, begins);
+    is_own = i == c.slot && begins ? false : is_own;
+    walk.is_own = i == c.slot && is_own;
+    walk.starts = i == c.slot && starts;
+    starts = i == c.slot ? false : starts;
+    come_to(walk, c, at, corner.place);
+    const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
     // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
-    IF_ANY (!is_unseen)
-      block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), goes_on, corner.place,
-            point.eye_distance, least, radius_sq);
-    const bool ends = ends_at(marked, corner, search);
+    IF_ANY (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0 || twin_goes_on);
     if (is_unseen || is_twin) last = unseen_at;
-    if (kWalks == 1) last = at;
-    if (kWalks == 1) {
-      next.at[0] = at + search.step;
-      goes = !ends;
-      walk.last = corner.place;
-      walk.starts = false;
-    } else {
-      go_to(next, search, i, at + search.step, ends);
-      if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));
-      goes = false;
-      for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
-    }
+    go_to(next, search, i, at + search.step, ends_at(marked, corner, search));
+    if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));
+    goes = false;
+    for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
   }
-  const bool looks_beyond = kCompletes != kCompletesNothing && (kSlots == 1u || kUnseen != 0u) && last >= 0;
-  const uint beyond = looks_beyond ? vertex_beyond(view, search, last) : kNoVertex;
-  IF_ANY (beyond != kNoVertex) {
-    const int at = (kWalks - 1) * pixels + row + int(beyond);
-    const uint marked = mark[at];
-    const int to = int(marked >> 16);
-    const float z = abs(vertex[at]), scale = view.orthographic != 0 ? 1.0 : z;
-    const float least = search.least_height + scale * search.least_rise * float(abs(to - search.from));
-    const Corner corner = corner_at(view, plane, point, search, at, to, z, true);
-    walk.is_own = false;
-    walk.thickness = thickness == 0.0 || kWalks > 1 ? thickness_at(marked) : thickness;
-    walk.change = 0.0;
-    const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
-    block(all, walk, search, clip_to_sphere(stroke, radius_sq, search.unit), true, corner.place, point.eye_distance,
-          least, radius_sq);
-  }
-  const float arc = arc_of(side, search, all);
-  return BlockedArcs(arc, kCompletes == kCompletesApart ? arc - arc_of(side, search, seen) : 0.0,
-                     kBent ? bent_of(side, search, all) : vec2(0));
+  add_beyond(found, walk, c, last);
+  return arcs_of(c, found);
 }
 
 /// Adds what a direction blocks to the sum of the pixel's bent_to(), of which the last one makes the mean open
@@ -503,7 +554,7 @@ void main() {
   const LinePlane plane = plane_of(view, lines, line);
   const vec3 n = unpack_normal(normal[index]);
   const vec2 tangent = tangent_at(view, lines, at + lines.origin);
-  const Point point = point_of(view, plane, tangent, z, n);
+  const Point point = point_of(view, plane, tangent, z, n);  // 2.
   const float clearance =
       least_height(params.depth_precision, z, (view.orthographic != 0 ? 0.0 : dot(n.xy, tangent)) - n.z);
   const float radius = params.radius;
@@ -515,7 +566,7 @@ void main() {
   if (weight >= kLeastWeight) {
     const vec2 across_eye = vec2(-point.eye.y, point.eye.x);
     const float sine = radius / point.eye_distance, cosine = sqrt(max(0.0, 1.0 - sine * sine));
-    const float share = 1.0 / (plane.ray_length * -point.eye.y);
+    const float share = 1.0 / (plane.ray_length * -point.eye.y);  // 1.
     const float lift = max(params.bias, kLeastElevation), level = sqrt(1.0 - lift * lift);
     for (int sign = -1; sign <= 1; sign += 2) {
       Side side;
@@ -538,7 +589,8 @@ void main() {
       search.last = sign > 0 ? kVertexLast : kVertexFirst;
       whole += share * weight * whole_arc(side);
       search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
-      const BlockedArcs arcs = blocked_arcs(view, plane, point, side, search, row, slot);
+      const Context c = Context(view, plane, point, side, search, row, slot, radius * radius);
+      const BlockedArcs arcs = kWalks == 1 ? blocked_by_one(c) : blocked_by_several(c);
       blocked += share * weight * arcs.arc;
       unseen += share * weight * arcs.unseen;
       bent_blocked += share * weight * (arcs.bent.x * search.across + arcs.bent.y * point.eye);
@@ -555,6 +607,7 @@ void main() {
         clamp((last_whole > 0.0 ? completed[index] * last_whole : 0.0) + unseen, 0.0, max(blocked, 0.0)) / whole;
   if (kBent)
     add_bent(index, pixels, n, bent_blocked.x * vec3(plane.along, 0) + bent_blocked.y * away_of(view, plane), whole);
+  // 9.
   if (params.is_last != 0) blocked = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
   ao[ao_index] = blocked;
 }

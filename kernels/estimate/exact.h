@@ -68,7 +68,7 @@ struct ExactParams {
   float bias;            // sine of the elevation above the tangent plane below which nothing blocks
 };
 
-/// How well a tile is known.
+/// The estimated error of a tile.
 struct JudgedTile {
   float squares;    // sum of the squared errors of its receivers, as one comparison estimates them
   float receivers;  // pixels that are not sky

@@ -5,16 +5,21 @@
 // In: planar depth, view normals.
 // Out: visibility, 1 = open.
 //
-// Bavoil and Sainz, "Image-Space Horizon-Based Ambient Occlusion", 2008: occlusion is the mean over the directions of
-// sin h - sin t, the elevations of horizon and tangent above the plane across the view ray. With attenuation every rise
-// of sin h counts with the weight W of the sample that makes it. This is uniform, not cosine-weighted AO: beside a wall
-// whose rim stands at 45 degrees it is 0.75, and GTAO's is 0.854. What is particular here:
-// - Off axis even directions of the image are not even about the view ray; each is weighted by the ratio of the two.
-// - Without attenuation whatever is within reach on the image blocks, at any distance: beside an endless wall the
-//   result is 1 - acos(d / R) / pi.
-// - A sample is moved into its slice parallel to the tangent plane, so a flat surface stays open at every tilt.
-// - `from_surface` gives the simpler form of many engines: the sine of the horizon's elevation above the surface
-//   itself, which is the cosine of its angle to the normal. The two are equal where the surface faces the eye.
+// Bavoil and Sainz, "Image-Space Horizon-Based Ambient Occlusion", 2008. Elevations are above the plane across the view
+// ray. The steps have their numbers at the code:
+//  1. Directions are even on the image. Off axis they are not even about the view ray; each is weighted by the ratio of
+//     the two.
+//  2. The tangent plane has the elevation t in a direction. A bias raises it.
+//  3. A sample is moved into its slice parallel to the tangent plane, so a flat surface stays open at every tilt.
+//  4. The horizon h begins at t. Each sample that stands above it raises it, and adds W * (sin h - sin h before): W is
+//     the attenuation by the sample's distance. Without attenuation the sum is sin h - sin t.
+//  5. The occlusion is the mean of these sums over the directions: 1/(2 pi) times the integral of the paper.
+// This is uniform, not cosine-weighted AO: beside a wall whose rim stands at 45 degrees it is 0.75, and GTAO's is
+// 0.854. Without attenuation whatever is within reach on the image blocks, at any distance: beside an endless wall the
+// result is 1 - acos(d / R) / pi.
+//
+// `from_surface` gives the simpler form of many engines: the sine of the horizon's elevation above the surface itself,
+// which is the cosine of its angle to the normal. The two are equal where the surface faces the eye.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
@@ -56,8 +61,7 @@ struct Direction {
 float occlusion(Direction side, ivec2 pixel, vec3 position, float jitter) {
   const int steps = int(kSteps), count = min(steps, int(side.reach));
   const float weight = length(side.normal);
-  // The sine that samples must exceed: that of the tangent (sin t of the paper), raised by the bias, or that of the
-  // bias alone.
+  // 2. The sine that samples must exceed: that of the tangent, raised by the bias, or that of the bias alone.
   const vec2 across = vec2(side.normal.y, -side.normal.x) / weight;  // the tangent, as its own cosine and sine
   float horizon = params.from_surface != 0 ? params.bias
                                            : across.y * sqrt(1.0 - params.bias * params.bias) + across.x * params.bias;
@@ -69,6 +73,7 @@ float occlusion(Direction side, ivec2 pixel, vec3 position, float jitter) {
     const ivec2 hit = pixel + ivec2(round(side.direction_px * step_px));
     const float z = occluder_depth[index_of(params.view, hit)];
     if (z >= kSkyDepth) continue;
+    // 3.
     const vec3 delta = position_of(params.view, vec2(hit) + 0.5, z) - position;
     const vec2 in_slice = vec2(dot(delta, side.along_t), dot(delta, side.along_v));
     const float unit = inversesqrt(dot(in_slice, in_slice));
@@ -79,6 +84,7 @@ float occlusion(Direction side, ivec2 pixel, vec3 position, float jitter) {
     const bool above = clear && height * height > kLeastElevation * kLeastElevation * squared_distance;
     const float elevation = unit * (params.from_surface != 0 ? height : in_slice.y);
     if (!above || in_slice.x <= 0.0 || elevation <= horizon) continue;
+    // 4.
     sum +=
         falloff_weight(kFalloff, sqrt(squared_distance), params.falloff_start, params.radius) * (elevation - horizon);
     horizon = elevation;
@@ -113,7 +119,7 @@ void main() {
 
   float blocked = 0.0, whole = 0.0;
   for (uint s = 0u; s < kSlices; s++) {
-    // An even direction of the image, and the tangent of the view ray that is seen along it.
+    // 1. An even direction of the image, and the tangent of the view ray that is seen along it.
     const float angle = kPi * (float(s) + noise.x) / float(kSlices);
     const vec3 direction = vec3(cos(angle), sin(angle), 0);
     // directions about the view ray for one of the image
@@ -141,5 +147,5 @@ void main() {
       blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))));
     }
   }
-  ao[ao_index] = clamp(1.0 - blocked / whole, 0.0, 1.0);
+  ao[ao_index] = clamp(1.0 - blocked / whole, 0.0, 1.0);  // 5.
 }

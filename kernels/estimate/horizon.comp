@@ -3,28 +3,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals.
-// Out: visibility, 1 = open; where they are asked for, the mean open direction (see bent.glsl), and what of the
-// visibility completed surfaces took.
+// Out: visibility, 1 = open; where they are asked for, the mean open direction (see bent.glsl), and the visibility that
+// completed surfaces took.
 //
-// Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with these differences:
-// - Slices are even in azimuth about the view ray, not on the screen, so that no Jacobian is owed off axis.
-// - The reach is the exact image of the sphere of the radius in the slice, clipped to the image: what is outside is
-//   unknown.
-// - The samples of a side form runs of one surface. What goes on from the receiver, or from any place below its tangent
-//   plane, is its own surface: it blocks all below its horizon. A sample that is not above that plane says nothing
-//   else.
-// - Every other run blocks from its front to its back, which lies as much further along the eye's ray as the run is
-//   wide ("width as thickness": a blade of grass is as thin as it is narrow, a column as thick as it is broad), or as
-//   the user says. Nothing beyond the radius blocks. What the own surface blocks is an interval, exact; what all other
-//   runs block is counted in 24 sectors (sectors.glsl).
-// - With kInSectors, which is `--estimator bitmask`, what the own surface blocks is counted in these sectors too, as by
-//   the mask of Therrien et al., "Screen Space Indirect Lighting with Visibility Bitmask", 2023.
-// - A run that something nearer interrupts goes on behind it, as far as it would not be seen, and one that the image's
-//   border cuts goes on beyond it (pieces.glsl).
-// - Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), which is exact for
-//   height fields.
-// - The result is 1 - (sum of blocked arcs) / (sum of whole arcs): exactly 1 where nothing rises above the tangent
-//   plane.
+// Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016. Lines are those of the listing
+// of its algorithm in the edition of 2019 (Technical Memo ATVI-TR-19-01). The steps have their numbers at the code:
+//  1. A receiver takes kSlices slices (lines 4 to 10). They are even in azimuth about the view ray, not on the screen,
+//     so that no Jacobian is owed off axis.
+//  2. The normal is projected into the slice: its angle gamma, and its length, which is the slice's weight (lines 11 to
+//     15).
+//  3. Each side of the slice is searched (line 17) as far as the exact image of the sphere of the radius reaches. The
+//     image's border cuts it: nothing is known beyond.
+//  4. A side takes up to kSteps samples (lines 19 to 23).
+//  5. Samples of a side form runs of one surface. The receiver's own surface is what goes on from the receiver, or from
+//     any place below its tangent plane. It blocks all below its horizon (line 24). A sample below the tangent plane
+//     says nothing else.
+//  6. Every other run blocks from its front to its back, and nothing beyond the radius. The back lies as much further
+//     along the eye's ray as the run is wide ("width as thickness": a blade of grass is as thin as it is narrow, a
+//     column as thick as it is broad), or as the user says. The paper lets the horizon sink instead (section 4.3).
+//     Runs are counted in 24 sectors, as in the mask of Therrien et al., "Screen Space Indirect Lighting with
+//     Visibility Bitmask", 2023; see sectors.glsl. With kInSectors, which is `--estimator bitmask`, so is the own
+//     surface; else its interval is exact.
+//  7. A run that something nearer interrupts goes on behind it, as far as it would not be seen. A run that the image's
+//     border cuts goes on beyond it. See pieces.glsl.
+//  8. Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), which is exact
+//     for height fields.
+//  9. The arcs that are blocked are integrated in closed form (line 28): see arc_to().
+// 10. The result is 1 - (sum of blocked arcs) / (sum of whole arcs), where the paper divides by the number of slices
+//     (line 30): so it is exactly 1 where nothing rises above the tangent plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
@@ -86,6 +92,8 @@ const float kSameSurface = 1.44;
 #include "kernels/estimate/pieces.glsl"
 #include "kernels/estimate/surfaces.glsl"
 
+// 5. and 6. Runs, and what they block.
+
 /// A run of samples that is not the receiver's own surface. Angles go by slope_of(); where far > near nothing of it
 /// blocks.
 struct Run {
@@ -95,8 +103,8 @@ struct Run {
   float near, far;  // largest and smallest of the samples that block
 };
 
-/// What is blocked: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors of
-/// runs.
+/// The blocked directions: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors
+/// of runs.
 struct Blocked {
   float near, far;
   uint sectors;
@@ -111,7 +119,7 @@ vec3 arcs_to(Side side, vec2 place) {
 /// These integrals over a set of sectors.
 vec3 arcs_of(Side side, uint sectors) { return vec3(arc_of(side, sectors), kBent ? bent_of(side, sectors) : vec2(0)); }
 
-/// These integrals over what is blocked.
+/// 9. These integrals over what is blocked.
 vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
   const float plane = slope_of(side.ahead), far = max(blocked.far, plane);
   const bool is_exact = !kAllInSectors && blocked.near > far;
@@ -130,7 +138,8 @@ vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
   return own + arcs_of(side, others);
 }
 
-/// What a run blocks that is `gap_behind` steps wide of the sample behind it. is_open: samples of it know no back.
+/// 6. The sectors that a run blocks. gap_behind: steps to the sample behind it. is_open: it has samples without a known
+/// back.
 uint sectors_of(Receiver r, Reach reach, Run run, bool is_open, float z, float gap_behind, float shift) {
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
   const float width = run.share * (length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind)));
@@ -152,7 +161,7 @@ vec2 slopes_of(Sample s, bool crosses, float crossing) {
 
 const bool kHard = kFalloff == kFalloffNone;
 
-/// What a search has found to be blocked.
+/// The blocked directions that a search has found.
 struct Found {
   Blocked blocked;
   Blocked completed;    // without falloff: by completed surfaces
@@ -171,7 +180,8 @@ void block(inout Blocked blocked, vec2 slopes, float shift) {
   }
 }
 
-/// With falloff: adds what is new of what is blocked, by the distance of a place, and returns that part of the arc.
+/// 8. With falloff: adds the new part of what is blocked, weighed by the distance of a place. Returns that part of the
+/// arc.
 float add_faded(inout Found found, Side side, Reach reach, Draw draw, vec2 place) {
   const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
   const float weight = falloff_weight(kFalloff, length(place), reach.falloff_start, reach.radius);
@@ -181,7 +191,7 @@ float add_faded(inout Found found, Side side, Reach reach, Draw draw, vec2 place
   return added.x;
 }
 
-/// Adds what a completed surface blocks.
+/// 7. Adds what a completed surface blocks.
 void add_completed(inout Found found, Side side, Reach reach, Draw draw, Piece piece) {
   if (kHard) {
     block(found.completed, slopes_of(piece), draw.shift);
@@ -210,7 +220,7 @@ void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw
   add_completed(found, side, reach, draw, piece);
 }
 
-/// What is known of solids at the last sample, where occluders are endless otherwise.
+/// The solids at the last sample, where occluders are endless otherwise.
 struct Solids {
   float z[kMostSurfaces];
   vec2 slopes[kMostSurfaces];
@@ -237,8 +247,8 @@ void add_layers(inout Found found, inout Solids last, Receiver r, Side side, Rea
   }
 }
 
-/// Searches a side where occluders are solid as far as the sphere of the radius: they block one interval. Solids whose
-/// backs are known have their own.
+/// 4. to 6. where occluders are solid as far as the sphere of the radius: they block one interval. Solids with known
+/// backs have their own.
 void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
@@ -273,7 +283,7 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
   }
 }
 
-/// The same where occluders are as thick as they are wide, or as the user says: the receiver's own surface, and runs.
+/// 4. to 6. where occluders are as thick as they are wide, or as the user says: the receiver's own surface, and runs.
 void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   bool own = true;
   Sample last = receiver_sample(r);
@@ -360,7 +370,7 @@ uint sectors_of_ending(Receiver r, Reach reach, Slot slots[kMostSurfaces], uint 
   return sectors;
 }
 
-/// search_runs() where a pixel has several surfaces: as many runs at a time.
+/// search_runs() for pixels of several surfaces: as many runs at a time.
 void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
@@ -435,7 +445,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
-/// The blocked part of a side's integrals, and what of its arc completed surfaces block.
+/// 4. to 9. The blocked part of a side's integrals, and the part of its arc that completed surfaces block.
 vec4 search(Receiver r, Side side, Reach reach, Draw draw) {
   const int count = min(int(kSteps), int(side.reach));
   const Blocked nothing = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
@@ -490,17 +500,18 @@ void estimate(ivec2 pixel) {
   float completed_arcs = 0.0;
   vec3 bent_blocked = vec3(0);
   for (uint s = 0u; s < kSlices; s++) {
-    const Slice slice = slice_at(view, r, s, kSlices, noise.x);
+    const Slice slice = slice_at(view, r, s, kSlices, noise.x);  // 1. and 2.
     if (slice.weight < kLeastWeight) continue;
-    whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);
+    whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);  // both sides' whole_arc()
     for (int sign = -1; sign <= 1; sign += 2) {
-      const Side side = side_of(view, r, slice, float(sign), reach);
+      const Side side = side_of(view, r, slice, float(sign), reach);  // 3.
       const vec4 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)));
       blocked += arcs.x;
       if (kTellsCompleted) completed_arcs += arcs.w;
       if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
     }
   }
+  // 10.
   const float visibility = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
   ao[ao_index] = visibility;
   if (kTellsCompleted) completed[index] = whole > 0.0 ? clamp(completed_arcs / whole, 0.0, 1.0 - visibility) : 0.0;

@@ -27,7 +27,7 @@ int index_at(View view, Lines lines, int step, int across) {
   return lines.steep != 0 ? step * view.size.x + across : across * view.size.x + step;
 }
 
-/// How far lines have moved across at a step: whole pixels, and the rest, in [-0.5, 0.5).
+/// The pixels that lines have moved across at a step: whole ones, and the rest, in [-0.5, 0.5).
 int shift_at(Lines lines, int step) { return (lines.slope * (lines.origin.x + step) + kSlopeUnit / 2) >> kSlopeBits; }
 float rest_at(Lines lines, int step) {
   return float(lines.slope * (lines.origin.x + step) - (shift_at(lines, step) << kSlopeBits)) / float(kSlopeUnit);
@@ -49,7 +49,7 @@ uint pack_goes_on(float steps, float depths) {
 float steps_of_goes_on(uint packed) { return float(packed >> 16) * 0.125; }
 float depths_of_goes_on(uint packed) { return 1.0 + unpackHalf2x16(packed).x; }
 
-/// Where a point of the line is in its plane.
+/// The place of a point of the line in its plane.
 vec2 place_at(View view, LinePlane plane, float step, float z) {
   return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + (float(plane.origin) + step) * plane.step),
               z * plane.ray_length);
@@ -77,7 +77,7 @@ LinePlane plane_of(View view, Lines lines, int line) {
   return plane;
 }
 
-/// What is straight along a line where the surface is: disparity, or orthographic depth.
+/// The value that is straight along a line where the surface is: disparity, or orthographic depth.
 float value_of(bool perspective, float z) { return perspective ? 1.0 / z : z; }
 
 /// The steps of a line that lie on the image, from the first to behind the last.

@@ -56,8 +56,8 @@ Tap load(View view, ivec2 at) {
   return tap;
 }
 
-/// How far two neighbours lie off each other's planes, the larger of both, in kLinked pixels; axis: 0: b is to the
-/// right of a, 1: below.
+/// The distances of two neighbours from each other's planes, the larger of both, in kLinked pixels; axis: 0: b is to
+/// the right of a, 1: below.
 float bend(Tap a, Tap b, int axis) {
   const float further = b.z - a.z;
   const float above_a = abs(a.ahead * further + a.across[axis] * b.scale);

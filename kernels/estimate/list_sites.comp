@@ -16,7 +16,7 @@ readonly buffer TileCountsBuffer { TileCounts tile_counts; };
 writeonly buffer List { uint list[]; };  // one uint per site of a listed tile, see pack_site; in no order of tiles
 buffer Counts { SiteCounts counts; };    // zeros before
 
-/// How many sites the workgroup lists, where in the list they begin, and how many there are of each lattice.
+/// The number of sites that the workgroup lists, their first place in the list, and the number of each lattice.
 shared uint listed_here, begin, of_lattice[kLattices];
 
 void main() {

@@ -39,8 +39,8 @@ bool is_told_by(vec2 surface_normal, Receiver r, vec2 place) {
   return dot(surface_normal, eye) > kLeastFacingToGoOn * length(eye);
 }
 
-/// Where the line of a surface is seen behind a place, as the distance from its `end` along the unit vector `onward`;
-/// infinite where the place's ray never meets it.
+/// The point of a surface's line that is seen behind a place, as the distance from `end` along the unit vector
+/// `onward`; infinite where the place's ray never meets it.
 float seen_at(Receiver r, vec2 end, vec2 onward, vec2 surface_normal, vec2 place) {
   const vec2 ray = toward_eye(r, place);
   const float facing = dot(surface_normal, ray);
@@ -159,7 +159,7 @@ Piece piece_beyond(Receiver r, Side side, Reach reach, Sample border) {
   return piece;
 }
 
-/// What a sample at the border blocks from its front to its back, from the largest slope_of() to the smallest. As its
+/// The slopes that a sample at the border blocks from its front to its back, the largest and the smallest. As its
 /// width is not known, it is kCutThickness radii thick, or as the user says.
 vec2 slopes_at_border(Receiver r, Reach reach, Sample border) {
   const float thickness = reach.thickness > 0.0 ? reach.thickness : kCutThickness * reach.radius;

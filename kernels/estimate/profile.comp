@@ -7,22 +7,23 @@
 // on; and for every pixel the vertices before and after it. With several surfaces per pixel that in each of as many
 // slots: a profile with gaps where the slot has no surface.
 //
-// - The line's depth at a step is taken between the two pixels beside it where they are one surface. Else the nearer
-//   one goes on as it does on its other side: planes stay planes.
-// - A run is a row of steps whose depths go on from each other. Its width, from outer edge to outer edge, is known at
-//   both its ends.
-// - Disparity 1/z (orthographic: z) along a line is to a slice through the eye what a projective map is: straight stays
-//   straight. A stroke is drawn on as long as it keeps within the tolerance of all it passes ("swinging door", Bristol,
-//   "Swinging Door Trending", 1990). Vertices are steps themselves.
-// - A run has a vertex at least every kProfileRestart pixels, so that crops have the vertices of the whole.
-// - A run keeps its slot, whichever surface of its pixel goes on with it: a floor that is the first surface before a
-//   column, and the third behind its front and its back, is one run. Of several that might go on with several runs,
-//   those that are nearest to each other do. What begins takes the first slots that are free, the nearest surface
-//   first.
-// - Where a surface's solid is known to be closed by the next surface of its pixel, that one says how thick it is
-//   there; what closes a solid has no thickness.
-// - The first surfaces of all pixels are a profile of their own besides, of which complete.comp finds what goes on
-//   behind others.
+// The steps have their numbers at the code:
+//  1. The line's depth at a step is taken between the two pixels beside it if they are one surface. Else the nearer one
+//     goes on as it does on its other side: planes stay planes.
+//  2. A run is a row of steps whose depths go on from each other. Its width, from outer edge to outer edge, is known at
+//     both its ends.
+//  3. Disparity 1/z (orthographic: z) along a line is to a slice through the eye what a projective map is: straight
+//     stays straight. A stroke is drawn on as long as it keeps within the tolerance of all it passes ("swinging door",
+//     Bristol, "Swinging Door Trending", 1990). Vertices are steps themselves.
+//  4. A run has a vertex at least every kProfileRestart pixels, so that crops have the vertices of the whole.
+//  5. A run keeps its slot, whichever surface of its pixel goes on with it: a floor that is the first surface before a
+//     column, and the third behind its front and its back, is one run. Of several surfaces that might go on with
+//     several runs, the two that are nearest to each other do. What begins takes the first slots that are free, the
+//     nearest surface first.
+//  6. If the next surface of a pixel is known to close a surface's solid, it tells the thickness there. A surface that
+//     closes a solid has no thickness itself.
+// The first surfaces of all pixels are a profile of their own besides: complete.comp finds in it what goes on behind
+// others.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/exact.h"
@@ -63,10 +64,10 @@ const float kFar = 1e30;
 /// The known thickness of what has none: marks hold 0 where a thickness is not known.
 const float kNoThickness = 1e-30;
 
-/// How far what is known of a run's thickness may be from the straight line between two vertices, as a part of it.
+/// The known thickness of a run may be off the straight line between two vertices by this part of it.
 const float kThicknessTolerance = 0.05;
 
-/// What is seen at one step of a line.
+/// The surface at one step of a line.
 struct Step {
   int at;  // the step
   bool is_surface;
@@ -76,7 +77,7 @@ struct Step {
   float known;  // scene units: how thick the surface's solid is here, along the eye's ray; below 0: not known
 };
 
-/// What is drawn of a line so far, and the run that its last step is in.
+/// A line's profile so far, and the run that its last step is in.
 struct Run {
   int row, begin;      // of the line in the sheared image: the index of its column 0; its first column
   int next;            // column of the next vertex
@@ -116,7 +117,7 @@ float depth_like(View view, int index, float z) {
   return best;
 }
 
-/// How thick the solid of a pixel's surface of depth z is known to be, along the eye's ray at a step of the line.
+/// 6. How thick the solid of a pixel's surface of depth z is known to be, along the eye's ray at a step of the line.
 float known_thickness(View view, LinePlane plane, int step, int index, uint k, float z) {
   if (kSurfaces == 1u) return -1.0;
   const float next = k + 1u < kSurfaces ? surface_at(view, index, k + 1u) : kSkyDepth;
@@ -148,7 +149,7 @@ float change_behind(View view, Lines lines, int rows, int column, int across, in
   return abs(straight - next_to) < kStraight * abs(straight) ? straight : bent;
 }
 
-/// How much the value changes from the pixel that a line passes to the next one on the side where the line lies.
+/// 1. How much the value changes from the pixel that a line passes to the next one on the side where the line lies.
 float change_across(View view, Lines lines, int rows, int column, int across, int side, float nearest, uint surface) {
   const bool perspective = view.orthographic == 0;
   const int beside = clamp(across + side, 0, rows - 1), opposite = clamp(across - side, 0, rows - 1);
@@ -193,7 +194,7 @@ Step step_at(View view, Lines lines, LinePlane plane, int rows, int line, int at
 /// The mark of a vertex that neither begins nor ends its run: without a thickness where that is not known yet.
 uint mark_of(Step s) { return uint(s.at) << 16 | (s.known < 0.0 ? 0u : pack_width(s.known)); }
 
-/// Puts a vertex at a step; strokes go on from it.
+/// 3. Puts a vertex at a step; strokes go on from it.
 void emit_vertex(inout Run run, Step s) {
   vertex[run.row + run.next] = s.z;
   mark[run.row + run.next] = mark_of(s);
@@ -233,7 +234,7 @@ void close_run(inout Run run, Step last, float thickness) {
   run.is_open = false;
 }
 
-/// How thick a run is, in scene units. The width of one that the image's border cuts is not known.
+/// 2. How thick a run is, in scene units. The width of one that the image's border cuts is not known.
 float thickness_of(View view, LinePlane plane, ivec2 steps, Step first, Step last) {
   const float nearer = view.orthographic == 0 ? min(last.z, first.place.y / plane.ray_length) : 1.0;
   const float pixel = view.tangent_per_pixel.x * nearer;
@@ -265,7 +266,7 @@ bool fits_thickness(Run run, Step here) {
                           : run.anchor_known >= 0.0 && change >= run.thinnest && change <= run.thickest;
 }
 
-/// Draws a slot's profile on to its next step.
+/// 2. to 4. Draws a slot's profile on to its next step.
 void draw(inout Run run, View view, Lines lines, LinePlane plane, ivec2 steps, Step last, Step here) {
   const bool perspective = view.orthographic == 0;
   const float pixel = view.tangent_per_pixel.x, tolerance = params.tolerance * pixel;
@@ -308,8 +309,8 @@ void finish(inout Run run, ivec2 steps) {
   fill(run, steps.y, -1);
 }
 
-/// The surfaces of a step in their slots: `here` has a step of each slot, which is without a surface. Returns the slot
-/// of the first surface, kSlots where it is none. No choice depends on the slots' numbers, since a crop has others.
+/// 5. The surfaces of a step in their slots: `here` has a step of each slot, which is without a surface. Returns the
+/// slot of the first surface, kSlots where it is none. No choice depends on the slots' numbers: a crop has others.
 uint share_out(bool perspective, float pixel, Run runs[kSlots], Step lasts[kSlots], Step surfaces[kSlots],
                inout Step here[kSlots]) {
   uint slots = 0u, shared_out = 0u, own_slot = kSlots;

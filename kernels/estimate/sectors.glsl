@@ -39,7 +39,7 @@ uint sectors_below(float slope, float shift) {
   return (1u << uint(0.5 * float(kSectorCount) * (slope + 1.0) + shift)) - 1u;
 }
 
-/// What lies between two slopes, the larger one first; nothing if it is not.
+/// The sectors between two slopes, the larger one first; none if it is not the larger.
 uint sectors_between(vec2 slopes, float shift) {
   return slopes.x >= slopes.y ? sectors_below(slopes.x, shift) & ~sectors_below(slopes.y, shift) : 0u;
 }

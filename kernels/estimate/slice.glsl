@@ -14,7 +14,7 @@ const uint kFalloffLinear = 1;     // from 1 at the start to 0 at the radius
 const uint kFalloffQuadratic = 2;  // 1 - x^2
 const uint kFalloffSmooth = 3;     // 1 - smoothstep
 
-/// How much a hit at this distance blocks.
+/// The weight of a hit at this distance, 0 to 1.
 float falloff_weight(uint falloff, float distance_to_hit, float start, float radius) {
   const float x = clamp((distance_to_hit - start) / (radius - start), 0.0, 1.0);
   if (falloff == kFalloffLinear) return 1.0 - x;
@@ -39,7 +39,7 @@ const int kManySteps = 16;
 /// them, are one surface.
 const float kRunSlope = 8.0;
 
-/// What an estimator's loop over samples needs of its parameters. They are read once, since lavapipe gathers a
+/// The parameters that an estimator's loop over samples needs. They are read once, since lavapipe gathers a
 /// parameter anew at each use within a loop.
 struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
@@ -125,10 +125,12 @@ Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius,
   return r;
 }
 
-/// The slice of an azimuth. Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant:
-/// up to tan of its tilt times as much as those across. A lone slice is drawn that much more often there, by pulling
-/// its azimuth towards the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be
-/// biased. The more slices per pixel has, the less this matters, and the less they are pulled.
+/// The slice of an azimuth, in the terms of the paper that horizon.comp names: `t` is its direction orthogonal to V
+/// (line 9), `weight`, cos_gamma and sin_gamma are the length and the direction of its projected normal (lines 11 to
+/// 15). Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant: up to tan of its
+/// tilt times as much as those across. A lone slice is drawn that much more often there, by pulling its azimuth towards
+/// the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be biased. The more
+/// slices per pixel has, the less this matters, and the less they are pulled.
 Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
   const float azimuth = kPi * (float(index) + jitter) / float(slices);
   vec3 x, y;
@@ -197,12 +199,12 @@ vec3 offset_to(Receiver r, vec2 offset, float z, float scale) {
   return vec3((r.perspective ? z - r.z : 0.0) * r.tangent + scale * r.tangent_per_pixel * offset, r.z - z);
 }
 
-/// Where that sample is in the slice.
+/// The place of that sample in the slice.
 vec2 place_of(Receiver r, Side side, vec2 offset, float z, float scale) {
   return vec2(scale * dot(side.across, offset), r.ray_length * (r.z - z) + scale * dot(side.toward, offset));
 }
 
-/// How high that sample stands above the tangent plane.
+/// The height of that sample above the tangent plane.
 float height_of(Receiver r, vec2 offset, float z, float scale) {
   return scale * dot(r.height, offset) + (z - r.z) * r.depth_height;
 }
@@ -247,10 +249,12 @@ bool same_surface(Receiver r, Reach reach, float z, float last_z, float gap) {
   return abs(z - last_z) < kRunSlope * reach.pixel_size * gap * (r.perspective ? min(z, last_z) : 1.0);
 }
 
-/// The arc integral of a whole side, down to the tangent plane (Jimenez et al., 2016, equation 7, one side of it).
+/// The arc integral of a whole side, down to the tangent plane: (cos(n) + 2 h sin(n) - cos(2 h - n)) / 4 of Jimenez et
+/// al., 2016 (equation 7, one side of it), at h = n + pi/2, where n is gamma.
 float whole_arc(Side side) { return 0.5 * (side.cos_gamma + (side.gamma + kHalfPi) * side.sin_gamma); }
 
-/// The blocked part of a side's arc integral between its view ray and the angle of a place.
+/// The same integral from the view ray to the angle h of a place. With c = cos(h) and s = sin(h), cos(2 h - n) is
+/// cos(n) - 2 s (s cos(n) - c sin(n)), so that no angle but h itself is needed.
 float arc_to(Side side, vec2 place) {
   return 0.5 * (place.x * (place.x * side.cos_gamma - place.y * side.sin_gamma) / dot(place, place) +
                 angle_of(place.y, place.x) * side.sin_gamma);

@@ -4,9 +4,11 @@
 // In: planes of visibility, depth, normals.
 // Out: as many planes. What is constant stays exactly constant; sky stays 1 and is never mixed in.
 //
-// Two pixels mix as far as they show one surface: see likeness.glsl. That is the same for both of them, so it is
-// computed once per pair.
-//
+// The steps have their numbers at the code:
+//  1. Two pixels mix as far as they show one surface (likeness.glsl), times the kernel's weight at their distance. That
+//     is the same for both of them, so it is computed once per pair.
+//  2. A pair moves both visibilities towards each other. Sums are of differences, so that what is constant stays so.
+//  3. A pixel moves by the mean of its differences.
 // Where only sites have an estimate, `interpolate` runs instead. One invocation computes a run of pixels, so that
 // neighbours share what they load.
 #version 450
@@ -34,7 +36,7 @@ readonly buffer Counts { RunCounts counts; };
 /// Pixels that one invocation looks at.
 const int kCount = kDenoiseRun + 2 * kRadius;
 
-/// What a pixel holds in the plane that begins at this index; outside 0, since 0 times what was never written may not
+/// A pixel's value in the plane that begins at this index; outside 0, since 0 times what was never written may not
 /// be 0.
 float value_at(ivec2 pixel, int plane) {
   const float value = ao[plane + index_of(params.view, clamp(pixel, ivec2(0), params.view.size - 1))];
@@ -63,8 +65,9 @@ void main() {
     for (int apart = 1; apart <= kRadius; apart++) {
       const int j = i - apart;
       if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius) continue;
+      // 1.
       const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart), 0.0);
-      // Changes of a pixel's own visibility, so that what is constant stays so to the bit.
+      // 2.
       for (int p = 0; p < kPlanes * kCount; p += kCount) {
         change[p + j] += weight * (values[p + i] - values[p + j]);
         change[p + i] += weight * (values[p + j] - values[p + i]);
@@ -75,6 +78,7 @@ void main() {
     const int done = i - kRadius;
     const ivec2 pixel = first + (done - kRadius) * params.axis;
     if (done < kRadius || !inside(params.view, pixel)) continue;
+    // 3.
     for (int p = 0; p < kPlanes; p++) {
       const float own = values[p * kCount + done];
       result[index_of(params.view, pixel) + p * plane] =

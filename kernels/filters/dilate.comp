@@ -28,14 +28,14 @@ buffer Counts { RunCounts counts; };     // zeros before
 // one float per pixel of the filter's result, where it is neither computed nor kept: 1; not along rows
 writeonly buffer Result { float result[]; };
 
-/// How many runs the workgroup lists, and where in the list they begin.
+/// The number of runs that the workgroup lists, and their first place in the list.
 shared uint listed_here, begin;
 
 struct Within {
   bool estimated, changed;  // some tile may differ from 1, or from what it was
 };
 
-/// What lies within reach of a rectangle of pixels.
+/// The pixels within reach of a rectangle of them.
 Within reach_of(ivec2 first, ivec2 end) {
   const ivec2 count = tiles_of(params.size);
   const ivec2 from = max(first - kRadius, ivec2(0)) / kTile;

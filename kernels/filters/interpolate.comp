@@ -5,12 +5,15 @@
 // In: planes of visibility at sites, depth, normals, and the words that say which pixels are sites.
 // Out: as many planes. Where all is open it stays exactly 1; sky is 1.
 //
-// Sites count as far as they show the pixel's surface (likeness.glsl), and by a parabola of their distance. Through
-// what they hold the pixel gets the straight line that fits best, and takes its own place on it (W. S. Cleveland,
-// "Robust Locally Weighted Regression and Smoothing Scatterplots", 1979): a mean alone would be pulled to that side of
-// an edge on which there are sites. Rows give every pixel that value and how much the sites weigh together, by which
-// columns then weigh the rows. Rows write nothing where no site is in reach, and say so in a bit per run.
-//
+// The steps have their numbers at the code:
+//  1. The sites in reach of a run of pixels are found: of rows in the words of tiles; of columns, what rows have made.
+//  2. A site counts at a pixel as far as both show one surface (likeness.glsl), and by a parabola of their distance.
+//  3. Sums over the sites are taken for each pixel.
+//  4. The pixel takes its own place on the straight line that fits the sites best (W. S. Cleveland, "Robust Locally
+//     Weighted Regression and Smoothing Scatterplots", 1979): a mean alone would be pulled to that side of an edge on
+//     which there are sites.
+//  5. Rows hand on that value and how much the sites weigh together, by which columns then weigh the rows. Rows write
+//     nothing where no site is in reach, and say so in a bit per run.
 // One invocation computes a run of pixels, and goes over the sites in reach of it. A subgroup goes on as long as one of
 // its lanes has any: so those beside each other take rows that lie 4 apart, on which a wide lattice has as many.
 #version 450
@@ -43,7 +46,7 @@ readonly buffer Sites { uint rows[]; };  // 8 words per tile, see tiles.glsl; no
 /// Pixels that one invocation looks at.
 const int kCount = kDenoiseRun + 2 * kRadius;
 
-/// What the slope of the line is held back by, px^2: a spread of the sites this wide halves it. It keeps few sites, and
+/// The slope of the line is held back by this, px^2: a spread of the sites this wide halves it. It keeps few sites, and
 /// noisy ones, from a slope of their own.
 const float kLeastSpread = 2.0;
 
@@ -52,8 +55,8 @@ struct Sums {
   float whole, along, spread;
 };
 
-/// What is blocked at the pixel, and how much its sites weigh together: what rows hand to columns. A weight that is not
-/// 0 stays so, however small it is: it may be all that there is.
+/// 5. The pixel's occlusion, and the weight of its sites together: rows hand both to columns. A weight that is
+/// not 0 stays so, however small it is: it may be all that there is.
 uint pack_blocked(float blocked, float weight) {
   const float least = weight > 0.0 ? 1.0 / 65535.0 : 0.0;
   return packUnorm2x16(vec2(blocked, max(sqrt(weight), least)));
@@ -61,7 +64,7 @@ uint pack_blocked(float blocked, float weight) {
 
 float square(float x) { return x * x; }
 
-/// The sites of a row from this pixel on, as bits.
+/// 1. The sites of a row from this pixel on, as bits.
 uint sites_of_row(ivec2 first) {
   const ivec2 tiles = tiles_of(params.view.size);
   const int tile = first.x >> 3, in_tile = first.x & 7;
@@ -76,7 +79,7 @@ uint sites_of_row(ivec2 first) {
   return bits;
 }
 
-/// How a site weighs at a pixel so far away. It depends on nothing but the distance, not even by rounding, so that a
+/// 2. How a site weighs at a pixel so far away. It depends on nothing but the distance, not even by rounding, so that a
 /// pixel gets the same bits wherever its run begins. A kernel of the user's is looked up.
 float window_at(float away) {
   if ((kMode & kInterpolateLooksUp) != 0u) return params.weight[min(int(abs(away)), kRadius)];
@@ -109,6 +112,7 @@ void interpolate(ivec2 first, uint sites, int plane) {
       const float at = window_at(away);
       const float alike = similarity(taps[i], tap, away, kLeastSimilarity);
       const float share = abs(away) <= float(kRadius) ? weight * at * alike : 0.0;
+      // 3.
       sums[i].whole += share;
       sums[i].along += share * away;
       sums[i].spread += share * away * away;
@@ -124,6 +128,7 @@ void interpolate(ivec2 first, uint sites, int plane) {
     const bool is_known = taps[i].z < kSkyDepth && sums[i].whole > 0.0;
     const float over = is_known ? 1.0 / sums[i].whole : 0.0;
     const float away = sums[i].along * over;
+    // 4.
     const float spread = (sums[i].spread + kLeastSpread * sums[i].whole) - sums[i].along * away;
     // The variance of the line where the pixel is, against that where its sites are: rows of which they lie aside
     // weigh less in the columns.
@@ -142,7 +147,7 @@ void interpolate(ivec2 first, uint sites, int plane) {
 /// The words of the runs in a row, of which each stands for a run in 32 rows: where it has a site in reach.
 int words_of_runs() { return (params.view.size.x + kDenoiseRun - 1) / kDenoiseRun; }
 
-/// The rows from this pixel on that have a mean near it, as bits.
+/// 1. The rows from this pixel on that have a mean near it, as bits.
 uint means_of_column(ivec2 first) {
   const int word = first.y >> 5, shift = first.y & 31;
   const int last = (params.view.size.y - 1) >> 5;

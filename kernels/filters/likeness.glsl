@@ -23,7 +23,7 @@ struct Tap {
   float ahead, across;
 };
 
-/// What lies outside the image is as sky: infinitely far from every plane.
+/// A pixel outside the image is as sky: infinitely far from every plane.
 Tap tap_at(ivec2 pixel) {
   const bool known = inside(params.view, pixel);
   const ivec2 nearest = clamp(pixel, ivec2(0), params.view.size - 1);
@@ -41,7 +41,7 @@ Tap tap_at(ivec2 pixel) {
   return tap;
 }
 
-/// How far two taps mix that lie this many pixels apart. least: of pixels that must get something.
+/// The weight with which two taps mix that lie this many pixels apart. least: of pixels that must get something.
 float similarity(Tap a, Tap b, float pixels, float least) {
   const float further = b.z - a.z;
   if (kByDepth != 0) {

@@ -5,8 +5,13 @@
 // In: raw depth of any kind or positions, raw normals of any encoding in world or view space.
 // Out: planar z, view normals, and counts of what was repaired.
 //
-// Spheremap: the equal-area map about -z (Mittring, "A bit more Deferred - CryEngine 3", 2009). Octahedral: see
-// normal.glsl.
+// The steps have their numbers at the code:
+//  1. Raw depth becomes planar depth; whatever is no distance before the eye is sky (depth_terms.glsl).
+//  2. The file's normal is decoded to a vector in its own space. Spheremap: the equal-area map about -z (Mittring, "A
+//     bit more Deferred - CryEngine 3", 2009). Octahedral: see normal.glsl.
+//  3. The vector is rotated to view space and made a unit vector.
+//  4. A normal that leans away by little is bent back until it faces the eye. One that is clearly away, or no direction
+//     at all, is left to `reconstruct`.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/geometry/geometry.h"
@@ -34,7 +39,7 @@ writeonly buffer Missing { GroupCount missing; };  // of reconstruct: z becomes 
 /// Normals shorter than this are no direction at all (a background of zeros).
 const float kLeastLength = 1e-6;
 
-/// Planar depth in scene units, kSkyDepth where there is no surface.
+/// 1. Planar depth in scene units, kSkyDepth where there is no surface.
 float depth_at(ivec2 pixel) {
   const int index = index_of(params.view, pixel), plane = params.view.size.x * params.view.size.y;
   vec3 raw = vec3(raw_depth[index], 0, 0);
@@ -42,7 +47,7 @@ float depth_at(ivec2 pixel) {
   return planar_depth(kDepthForm, params.depth, params.view, pixel, raw);
 }
 
-/// The file's normal as a vector, in its own space and of any length; zero where it is none.
+/// 2. The file's normal as a vector, in its own space and of any length; zero where it is none.
 vec3 decoded_normal(int index) {
   const int plane = params.view.size.x * params.view.size.y;
   vec3 raw = vec3(raw_normal[index], raw_normal[index + plane], 0);
@@ -75,6 +80,7 @@ void main() {
   vec3 n = vec3(0);
   if (kNormalForm != kNormalNone) {
     const vec3 raw = decoded_normal(index);
+    // 3.
     n = vec3(dot(params.view_from_normal_x, raw), dot(params.view_from_normal_y, raw),
              dot(params.view_from_normal_z, raw));
   }
@@ -82,6 +88,7 @@ void main() {
   const bool usable = is_finite(size) && size > kLeastLength;
   const vec3 eye = toward_eye(params.view, position_of(params.view, vec2(pixel) + 0.5, z));
   n /= size;
+  // 4.
   const bool is_away = dot(n, eye) < -kLeastFacing;  // rounding does not make it face the eye
   if (!usable || is_away) missing.z = 1u;            // every invocation that writes it writes the same
   if (!usable && kNormalForm != kNormalNone) atomicAdd(counts.repaired_normals, 1u);

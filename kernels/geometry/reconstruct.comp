@@ -24,7 +24,7 @@ readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
 buffer Normal { uint normal[]; };          // one uint per pixel, see normal.glsl: all face the eye
 buffer Counts { FrameCounts counts; };
 
-/// How much a large change of 1/z counts against a side, beside its bend.
+/// The weight of a large change of 1/z against a side, beside its bend.
 const float kNearness = 0.1;
 
 /// Two sides are the same surface if their changes of 1/z differ by no more than so many errors of the better one, plus
@@ -33,8 +33,8 @@ const float kSameSurface = 4.0;
 const float kRounding = 1e-6;
 const float kOneSurface = 0.01;
 
-/// What an affine function over the image would be here, going by the two neighbours on one side; orthographic planes
-/// are affine in z, others in 1/z.
+/// The value that an affine function over the image would have here, by the two neighbours on one side; orthographic
+/// planes are affine in z, others in 1/z.
 float affine_depth(ivec2 pixel) {
   if (!inside(params.view, pixel)) return -1.0;
   const float z = depth[index_of(params.view, pixel)];

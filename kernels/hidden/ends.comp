@@ -28,7 +28,7 @@ const float kRunSlope = 8.0;
 struct Pixel {
   float z[kMost];
 };
-/// What is known of their ends on the side that the line comes from.
+/// The ends of the surfaces on the side that the line comes from.
 struct Known {
   int votes[kMost], steps[kMost];
   uint ends;  // a bit for each that the pixel before does not go on with
@@ -43,7 +43,7 @@ Pixel pixel_at(int index, int plane) {
   return pixel;
 }
 
-/// How far two surfaces are from each other; kSkyDepth if they are not one. perspective: 1, or 0 orthographic.
+/// The distance between two surfaces; kSkyDepth if they are not one. perspective: 1, or 0 orthographic.
 float gap_of(float a, float b, float slope, float perspective) {
   const float limit = slope * (perspective != 0.0 ? min(a, b) : 1.0), gap = abs(a - b);
   return gap < limit && max(a, b) < kSkyDepth ? gap : kSkyDepth;

@@ -28,7 +28,7 @@ struct LayersParams {
   float separation;      // scene units: surfaces closer than it are one; below 0: by precision and a pixel's slope
 };
 
-/// What is counted over a frame.
+/// Counts over a frame.
 struct LayerCounts {
   uint surfaces;  // kept behind the first
   uint dropped;   // behind those that are kept
@@ -71,7 +71,7 @@ struct WarpParams {
   uint round;  // the plane that is written: the nearest surfaces behind those of the plane before
 };
 
-/// What is counted over all other views of a frame.
+/// Counts over all other views of a frame.
 struct ViewCounts {
   uint moved;        // left out: they move, or lie before what the frame shows
   uint unconfirmed;  // left out: no other view has seen them

@@ -27,7 +27,7 @@ buffer Counts { ViewCounts counts; };       // zeroed before
 /// Half a piece's side, in pixels of its own view.
 const float kHalfSide = 0.6;
 
-/// How the two coordinates of an image point in `from`, in px, change with its position: in scene units of `to`.
+/// The change of the two coordinates of an image point in `from`, in px, with its position: in scene units of `to`.
 vec3 gradient_there(View from, vec3 position, ivec2 axis) {
   const vec2 per_unit = vec2(axis) / from.tangent_per_pixel;
   const float ahead = -position.z;

@@ -24,7 +24,8 @@ readonly buffer Values { uint values[]; };
 readonly buffer Rows { uint rows[]; };        // 8 words per tile, see tiles.glsl; only if sparse
 writeonly buffer Result { float result[]; };  // one float per pixel
 
-/// How far the farthest of the four neighbours lies off the tangent plane, as part of the pixel's depth; 1 at the sky.
+/// The distance of the farthest of the four neighbours from the tangent plane, as part of the pixel's depth; 1 at the
+/// sky.
 float edge(ivec2 pixel, float z, vec3 n) {
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
   float farthest = 0.0;
@@ -40,7 +41,7 @@ float edge(ivec2 pixel, float z, vec3 n) {
 
 bool has_site(ivec2 pixel) { return is_site(rows[word_of_pixel(pixel, tiles_of(params.view.size))], pixel.x); }
 
-/// How far around a pixel its nearest site is sought, in px.
+/// A pixel's nearest site is sought so far around it, in px.
 const int kFarthestSite = 4;
 
 /// The value of a pixel; where only sites have any, that of the nearest one, of several the first row by row. Where
@@ -77,7 +78,7 @@ float density_at(ivec2 pixel) {
   return float(sites) / float(surfaces);
 }
 
-/// How many surfaces lie behind the first one, and half a one more where any of them closes a solid.
+/// The number of surfaces behind the first one, and half a one more where any of them closes a solid.
 float hidden_at(int index) {
   const int plane = params.view.size.x * params.view.size.y;
   float count = 0.0, solid = 0.0;

@@ -39,7 +39,7 @@ writeonly buffer Bent { float bent[]; };      // those of the mean open directio
 /// Normals of one point differ by rounding and by how files filter them: as the cosine between them.
 const float kLeastAgreement = 0.9;
 
-/// How far the same surface may lie off a plane, in widths of a pixel: what half of one changes on a slope.
+/// The same surface may lie so far off a plane, in widths of a pixel: half of one changes so much on a slope.
 const float kHalfPixel = 0.5;
 
 int pixels_of(ivec2 size) { return size.x * size.y; }

@@ -35,7 +35,7 @@ const float kFarther = 3.0;  // pixels' widths that what is seen through a surfa
 const int kPatch = 2;        // px from the patch's middle to its border
 const float kAlike = 8.0;    // pixels' worth of slope that neighbours of one surface differ by at most
 
-/// Where something moves, scene units, in the view space of the frame; low above high: nowhere.
+/// The box in which something moves, scene units, in the view space of the frame; low above high: nowhere.
 struct Box {
   vec3 low, high;
 };
@@ -44,7 +44,7 @@ const Box kNowhere = Box(vec3(kSkyDepth), vec3(-kSkyDepth));
 /// Cells along an axis that are marked at most for one box: boxes of a tile are small but where a tile shows an edge.
 const int kMostCells = 64;
 
-/// How a depth is looked up: of the frame itself, or of another one.
+/// A frame whose depths are looked up: the frame itself, or another one.
 float depth_at(bool of_own, uint first, int index) { return of_own ? own[index] : others[first + uint(index)]; }
 
 /// Pixels of a square about one, row by row.
@@ -145,8 +145,8 @@ uint squares_with(Found found, int bit) {
   return squares;
 }
 
-/// What of a tile of one frame the other has not: from the frame itself to another one, or the other way round, where
-/// it is looked at in these squares. Gives the last box, which is still to be marked for these frames.
+/// The part of a tile of one frame that the other has not: from the frame itself to another one, or the other way
+/// round, where it is looked at in these squares. Gives the last box, which is still to be marked for these frames.
 Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other, uint frames) {
   View from = other.view, to = params.view;
   if (from_own) from = params.view;
@@ -170,8 +170,8 @@ Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other, uint fr
   return box;
 }
 
-/// What of a tile moves by motion vectors: of the frame itself, or of another one. All pixels are looked at, since
-/// vectors also tell of what is as thin as one. Adds it to a box.
+/// The part of a tile that moves by motion vectors: of the frame itself, or of another one. All pixels are looked at,
+/// since vectors also tell of what is as thin as one. Adds it to a box.
 void add_moving(inout Box box, ivec2 tile, bool of_own, TakenFrame other, uint frames) {
   View view = other.view;
   if (of_own) view = params.view;

@@ -16,7 +16,7 @@ vec3 direction_there(TakenFrame other, vec3 v) {
 }
 vec3 position_there(TakenFrame other, vec3 p) { return direction_there(other, p) + other.offset; }
 
-/// What a view that sees a position should have there.
+/// The depth that a view should have at a position that it sees.
 struct Sight {
   ivec2 at;      // its pixel, px
   bool is_seen;  // before the eye, and not at the picture's border
@@ -38,7 +38,7 @@ Sight sight_of(View view, vec3 position, vec3 error) {
 /// The cell in which a position lies.
 ivec3 cell_of(vec3 position, float radius) { return ivec3(floor(clamp(position / (kMovedCell * radius), -1e9, 1e9))); }
 
-/// Where its word is.
+/// The index of the cell's word.
 uint place_of_cell(ivec3 cell) {
   const uvec3 product = uvec3(cell) * uvec3(73856093u, 19349663u, 83492791u);
   return (product.x ^ product.y ^ product.z) & (kMovedCells - 1u);

@@ -223,6 +223,28 @@ TEST(Layers, only_the_command_line_prints_and_reads_arguments) {
   EXPECT_EQ(matches(product(), R"(\bargv\b|\bstd::exit\(|\b_exit\(|\babort\()", core), Names{});
 }
 
+TEST(Layers, the_functions_of_the_chain_are_its_drawing) {
+  const std::regex begin(R"(^\w+ (\w+)\(.*)"), condition(R"(\bif \()");
+  std::string name;
+  int lines = 0, conditions = 0, functions = 0;
+  for (const auto& line : lines_of(read_bytes(ALCOVE_SOURCE_DIR "/core/chain/chain.cpp"))) {
+    std::smatch found;
+    if (name.empty() && std::regex_match(line, found, begin)) {
+      name = found[1];
+      lines = conditions = 0;
+    }
+    if (name.empty()) continue;
+    lines++;
+    conditions += std::regex_search(line, condition) ? 1 : 0;
+    if (line != "}") continue;
+    EXPECT_LE(lines, 40) << name;
+    EXPECT_LE(conditions, 8) << name;
+    functions++;
+    name.clear();
+  }
+  EXPECT_GE(functions, 4);
+}
+
 // Kernels.
 
 /// core/chain/chain.cpp, with the passes that sites() and estimate() choose from in their place.

@@ -14,7 +14,7 @@
 
 namespace alcove {
 
-/// How kernels read a plane of depth behind the first surface.
+/// The terms by which kernels read a plane of depth behind the first surface.
 struct LayerTerms {
   uint form;  // kDepth*
   BehindKind kind;
@@ -27,7 +27,7 @@ struct Margin {
   ivec2 after{};   // to the right and below
 };
 
-/// What another frame of the shot, or another view of the same instant, sees: its prepared depth and normals.
+/// The prepared depth and normals of another frame of the shot, or of another view of the same instant.
 struct OtherView {
   View view{};
   // its view space -> this frame's: x' = dot(row.xyz, x) + row.w, scene units

@@ -9,7 +9,7 @@
 
 namespace alcove {
 
-// They stand before the names of the buffers of further planes; those of the AO have none.
+// Prefixes of the names of buffers of further planes; those of the AO have none.
 inline constexpr const char* kScalesPrefix = "scales ";
 inline constexpr const char* kBentPrefix = "bent ";
 

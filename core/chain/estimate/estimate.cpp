@@ -49,7 +49,7 @@ vec2 noise_shift(int frame, std::uint32_t seed) {
   return {shift(kR2X, kRootX), shift(kR2Y, kRootY)};
 }
 
-/// What is completed, as kernels take it.
+/// The completed surfaces, as kernels take them.
 uint completion_of(const Reach& reach) {
   switch (reach.complete) {
     case Completion::none: break;

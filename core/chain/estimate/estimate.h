@@ -46,7 +46,7 @@ gpu::Extent list_extent(const TileList& list);
 /// The workgroups of an estimator over what is listed.
 gpu::Extent estimate_extent(const TileList& list);
 
-/// What an estimator gives for the sites of a G-buffer.
+/// The result of an estimator for the sites of a G-buffer.
 struct Estimate {
   gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on
   uint plane = 0;                  // of `ao`: that of the radius that an estimator writes
@@ -71,7 +71,7 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
 /// completed surfaces took, only with the largest.
 Estimate of_radius(const Estimate& all, uint plane, std::size_t radii);
 
-/// What blocks around a receiver, for one radius.
+/// The rules by which surfaces around a receiver block, for one radius.
 struct Reach {
   float radius;         // scene units: nothing beyond blocks
   float falloff_start;  // scene units: what is nearer blocks fully
@@ -85,7 +85,7 @@ Reach reach_of(const EstimatorSettings& settings, double radius);
 /// Whether surfaces go on behind what is nearer. What endless occluders hide is blocked anyway.
 bool completes_behind(const Reach& reach);
 
-/// How samples are spread over the hemisphere, and over neighbouring pixels.
+/// The samples' spread over the hemisphere, and over neighbouring pixels.
 struct Sampling {
   int slices;        // directions per pixel
   int steps;         // samples to each side of a slice
@@ -100,7 +100,7 @@ struct VolumeSamples {
   RangeCheck range_check;
 };
 
-/// What may be left out.
+/// The tiles that may be left out.
 struct Skipping {
   bool skips_sky;
   const gpu::Buffer* changes;           // against the frame before; null: it gives nothing

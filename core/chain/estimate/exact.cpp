@@ -17,7 +17,7 @@ constexpr int kMostDirections = kComparedDirections.back();
 // All but the first two and the last decide.
 static_assert(kComparedDirections.size() == kRefineRounds + 3);
 
-/// How far a profile may leave a pixel's depth, in the pixel's own widths: less costs more vertices.
+/// A profile may leave a pixel's depth by so many of the pixel's own widths: less costs more vertices.
 constexpr float kProfileTolerance = 0.2f;
 
 /// Where surfaces are completed, a run is so thick: its width times the first, and so many pixels more. Thickness need
@@ -32,7 +32,7 @@ int bit_reversed(int i) {
   return reversed;
 }
 
-/// How many pixels lines have moved across at a step: as in lines.glsl.
+/// The pixels that lines have moved across at a step: as in lines.glsl.
 int shift_at(const Lines& lines, int step) {
   return (lines.slope * (lines.origin.x + step) + kSlopeUnit / 2) >> kSlopeBits;
 }

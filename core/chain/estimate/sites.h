@@ -17,7 +17,7 @@ int spacing_of(const EstimatorSettings& settings);
 /// Whether surfaces that show few pixels have more estimates than spacing_of() says.
 bool is_adaptive(const EstimatorSettings& settings);
 
-/// How far depths count for where estimates are made, in px of the frame: see sites.comp.
+/// The reach of depths that decide where estimates are made, in px of the frame: see sites.comp.
 int site_reach_of(const EstimatorSettings& settings);
 
 /// The sites of a G-buffer: pixels with an estimate, from which the filters make that of the others.
@@ -27,7 +27,7 @@ struct Sites {
   ivec2 shift{};                      // px of their lattice to the left and up
 };
 
-/// Where the sites lie.
+/// The rule by which sites are chosen.
 struct SiteRule {
   int spacing;       // one pixel of so many is a site at least: 1, 2, 4, 8 or 16
   bool is_adaptive;  // more where a surface is too small or too bent for its neighbours' sites

@@ -24,7 +24,7 @@ std::vector<double> gaussian(int radius) {
   return weights;
 }
 
-/// What interpolate makes of a radius: 0 a pixel beyond it.
+/// The narrowness of interpolate's parabola that is 0 a pixel beyond the radius.
 double narrowness_of(const EstimatorSettings& settings) {
   const double end = denoise_radius_of(settings) + 1;
   return 1 / (end * end);

@@ -12,20 +12,20 @@ namespace alcove {
 /// Takes the mean over the radii of an estimate, and keeps their planes where `keeps_scales`.
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales);
 
-/// How far the bilateral denoiser reaches to each side, in pixels of the estimate. Where the settings leave it open, it
+/// The reach of the bilateral denoiser to each side, in pixels of the estimate. Where the settings leave it open, it
 /// is 8 if pixels share estimates, and 4 if each has its own.
 int denoise_radius_of(const EstimatorSettings& settings);
 
-/// From how far a pixel takes estimates of others, in pixels of the estimate: 0 without a denoiser. Where pixels share
-/// estimates it is at least 3 px with an adaptive density, in which each pixel then has one, and 8 with a uniform one,
-/// in which small surfaces may have none: these stay open.
+/// The distance from which a pixel takes estimates of others, in pixels of the estimate: 0 without a denoiser. Where
+/// pixels share estimates it is at least 3 px with an adaptive density, in which each pixel then has one, and 8 with a
+/// uniform one, in which small surfaces may have none: these stay open.
 int denoise_reach_of(const EstimatorSettings& settings);
 
-/// How far estimates count beyond their own pixels, in px of the frame: the denoiser by pixels of the estimate, and
+/// The reach of estimates beyond their own pixels, in px of the frame: the denoiser by pixels of the estimate, and
 /// upsampling by two of them. So does the choice of how many directions a tile takes.
 int filter_reach_of(const EstimatorSettings& settings);
 
-/// What the settings ask of the denoiser.
+/// The parameters of the denoiser.
 struct Denoiser {
   std::vector<double> weights;  // from the centre outwards, up to a common factor; empty: there is no filter
   double depth_sigma;           // see EstimatorSettings::denoise_depth_sigma

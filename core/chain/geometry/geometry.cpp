@@ -9,7 +9,7 @@
 namespace alcove {
 namespace {
 
-/// Of the frame's width, on each side.
+/// The margin's part of the frame's width, on each side: one of so many.
 constexpr int kMarginPart = 8;
 
 /// Surfaces that files show behind the first end with the frame, and so does then what others show.

@@ -6,7 +6,7 @@
 
 namespace alcove {
 
-/// How much of each pixel wants AO.
+/// The part of each pixel that wants AO.
 struct Matte {
   gpu::Buffer* plane = nullptr;  // coverage, 0 to 1, over the frame; null: all want it
   double outside = 1;            // the AO where it is 0
@@ -15,12 +15,11 @@ struct Matte {
 /// A matte, or that of RawPlane::occluders, as one plane of coverage over the frame; none where the frame has none.
 Matte matte(gpu::Recorder& gpu, const FrameInputs& frame, RawPlane which = RawPlane::matte);
 
-/// The G-buffer with the tiles whose estimates anybody needs, who looks up to `reach` px of the frame beyond the matte;
-/// the same one where there is none. `wide` is the frame with its
-/// margin: see with_margin().
+/// The G-buffer with the tiles whose estimates are needed; the same one without a matte. Filters look up to `reach` px
+/// of the frame beyond the matte. `wide`: the frame with its margin, see with_margin().
 GBuffer needed(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& wide, const Matte& matte, int reach);
 
-/// What stands for the surfaces that nobody knows behind one that is no occluder.
+/// The stand-in for the unknown surfaces behind one that is no occluder.
 enum class Unknown {
   open,     // nothing
   blocked,  // the surface in front of them: nothing that they may be blocks more

@@ -19,7 +19,7 @@ uint kind_of(BehindKind kind) {
   return kBehindSurfaces;
 }
 
-/// Which planes hold surfaces of unknown kind, a bit each.
+/// The planes that hold surfaces of unknown kind, a bit each.
 uint open_planes(const FrameInputs& frame) {
   uint planes = 0;
   for (std::size_t i = 0; i < frame.behind.size(); i++)

@@ -8,7 +8,7 @@
 
 namespace alcove {
 
-/// How many surfaces are kept behind the first, and when two are one.
+/// The number of surfaces that are kept behind the first, and the distance within which two are one.
 struct Layering {
   int kept;           // 0 to kMostHidden
   double separation;  // scene units; below 0: by the depth's precision and a pixel's slope

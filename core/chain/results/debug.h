@@ -13,7 +13,7 @@
 namespace alcove {
 
 enum class DebugScale { fixed, fixed_logarithmic, percentile, percentile_logarithmic };
-/// What kernels/results/debug.comp takes beside the G-buffer.
+/// The input of kernels/results/debug.comp beside the G-buffer.
 enum class DebugSource {
   none,
   raw_depth,
@@ -48,7 +48,7 @@ std::vector<const DebugView*> debug_views_of(const OutputSettings& settings);
 /// Whether the settings ask for a view of this source.
 bool shows(const OutputSettings& settings, DebugSource source);
 
-/// Where the picture of a view goes: beside the AO, ao.exr -> ao.raw-depth.png.
+/// The path of a view's picture: beside the AO, ao.exr -> ao.raw-depth.png.
 std::string debug_path(const OutputSettings& settings, const DebugView& view);
 
 /// One number per pixel for a debug view; kSkyDepth for sky.

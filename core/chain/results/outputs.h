@@ -52,7 +52,7 @@ struct FrameOutputs {
   std::vector<DebugPlane> debug{};
 };
 
-/// What an AOV is made from; each needs what stands before it, too.
+/// The input of an AOV; each needs those that stand before it, too.
 enum class AovSource { geometry, visibility, open_directions };
 
 /// A row of the table.
@@ -90,7 +90,7 @@ std::vector<std::string> aov_names();
 /// the table, listing the names that are.
 std::vector<Aov> aovs_of(const OutputSettings& settings);
 
-/// How many planes of values an AOV has: ao-scales one for each radius, hidden two for each surface that is kept.
+/// The number of an AOV's planes: of ao-scales one for each radius, of hidden two for each surface that is kept.
 std::size_t planes_of(const Aov& aov, const EstimatorSettings& settings);
 /// The channels of an AOV that has so many planes: scale1.Y of the smallest radius, hidden1.Z of the nearest surface.
 std::vector<std::string> channels_of(const Aov& aov, std::size_t planes);
@@ -98,7 +98,7 @@ std::vector<std::string> channels_of(const Aov& aov, std::size_t planes);
 /// Whether an AOV that the settings ask for lies in these planes.
 bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes);
 
-/// What the outputs ask of the chain: their names, parsed once. Settings convert to it, so they may be passed in its
+/// The outputs' requests of the chain: their names, parsed once. Settings convert to it, so they may be passed in its
 /// place.
 struct Wanted {
   /// Fails with ErrorKind::usage on names that are in no table.

@@ -40,7 +40,7 @@ double weight_at(PixelFilterKind kind, double distance) {
   return 0;
 }
 
-/// Of a pixel that so many others stand before in its block's row, in widths of the filter.
+/// The distance of a pixel from its block's middle, in widths of the filter. `pixel` counts along the block's row.
 double distance_of(int pixel, double width, int factor) { return ((pixel + 0.5) / factor - 0.5) / width; }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct FilterWeights {
 /// Analysis with the Discrete Fourier Transform, 1978), as Cycles has it. A pixel counts by its centre.
 FilterWeights filter_weights(const PixelFilter& filter, int factor);
 
-/// How many pixels beyond a part of a frame count for it; 0 with the factor 1.
+/// The number of pixels beyond a part of a frame that count for it; 0 with the factor 1.
 int reduce_reach(const PixelFilter& filter, int factor);
 
 /// Filters what is an amount or a direction, where the frame is larger than its picture: all pixels of a block then

@@ -11,7 +11,7 @@
 
 namespace alcove {
 
-/// How the visibility is bent after it has been estimated.
+/// The curve that bends the estimated visibility.
 struct Shaping {
   double intensity = 1;
   double power = 1;
