@@ -113,7 +113,7 @@ bool is_scale(double pixels) { return pixels >= kLeastScale && pixels <= kMostSc
 /// A camera file being read: every complaint names the file and the field.
 struct CameraFile {
   std::string path;
-  // Those of the frame's own entry win over those outside, and within either those of the view.
+  // Fields of the frame's own entry win over those outside it, and within either those of the view.
   Json top, frame, view_of_top, view_of_frame;
 
   const Json* find(const char* field) const {

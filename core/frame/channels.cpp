@@ -402,7 +402,7 @@ const NamedChannel* find_named(const std::vector<NamedChannel>& channels, const 
 /// Components of a layer that the user named: what they are is no question then, only their order.
 const Components kOtherComponents{{"0", "1", "2"}, {"u", "v", "w"}, {"nx", "ny", "nz"}, {"px", "py", "pz"}};
 
-/// What a layer that the user names may hold.
+/// The components that a layer named by the user may hold.
 Components sets_of(const AovNames& names) {
   Components sets = names.in_layer;
   sets.insert(sets.end(), kOtherComponents.begin(), kOtherComponents.end());

@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/frame/channels.h"
-#include "core/frame/sampling.h"
+#include "core/frame/evidence.h"
 
 namespace alcove {
 namespace {
@@ -41,7 +41,7 @@ AovNames second_pair(const std::string& layer) {
 
 using Pixels = std::array<double, 2>;
 
-/// Where a pixel's surface would be seen if it stood still, less where it is; nothing behind the other camera.
+/// The step, px, of a pixel's surface in the picture if it stands still; nothing behind the other camera.
 std::optional<Pixels> by_cameras(const View& view, const FromThere& there, std::size_t pixel, float depth) {
   const double px = double(pixel % std::size_t(view.size.x)) + 0.5, py = double(pixel / std::size_t(view.size.x)) + 0.5;
   const SeenAt seen = seen_from(there.view, there.map, view, px, py, depth);

@@ -17,7 +17,6 @@
 #include "core/formats/exr.h"
 #include "core/frame/camera.h"
 #include "core/frame/evidence.h"
-#include "core/frame/flatness.h"
 #include "core/frame/gbuffer.h"
 #include "core/frame/matte.h"
 

@@ -62,7 +62,7 @@ std::optional<double> radius_for(const FramePlan& plan, bool has_camera, std::op
       FrameSource source = find_frame(settings, false, frame);
       source.open.camera = !has_camera;
       settle_by_rows(source, settings);
-      if (const auto radius = proposed_radius(source.reading.camera, source.evidence.median_depth)) return radius;
+      if (const auto radius = proposed_radius(source.reading.camera, source.evidence->median_depth)) return radius;
     } catch (const Error& failure) {
       if (!error) error = failure;
     }
@@ -88,15 +88,15 @@ std::optional<FrameSource> settle_first(const FramePlan& plan, std::uint64_t mos
       const Settings settings = plan.at(frame);
       FrameSource source = open_frame(settings, frame);
       settle_by_rows(source, settings.input, most_bytes);
-      if (!best || source.evidence.tells) best = std::move(source);
-      if (best->evidence.tells) break;
+      if (!best || source.evidence->tells) best = std::move(source);
+      if (best->evidence->tells) break;
     } catch (const Error&) {
       // The frame is computed like all others, and its report says then what is wrong with it.
       is_refused = true;
     }
   }
   // A frame that shows nothing, such as one of sky, must not have others read that are refused by themselves.
-  if (is_refused && best && !best->evidence.tells) return std::nullopt;
+  if (is_refused && best && !best->evidence->tells) return std::nullopt;
   if (best)
     for (auto& file : best->files) file.close();
   return best;

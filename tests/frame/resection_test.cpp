@@ -11,7 +11,6 @@
 #include <random>
 
 #include "core/formats/exr.h"
-#include "core/frame/panorama.h"
 #include "core/inspect/inspect.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
