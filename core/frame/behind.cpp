@@ -98,8 +98,8 @@ ChannelRef find_channel(FrameSource& source, ChannelSearch& search, std::size_t 
   if (found.empty()) found = search.require(file, behind_names(), chosen, is_alone, "Z");
   if (found[0] == depth)
     fail(ErrorKind::input,
-         "{}: {} is the depth of the frame itself: name what lies behind it with --set behind-channel, "
-         "or another file with --behind",
+         "{}: {} is the depth of the frame itself: name the channel of the surfaces behind it with --set "
+         "behind-channel, or give another file with --behind",
          source.files[file].path(), found[0].channel);
   return found[0];
 }
@@ -124,8 +124,8 @@ void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings
     source.reading.behind.push_back({.kind = kind, .is_half = source.is_half(ref)});
     if (source.reading.behind.back().is_half && !source.reading.depth_is_half)
       source.suspicious.push_back(
-          {NoteCode::half_depth, fmt::format("{} of {} is stored as half float, and the depth is not: what lies behind "
-                                             "is off by up to a 2048th of its depth; write it as float",
+          {NoteCode::half_depth, fmt::format("{} of {} is stored as half float, and the depth is not: surfaces behind "
+                                             "are off by up to a 2048th of their depth; write it as float",
                                              ref.channel, path)});
     number++;
   }
@@ -247,8 +247,8 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
   const auto pixels = std::size_t(std::ranges::count(taken_, true));
   if (said.kind == BehindKind::thickness && plane.negative > 0)
     fail(ErrorKind::input,
-         "{} is below 0 on {:.2g} % of the pixels, and a thickness is how far a solid goes on behind its front: name "
-         "another channel with --set behind-channel, or say with --behind-kind what it is",
+         "{} is below 0 on {:.2g} % of the pixels, and a thickness is the extent of a solid behind its front: name "
+         "another channel with --set behind-channel, or give the right --behind-kind",
          name, percent(plane.negative, pixels));
   if (plane.surfaces == 0)
     return {{NoteCode::empty_layer, fmt::format("{} shows no surface where the depth has one (--behind)", name)}};
@@ -278,20 +278,21 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
         name, percent(plane.before, plane.surfaces), median_of(plane.parts), source.depth_path());
   Notes notes;
   if (double(plane.before) > kNoted * double(plane.surfaces))
-    notes.push_back({NoteCode::before_first,
-                     fmt::format("{} lies before the first surface on {:.0f} % of the pixels, where it is left out: is "
-                                 "it of the same frame and camera (--behind)?",
-                                 name, percent(plane.before, plane.surfaces))});
+    notes.push_back(
+        {NoteCode::before_first, fmt::format("{} lies before the first surface on {:.0f} % of the pixels, and is left "
+                                             "out there: check that it is of the same frame and camera (--behind)",
+                                             name, percent(plane.before, plane.surfaces))});
   if (plane.same == plane.surfaces)
     notes.push_back({NoteCode::nothing_hidden,
                      fmt::format("{} is the first surface wherever it has one, and shows nothing new: name the channel "
-                                 "of what lies behind with --set behind-channel, or give another file with --behind",
+                                 "of the surfaces behind with --set behind-channel, or give another file with --behind",
                                  name)});
   else if (plane.known == plane.surfaces)
-    notes.push_back({NoteCode::nothing_hidden,
-                     fmt::format("{} shows nothing new: what is given before it has all of its surfaces; name another "
-                                 "channel with --set behind-channel, give another file, or leave it out (--behind)",
-                                 name)});
+    notes.push_back(
+        {NoteCode::nothing_hidden,
+         fmt::format("{} shows nothing new: the planes given before it have all of its surfaces; name another "
+                     "channel with --set behind-channel, give another file, or leave it out (--behind)",
+                     name)});
   return notes;
 }
 
@@ -547,12 +548,12 @@ void settle_deep(FrameSource& source, const RawPart& raw) {
   if (compared < kLeastPixels) return;
   const auto best = std::ranges::max_element(readings, {}, &DeepReading::same);
   if (double(best->same) < kLeastSame * double(compared))
-    fail(
-        ErrorKind::input,
-        "{}: the first surfaces of its deep samples are the depth of {} on {:.2g} % of the pixels only, be they planar "
-        "or along the ray: give --deep the samples of the same frame and camera, of all its elements, and flat depth "
-        "of others to --behind; --depth-kind and --depth-scale say how the depth is read",
-        file.path(), source.depth_path(), 100.0 * double(best->same) / double(compared));
+    fail(ErrorKind::input,
+         "{}: the first surfaces of its deep samples are the depth of {} on {:.2g} % of the pixels only, both as "
+         "planar depth and along the ray: give --deep the samples of the same frame and camera, of all its elements, "
+         "and flat depth "
+         "of others to --behind; --depth-kind and --depth-scale say how the depth is read",
+         file.path(), source.depth_path(), 100.0 * double(best->same) / double(compared));
   const bool is_own = best->kind == source.reading.depth_kind && best->scale == source.reading.depth_scale;
   source.reading.deep_kind = is_own ? DepthKind::automatic : best->kind;
   source.reading.deep_scale = is_own ? 1 : best->scale;

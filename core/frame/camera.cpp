@@ -23,7 +23,7 @@ constexpr std::size_t kWithoutView = 7, kWithView = 8;  // numbers of a line
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-/// The numbers of a line; what is no number is told by its text.
+/// Reads the numbers of a line. Fails with ErrorKind::input on a word that is no number.
 std::vector<double> numbers_in(const std::string& path, const std::string& line, int number) {
   std::vector<double> numbers;
   std::istringstream words(line);

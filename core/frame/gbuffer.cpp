@@ -251,10 +251,9 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
   if (source.reading.supersampling > 1 && settings.supersampling == "auto")
     source.notes.push_back(
         {NoteCode::windows_differ,
-         fmt::format(
-             "the depth is of {} times the beauty's size: what is written is filtered to that of the beauty, {} "
-             "(--set supersampling, --set filter)",
-             source.reading.supersampling, to_string(picture_of(source.reading, source.reading.display)))});
+         fmt::format("the depth is {} times the beauty's size: outputs are filtered down to the beauty's size, {} "
+                     "(--set supersampling, --set filter)",
+                     source.reading.supersampling, to_string(picture_of(source.reading, source.reading.display)))});
   for (const auto* aov : {&source.channels[RawPlane::beauty], &source.channels[RawPlane::indirect],
                           &source.channels[RawPlane::diffuse_color]})
     require_common_window(source, *aov, "beauty", "--beauty",
@@ -332,7 +331,7 @@ std::vector<ChannelRef> find_depth(FrameSource& source, const ChannelSearch& sea
   return depth;
 }
 
-/// The normals, none where there are none; and what the rules say of their space.
+/// Finds the normals, if there are any, and the space that the rules give them.
 std::vector<ChannelRef> find_normal(FrameSource& source, const ChannelSearch& search, std::size_t file,
                                     const InputSettings& settings) {
   if (source.program.rules->normal_space != NormalSpace::automatic)
@@ -363,8 +362,8 @@ void note_pixel_aspect(FrameSource& source, const std::string& camera) {
   source.notes.push_back(
       {NoteCode::said_otherwise,
        fmt::format("by fx {:.6g} and fy {:.6g} of {} a pixel is {:.4g} times as wide as high, and "
-                   "by the pixelAspectRatio of the frame {:.4g} times: is one of them wrong? Where "
-                   "the picture was cropped, give the camera of what is left of it (--camera)",
+                   "by the pixelAspectRatio of the frame {:.4g} times: one of them may be wrong; if the picture was "
+                   "cropped, give the camera of the crop (--camera)",
                    source.reading.camera.fx, source.reading.camera.fy, camera, aspect, source.reading.pixel_aspect)});
 }
 
@@ -374,8 +373,8 @@ void note_scaled_camera(FrameSource& source, const std::string& camera) {
   if (width == 0) return;
   source.notes.push_back(
       {NoteCode::camera_scaled,
-       fmt::format("the camera of {} is for {}x{} pixels and was scaled to the frame's {}x{}, as of a proxy: a cropped "
-                   "picture needs the camera of what is left of it (--camera)",
+       fmt::format("the camera of {} is for {}x{} pixels and was scaled to the frame's {}x{}, as for a proxy: a "
+                   "cropped picture needs the camera of the crop (--camera)",
                    camera, width, height, source.reading.camera.width, source.reading.camera.height)});
 }
 
@@ -492,10 +491,9 @@ void note_unused_input(FrameSource& source, const InputSettings& settings) {
   const auto is_of_input = [&](const ChannelRef& ref) { return source.file_of(ref).path() == settings.input; };
   const auto is_used = [&](const std::vector<ChannelRef>& plane) { return std::ranges::any_of(plane, is_of_input); };
   if (std::ranges::any_of(source.channels.planes.entries, is_used)) return;
-  source.notes.push_back({NoteCode::unused_input,
-                          fmt::format("no channel of {} is used: where it holds the normals, give it with --normal, "
-                                      "or name them with --normal-channels",
-                                      settings.input)});
+  source.notes.push_back({NoteCode::unused_input, fmt::format("no channel of {} is used: if it holds the normals, give "
+                                                              "it to --normal, or name them with --normal-channels",
+                                                              settings.input)});
 }
 
 }  // namespace

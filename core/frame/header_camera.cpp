@@ -266,7 +266,7 @@ struct Axis {
   double along, shift;
 };
 
-/// Finds the projection from what worldToNDC does to points of camera space.
+/// Finds the projection from the images of points of camera space under worldToNDC.
 std::optional<Camera> projected(const Placement& view, const std::vector<double>& values, const Window& display) {
   if (values.size() != 16) return std::nullopt;
   Matrix4 ndc{};

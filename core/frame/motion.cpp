@@ -13,7 +13,7 @@
 namespace alcove {
 namespace {
 
-/// px: what stands still may differ by it from what the cameras say, and by this part of the way, since vectors are
+/// px: the vector of a surface that stands still may be off by it, and by this part of the way, since vectors are
 /// often stored as half floats.
 constexpr double kStill = 0.1, kStillPart = 0x1p-10;
 /// The least share of surfaces that agree with the cameras by the right reading: the others may all move.

@@ -14,7 +14,7 @@
 namespace alcove {
 namespace {
 
-/// The most that is decoded at once of a file whose window is larger than what is wanted of it.
+/// The most bytes that are decoded at once of a file with a larger window than is needed.
 constexpr std::uint64_t kBandBytes = 8 << 20;
 
 /// The pixels of the depth, in x and in y, per pixel of a channel's file.
@@ -75,7 +75,7 @@ struct ChannelRead {
 };
 
 /// Reads all of a window. Every part of every file is decoded once. Where their files have no pixels, normals and
-/// what lies behind are NaN, which is none in any encoding, and all else is 0. Channels of the smaller picture have
+/// hidden depths are NaN, which is none in any encoding, and all else is 0. Channels of the smaller picture have
 /// their value in all pixels of a block.
 void read_channels(FrameSource& source, const Window& window, std::span<const ChannelRead> reads) {
   const Window& own = source.reading.data;

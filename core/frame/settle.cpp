@@ -138,8 +138,8 @@ Notes letterbox(const FrameSource& source, const RawPart& raw) {
     if (border(!columns, false).empty > 0 || border(!columns, true).empty > 0) continue;
     return {{NoteCode::letterbox_bars,
              fmt::format("the first {} and the last {} {} are empty: they look like bars around the picture, and count "
-                         "as sky, so that AO next to them is too light; crop the file to the data window of what is "
-                         "left, and keep its display window",
+                         "as sky, so that AO next to them is too light; crop the data window of the file to the "
+                         "picture between them, and keep its display window",
                          first.empty, last.empty, columns ? "columns" : "rows")}};
   }
   return {};
@@ -156,11 +156,11 @@ Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
   const double unit = source.reading.normal_unorm ? s.unorm_unit_share : s.unit_share;
   if (!s.count || unit >= 1 - kMostShortened) return {};
   if (!source.reading.normal_unorm && s.usual_share > 1 - kMostOfOtherLength)
-    return {{NoteCode::scaled_normals,
-             fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO takes their direction "
-                         "alone",
-                         s.usual_length, 100 * s.usual_share),
-             source.normal_file()}};
+    return {
+        {NoteCode::scaled_normals,
+         fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO uses their direction only",
+                     s.usual_length, 100 * s.usual_share),
+         source.normal_file()}};
   const bool is_usual = source.program.rules->normal_averaged;
   return {{is_usual ? NoteCode::averaged_normals : NoteCode::shortened_normals,
            fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over the pixel, at edges "
@@ -336,8 +336,7 @@ void settle_meaning(FrameSource& source, const InputSettings& settings, const Ra
     settle_normals(source, settings, raw, seen);
 }
 
-/// As many rows from the middle of a frame as have room in so many bytes, twice: as they are read, and what is made
-/// of them.
+/// Gives as many rows from the middle of a frame as fit into so many bytes twice: as they are read, and their results.
 Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
   constexpr std::uint64_t kLeastPixels = 1 << 18;  // fewer tell too little
   const Window& data = source.reading.data;

@@ -28,7 +28,7 @@ constexpr double kFewErrors = 0.005;
 constexpr double kClearNormals = 1.5;
 /// All pixels of a picture are looked at if it has fewer than these.
 constexpr std::size_t kFewPixels = 100'000;
-/// Pixels. If the median is farther off than this, positions are not what they are taken for.
+/// Pixels. If the median is farther off than this, positions are no positions of this space and camera.
 constexpr double kLargestError = 2;
 
 /// The values on one side of a limit. One value alone stands for something that is no surface.
@@ -118,17 +118,15 @@ class DepthSettlement : private Settlement {
         double(fewer) <= kFewErrors * double(all) ||
         std::min(-values_.least, surfaces_.most) <= kRounded * std::max(-values_.least, surfaces_.most);
     if (!below_0_.varies() || above_0_.is_mostly_one() || is_error) return;
-    fail(
-        ErrorKind::input,
-        "{}: depth goes from {:.3g} to {:.3g}, {:.0f} % of it below 0, so these are no distances: where it is "
-        "normalized and goes on beyond its planes, as V-Ray writes it without clamp, give --depth-kind normalized "
-        "--near N --far F, the distances of 0 and of 1 (with --reversed-z, of 1 and of 0); where what is below 0 is no "
-        "surface, --depth-kind planar",
-        depth_path(), values_.least, surfaces_.most, 100 * double(below_0_.count) / double(all));
+    fail(ErrorKind::input,
+         "{}: depth goes from {:.3g} to {:.3g}, {:.0f} % of it below 0, so these are no distances: if it is normalized "
+         "and goes on beyond its planes, as V-Ray writes it without clamp, give --depth-kind normalized --near N --far "
+         "F, the distances of 0 and of 1 (with --reversed-z, of 1 and of 0); if values below 0 are no surfaces, give "
+         "--depth-kind planar",
+         depth_path(), values_.least, surfaces_.most, 100 * double(below_0_.count) / double(all));
   }
 
-  /// Looks at what lies at the ends of a range or beyond them: normalized depth may go on, and the sky is at the far
-  /// end.
+  /// Settles depth at the ends of a range and beyond them: normalized depth may go on, and the sky is at the far end.
   void settle_ends() {
     auto& range = reading_.depth_range;
     if (reading_.depth_kind == DepthKind::normalized) {
@@ -144,7 +142,7 @@ class DepthSettlement : private Settlement {
   }
 
   /// Whether normalized depth goes on beyond an end of its range. If many pixels are exactly at the end, it was cut off
-  /// there: what lies beyond is what a filter made of the edges of these, and counts as they do.
+  /// there: a filter made the values beyond from the edges of these, and they count as these do.
   bool goes_on(const Side& beyond, std::uint64_t at_end, int end) {
     if (!beyond.varies()) return false;
     if (double(at_end) < kPlateau * double(values_.pixels)) return true;
@@ -215,8 +213,8 @@ class DepthSettlement : private Settlement {
              ? fmt::format("the depth {:.6g} of {:.1f} % of the pixels, which have no normals, is taken for the sky "
                            "(--sky {:.6g} says it)",
                            most, 100 * share, most)
-             : fmt::format("{:.1f} % of the pixels have exactly the depth {:.6g}, and all others end at {:.4g}: "
-                           "where that is the sky, give --sky {:.6g}",
+             : fmt::format("{:.1f} % of the pixels have exactly the depth {:.6g}, and all others end at {:.4g}: if "
+                           "that is the sky, give --sky {:.6g}",
                            100 * share, most, next, most));
   }
 
@@ -232,7 +230,7 @@ class DepthSettlement : private Settlement {
            all([](float n) { return std::abs(n - kGrey) < kRoundedGrey; });
   }
 
-  /// Fails with what the user said of a range that depth of this kind has not. Presets serve frames of every kind.
+  /// Refuses options of the user for a range that depth of this kind lacks. Presets serve frames of every kind.
   void refuse_unused_range() const {
     auto unused = unused_range_options(settings_.depth_range, reading_.depth_kind);
     const auto& left_out = settings_.from_presets;
@@ -254,8 +252,8 @@ class DepthSettlement : private Settlement {
     guess("depth kind", word_of(reading_.depth_kind), by + why, "--depth-kind", false);
   }
 
-  /// Decides the kind that nobody says: by flat surfaces, else by positions, else by normals, else by the program, else
-  /// by what is usual.
+  /// Decides an open kind: by flat surfaces, else by positions, else by normals, else by the program, else the usual
+  /// one.
   void settle_kind() {
     if (is_between_planes(usual_) && values_.least >= 0 && values_.most <= 1) return take_usual("all in 0 to 1");
     if (is_between_planes(usual_)) usual_ = reading_.depth_kind = DepthKind::planar;
@@ -322,7 +320,7 @@ class DepthSettlement : private Settlement {
     return true;
   }
 
-  /// Takes depth of a program that writes 1/z itself and passes on what other programs wrote. Neither is unusual.
+  /// Takes depth of a program that writes 1/z itself and passes on depth of other programs. Neither is unusual.
   void take_passed_on(DepthKind kind, const std::string& why) {
     reading_.depth_kind = kind;
     guess("depth kind", word_of(kind),
@@ -335,7 +333,7 @@ class DepthSettlement : private Settlement {
     if (is_fraction())
       fail(ErrorKind::input,
            "{}: {}, and neither flat surfaces nor normals tell whether it is 1/z, as {} writes it: give --depth-kind "
-           "inverse; where it is normalized, {}",
+           "inverse; if it is normalized, {}",
            depth_path(), text_of_range(), source_.program.rules->name, normalized_line(false));
     take_passed_on(DepthKind::planar, why + ", and it holds more than 1");
     note_assumption(why);
@@ -382,7 +380,7 @@ class DepthSettlement : private Settlement {
     return straightness(score_depth(turned, view_, settings_.sky, seen_.grain), DepthKind::planar);
   }
 
-  /// The options that read normalized depth, and what their number is.
+  /// The options that read normalized depth, and the meaning of their number.
   static std::string normalized_line(bool reversed) {
     return fmt::format(
         "--depth-kind normalized{} --near 0 --far F, where F is the distance, in scene units, that {} stands for",
@@ -408,9 +406,9 @@ class DepthSettlement : private Settlement {
     refuse_plateau();
     if (!is_supported)
       fail(ErrorKind::input,
-           "{}: {}, and no flat surfaces show that these are distances: where it is 0 at the eye, give {}; where it is "
-           "1 at the eye, {}; where it is a distance, --depth-kind planar; where it is 1/z, --depth-kind inverse; "
-           "where it is a z-buffer, --depth-kind device with --near and --far",
+           "{}: {}, and no flat surfaces show that these are distances: if it is 0 at the eye, give {}; if it is 1 at "
+           "the eye, {}; if it is a distance, --depth-kind planar; if it is 1/z, --depth-kind inverse; if it is a "
+           "z-buffer, --depth-kind device with --near and --far",
            depth_path(), text_of_range(), normalized_line(false), normalized_line(true));
     refuse_before_near_plane();
     note_fractions();
@@ -420,7 +418,7 @@ class DepthSettlement : private Settlement {
   void note_fractions() {
     if (!is_distance(usual_)) return;
     note(NoteCode::depth_below_1,
-         fmt::format("{} and is read as distances of less than 1 scene unit; where it is normalized, give {}",
+         fmt::format("{} and is read as distances of less than 1 scene unit; if it is normalized, give {}",
                      text_of_range(), normalized_line(false)));
   }
 
@@ -433,12 +431,11 @@ class DepthSettlement : private Settlement {
     for (std::size_t i = 0; i < raw_.depth.size(); i += step_)
       if (raw_.depth[i] > 0 && raw_.depth[i] < settings_.sky) count++, nearer += raw_.depth[i] < near;
     if (double(nearer) <= kMostNearer * double(count)) return;
-    fail(
-        ErrorKind::input,
-        "{}: {}, and {:.0f} % of it is nearer than the camera's near plane at {:.3g}, so these are no distances: where "
-        "they are normalized, give {}; if they are all the same, --depth-kind planar",
-        depth_path(), text_of_range(), 100 * double(nearer) / double(count), *reading_.camera.near,
-        normalized_line(false));
+    fail(ErrorKind::input,
+         "{}: {}, and {:.0f} % of it is nearer than the camera's near plane at {:.3g}, so these are no distances: if "
+         "they are normalized, give {}; if they are distances all the same, --depth-kind planar",
+         depth_path(), text_of_range(), 100 * double(nearer) / double(count), *reading_.camera.near,
+         normalized_line(false));
   }
 
   /// A background of exactly 1 behind depths of 0 to 1 is the far end of a range.
@@ -461,10 +458,9 @@ class DepthSettlement : private Settlement {
     if (reading_.depth_kind == DepthKind::device && settings_.depth_range.near && by_file &&
         std::abs(*near / *by_file - 1) >= kSame)
       source_.notes.push_back(
-          {NoteCode::near_plane,
-           fmt::format("--near is {:.4g}, and the camera file's near plane is at {:.4g}: distances are {:.3g} times "
-                       "what they are by that",
-                       *near, *by_file, *near / *by_file)});
+          {NoteCode::near_plane, fmt::format("--near is {:.4g}, and the camera file's near plane is at {:.4g}: "
+                                             "distances are {:.3g} times those by the file",
+                                             *near, *by_file, *near / *by_file)});
     if (reading_.depth_kind != DepthKind::device || reading_.depth_range.reversed ||
         reading_.depth_range.device != DeviceRange::zero_to_one)
       return;
@@ -484,12 +480,12 @@ class DepthSettlement : private Settlement {
     if (from_1 >= kLeastStraight && from_1 > kClear * straight)
       note(NoteCode::said_otherwise,
            fmt::format("{}, and flat surfaces are straight on {:.0f} % as 1 - depth, on {:.0f} % as depth: it is read "
-                       "as {}, as --depth-kind, --source or the camera file says; where it is normalized, give {}",
+                       "as {}, as --depth-kind, --source or the camera file says; if it is normalized, give {}",
                        text_of_range(), 100 * from_1, 100 * straight, word_of(reading_.depth_kind),
                        normalized_line(true)));
     else if (settings_.depth_kind == DepthKind::automatic && source_.program.rules->depth_kind == DepthKind::automatic)
       note(NoteCode::depth_below_1,
-           fmt::format("{} and is read as {}, as the camera file says; where it is normalized, give {}; "
+           fmt::format("{} and is read as {}, as the camera file says; if it is normalized, give {}; "
                        "--depth-kind {} says that these are distances",
                        text_of_range(), word_of(reading_.depth_kind), normalized_line(false),
                        word_of(reading_.depth_kind)));

@@ -39,7 +39,7 @@ std::vector<float> sparse(std::span<const float> planes, std::size_t pixels) {
   return some;
 }
 
-/// Gives what was done to signed normals or to 0.5 + 0.5 n if undoing it gives nearly all of them unit length: a
+/// Names the alteration of signed normals or of 0.5 + 0.5 n if undoing it gives nearly all of them unit length: a
 /// picture's curve, or an exposure. It ends a sentence that begins with "they look like". `normal` has three planes.
 std::optional<std::string> alteration_of(std::span<const float> normal, std::span<const float> raw,
                                          const DepthMap& map) {
@@ -65,7 +65,7 @@ std::optional<std::string> alteration_of(std::span<const float> normal, std::spa
 
 // The mistakes that cameras come with, each undone.
 
-/// A camera that was tried: what is wrong with the one that was given if this one is right, and its score.
+/// A camera that was tried, its score, and the fault of the given camera if this one is right.
 struct OtherCamera {
   std::string what;  // a sentence that says what to do, without a full stop
   NormalScore score;
@@ -311,7 +311,7 @@ class NormalSettlement : private Settlement {
       guess("normal encoding", name, why, "--normal-encoding", differs || reading_.normal_unorm);
   }
 
-  /// Refuses vectors whose lengths show that they went through what is made for colours.
+  /// Refuses vectors whose lengths show that they were treated as colours.
   void refuse_altered(const NormalStatistics& n) const {
     if (std::max(n.unit_share, n.unorm_unit_share) > kUnit || n.usual_share > kUnit) return;
     if (const auto what = alteration_of(raw_.normal, raw_.depth, depth_map_of(reading_)))
@@ -319,7 +319,7 @@ class NormalSettlement : private Settlement {
            normal_path(), channels(), 100 * n.unit_share, *what, kWithout);
   }
 
-  /// Takes normals without any component below 0 where by depth there should be some: what was lost is not in the file.
+  /// Takes normals without components below 0 if depth says that they lost some: the file does not hold the lost ones.
   /// Returns whether they are such.
   bool settle_cut(const std::vector<NormalScore>& scores) {
     if (has_negative_ || !has_lengths(source_) || reading_.normal_unorm || source_.open.camera) return false;
@@ -534,7 +534,7 @@ class NormalSettlement : private Settlement {
     fail(
         ErrorKind::input,
         "{}: {:.0f} % of its normals at most agree with depth in view space; those of world space need a --camera file "
-        "with world_to_camera; where they are in view space, {}; {}",
+        "with world_to_camera; if they are in view space, {}; {}",
         normal_path(), scores.empty() ? 0 : 100 * scores[0].agreement, kCheck, kWithout);
   }
 
@@ -544,7 +544,7 @@ class NormalSettlement : private Settlement {
                        s.opposite < 0.005 ? "" : fmt::format(", {:.0f} % are opposite to depth", 100 * s.opposite));
   }
 
-  /// Notes where depth speaks against the normals as they are read, and refuses what it refutes.
+  /// Notes normals that depth speaks against, and refuses normals that it refutes.
   void doubt_normals(const std::vector<NormalScore>& scores) {
     if (source_.open.camera) return;
     const NormalScore* chosen = score_of(scores, reading_.normal_space, reading_.flip_normal);
@@ -577,11 +577,10 @@ class NormalSettlement : private Settlement {
     const auto other = std::ranges::find_if(
         scores, [&](const auto& s) { return s.space == chosen.space && s.agreement >= kAsMany * chosen.explained(); });
     if (other == scores.end() || chosen.agreement >= kAsMany * other->agreement) return;
-    note(
-        NoteCode::turned_normals,
-        fmt::format("{:.0f} % of the normals are opposite to depth and are turned round, as for mirrored things; where "
-                    "an axis of all normals is flipped, as DirectX has it, give --flip-normal {}",
-                    100 * chosen.opposite, to_string(other->flips)));
+    note(NoteCode::turned_normals,
+         fmt::format("{:.0f} % of the normals are opposite to depth and are turned round, as for mirrored things; if "
+                     "an axis of all normals is flipped, as in DirectX, give --flip-normal {}",
+                     100 * chosen.opposite, to_string(other->flips)));
   }
 
   /// Whether one camera fits so much better than another that it is no chance.
