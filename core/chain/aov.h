@@ -8,7 +8,7 @@
 #include "core/base/settings.h"
 #include "core/chain/debug_view.h"
 #include "core/chain/outputs.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 namespace alcove {
 

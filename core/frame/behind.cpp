@@ -15,7 +15,7 @@
 #include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/base/windows.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/channels.h"
 #include "core/frame/evidence.h"
 #include "core/frame/raw_plane.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/reading.h"
 
 namespace alcove {

@@ -14,10 +14,10 @@
 #include "core/base/text.h"
 #include "core/formats/exr.h"
 #include "core/frame/behind.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
+#include "core/frame/camera/resection.h"
 #include "core/frame/matte.h"
 #include "core/frame/position_pass.h"
-#include "core/frame/resection.h"
 
 namespace alcove {
 

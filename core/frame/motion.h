@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 namespace alcove {
 

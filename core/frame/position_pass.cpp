@@ -13,8 +13,8 @@
 
 #include "core/base/error.h"
 #include "core/base/ranks.h"
+#include "core/frame/camera/resection.h"
 #include "core/frame/evidence.h"
-#include "core/frame/resection.h"
 
 namespace alcove {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/frame/camera/resection.h"
 #include "core/frame/gbuffer.h"
-#include "core/frame/resection.h"
 
 namespace alcove {
 

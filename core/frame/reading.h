@@ -12,7 +12,7 @@
 
 #include "core/base/image.h"
 #include "core/base/settings.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 namespace alcove {
 

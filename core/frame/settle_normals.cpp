@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/option_words.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/evidence.h"
 #include "core/frame/settle.h"
 

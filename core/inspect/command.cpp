@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/base/text.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/evidence.h"
 #include "core/frame/radius.h"
 #include "core/frame/raw_plane.h"

@@ -15,7 +15,7 @@
 #include "core/base/settings.h"
 #include "core/formats/deep_surfaces.h"
 #include "core/formats/exr.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/evidence.h"
 #include "core/frame/gbuffer.h"
 #include "core/frame/matte.h"

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "tests/support/command_line.h"
 #include "tests/support/expect_error.h"
 

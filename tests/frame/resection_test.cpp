@@ -1,6 +1,6 @@
 // Cameras are found from the points that they see.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/resection.h"
+#include "core/frame/camera/resection.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

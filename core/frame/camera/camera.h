@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/image.h"
 #include "core/base/settings.h"
-#include "core/frame/linear.h"
+#include "core/frame/camera/linear.h"
 #include "kernels/shared.h"
 
 namespace alcove {

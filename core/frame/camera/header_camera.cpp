@@ -1,6 +1,6 @@
 // Turns matrices and numbers of headers into the one projection model.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 #include <algorithm>
 #include <array>

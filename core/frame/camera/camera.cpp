@@ -1,6 +1,6 @@
 // Camera JSON, .chan files, cameras from numbers, and the kernels' view of each.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 #include <cmath>
 #include <limits>

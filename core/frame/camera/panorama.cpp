@@ -1,6 +1,6 @@
 // Tries the rays of panoramas on points whose place in space and in the picture is known.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/resection.h"
+#include "core/frame/camera/resection.h"
 
 #include <algorithm>
 #include <cmath>

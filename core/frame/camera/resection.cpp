@@ -1,6 +1,6 @@
 // Direct linear transforms of samples, and least squares over what fits the best of them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/resection.h"
+#include "core/frame/camera/resection.h"
 
 #include <fmt/format.h>
 
