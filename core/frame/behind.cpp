@@ -15,10 +15,10 @@
 #include "core/base/option_words.h"
 #include "core/base/ranks.h"
 #include "core/base/text.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/channels.h"
-#include "core/frame/header_camera.h"
+#include "core/frame/evidence.h"
 #include "core/frame/raw_plane.h"
-#include "core/frame/sampling.h"
 
 namespace alcove {
 
@@ -35,9 +35,7 @@ const AovNames& behind_names() {
   return names;
 }
 
-const ExrFile& file_of(const FrameSource& source, const ChannelRef& ref) { return source.files[ref.file]; }
-
-/// What is said of all files once, or of each.
+/// Gives a setting of a file, which is said once for all files or for each of them.
 template <class T>
 T said_of(const std::vector<T>& all, std::size_t file, T otherwise) {
   if (all.empty()) return otherwise;
@@ -47,7 +45,7 @@ T said_of(const std::vector<T>& all, std::size_t file, T otherwise) {
 /// The pixels of a plane are those of the depth.
 void require_same_pixels(const FrameSource& source, const ChannelRef& ref) {
   const ChannelRef& depth = source.channels[RawPlane::depth][0];
-  const ExrFile &file = file_of(source, ref), &own = file_of(source, depth);
+  const ExrFile &file = source.file_of(ref), &own = source.file_of(depth);
   if (file.display() != source.reading.display)
     fail(ErrorKind::input,
          "{}: its display window is {}, and that of the depth in {} is {}: both must show the same pixels (--behind)",
@@ -80,7 +78,7 @@ bool is_same_camera(const Camera& a, const Camera& b) {
 /// Notes a header whose camera is not that of the depth's header: it may be of another frame.
 void note_other_camera(FrameSource& source, const ChannelRef& ref) {
   const auto camera_of = [&](const ChannelRef& channel) {
-    const ExrFile& file = file_of(source, channel);
+    const ExrFile& file = source.file_of(channel);
     return header_camera(file.attribute_texts(channel.part), source.reading.display, source.reading.data,
                          source.reading.pixel_aspect, source.layer_of(channel));
   };
@@ -89,7 +87,7 @@ void note_other_camera(FrameSource& source, const ChannelRef& ref) {
     source.notes.push_back({NoteCode::said_otherwise,
                             fmt::format("the camera in the header of {} is another than that in the header of {}: are "
                                         "they of the same frame (--behind)?",
-                                        file_of(source, ref).path(), source.depth_path())});
+                                        source.file_of(ref).path(), source.depth_path())});
 }
 
 /// The one channel of a file.
@@ -100,14 +98,14 @@ ChannelRef find_channel(FrameSource& source, ChannelSearch& search, std::size_t 
   if (found.empty()) found = search.require(file, behind_names(), chosen, is_alone, "Z");
   if (found[0] == depth)
     fail(ErrorKind::input,
-         "{}: {} is the depth of the frame itself: name what lies behind it with --set behind-channel, "
-         "or another file with --behind",
+         "{}: {} is the depth of the frame itself: name the channel of the surfaces behind it with --set "
+         "behind-channel, or give another file with --behind",
          source.files[file].path(), found[0].channel);
   return found[0];
 }
 
 std::string base_name(const FrameSource& source, const ChannelRef& ref) {
-  return std::filesystem::path(file_of(source, ref).path()).filename().string();
+  return std::filesystem::path(source.file_of(ref).path()).filename().string();
 }
 
 }  // namespace
@@ -126,8 +124,8 @@ void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings
     source.reading.behind.push_back({.kind = kind, .is_half = source.is_half(ref)});
     if (source.reading.behind.back().is_half && !source.reading.depth_is_half)
       source.suspicious.push_back(
-          {NoteCode::half_depth, fmt::format("{} of {} is stored as half float, and the depth is not: what lies behind "
-                                             "is off by up to a 2048th of its depth; write it as float",
+          {NoteCode::half_depth, fmt::format("{} of {} is stored as half float, and the depth is not: surfaces behind "
+                                             "are off by up to a 2048th of their depth; write it as float",
                                              ref.channel, path)});
     number++;
   }
@@ -161,7 +159,7 @@ constexpr std::size_t kFarMoreOtherwise = 10;  // times as many as read as it is
 
 std::string name_of(const FrameSource& source, std::size_t plane) {
   const ChannelRef& ref = source.channels[RawPlane::behind][plane];
-  return fmt::format("{}: {}", source.files[ref.file].path(), ref.channel);
+  return fmt::format("{}: {}", source.file_of(ref).path(), ref.channel);
 }
 
 /// Whether a plane of RawPlane::behind comes from samples.
@@ -169,6 +167,12 @@ bool is_deep_plane(const FrameSource& source, std::size_t plane) {
   const ChannelRef& ref = source.channels[RawPlane::behind][plane];
   return source.part_of(ref).deep.has_value();
 }
+
+/// The file of samples whose channels are read.
+ExrFile& deep_file(FrameSource& source) { return source.files[source.channels.deep->elements[0].file]; }
+const ExrFile& deep_file(const FrameSource& source) { return source.files[source.channels.deep->elements[0].file]; }
+/// The part of that file which stands for all.
+int deep_part(const FrameSource& source) { return source.channels.deep->elements[0].parts.front(); }
 
 double percent(std::size_t part, std::size_t whole) { return 100.0 * double(part) / double(whole); }
 
@@ -232,7 +236,7 @@ Notes BehindSample::notes(const FrameSource& source) const {
     notes.push_back({NoteCode::nothing_hidden,
                      fmt::format("{} holds no surface behind the first one: its elements were rendered in one go; give "
                                  "--deep all elements that were rendered apart, or give peels to --behind",
-                                 source.files[source.channels.deep->file].path())});
+                                 deep_file(source).path())});
   return notes;
 }
 
@@ -243,8 +247,8 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
   const auto pixels = std::size_t(std::ranges::count(taken_, true));
   if (said.kind == BehindKind::thickness && plane.negative > 0)
     fail(ErrorKind::input,
-         "{} is below 0 on {:.2g} % of the pixels, and a thickness is how far a solid goes on behind its front: name "
-         "another channel with --set behind-channel, or say with --behind-kind what it is",
+         "{} is below 0 on {:.2g} % of the pixels, and a thickness is the extent of a solid behind its front: name "
+         "another channel with --set behind-channel, or give the right --behind-kind",
          name, percent(plane.negative, pixels));
   if (plane.surfaces == 0)
     return {{NoteCode::empty_layer, fmt::format("{} shows no surface where the depth has one (--behind)", name)}};
@@ -274,20 +278,21 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
         name, percent(plane.before, plane.surfaces), median_of(plane.parts), source.depth_path());
   Notes notes;
   if (double(plane.before) > kNoted * double(plane.surfaces))
-    notes.push_back({NoteCode::before_first,
-                     fmt::format("{} lies before the first surface on {:.0f} % of the pixels, where it is left out: is "
-                                 "it of the same frame and camera (--behind)?",
-                                 name, percent(plane.before, plane.surfaces))});
+    notes.push_back(
+        {NoteCode::before_first, fmt::format("{} lies before the first surface on {:.0f} % of the pixels, and is left "
+                                             "out there: check that it is of the same frame and camera (--behind)",
+                                             name, percent(plane.before, plane.surfaces))});
   if (plane.same == plane.surfaces)
     notes.push_back({NoteCode::nothing_hidden,
                      fmt::format("{} is the first surface wherever it has one, and shows nothing new: name the channel "
-                                 "of what lies behind with --set behind-channel, or give another file with --behind",
+                                 "of the surfaces behind with --set behind-channel, or give another file with --behind",
                                  name)});
   else if (plane.known == plane.surfaces)
-    notes.push_back({NoteCode::nothing_hidden,
-                     fmt::format("{} shows nothing new: what is given before it has all of its surfaces; name another "
-                                 "channel with --set behind-channel, give another file, or leave it out (--behind)",
-                                 name)});
+    notes.push_back(
+        {NoteCode::nothing_hidden,
+         fmt::format("{} shows nothing new: the planes given before it have all of its surfaces; name another "
+                     "channel with --set behind-channel, give another file, or leave it out (--behind)",
+                     name)});
   return notes;
 }
 
@@ -316,13 +321,13 @@ bool is_half(const ExrFile& file, const std::vector<int>& parts) {
 
 /// Takes a file's samples for the frame, and those of all other files of --deep.
 void choose(FrameSource& source, ChannelSearch& search, std::size_t file, const InputSettings& settings) {
-  DeepFiles& deep = source.channels.deep.emplace(
-      DeepFiles{file, deep_parts_of(source.files[file], settings.layer, source.channels.view)});
-  for (const auto& path : settings.deep) {
-    if (path.empty() || path == source.files[file].path()) continue;
-    const std::size_t other = search.open(path, "--deep");
-    deep.elements.emplace_back(other, deep_parts_of(source.files[other], settings.layer, source.channels.view));
-  }
+  auto& elements = source.channels.deep.emplace().elements;
+  const auto add = [&](std::size_t place) {
+    elements.push_back({place, deep_parts_of(source.files[place], settings.layer, source.channels.view)});
+  };
+  add(file);
+  for (const auto& path : settings.deep)
+    if (!path.empty() && path != source.files[file].path()) add(search.open(path, "--deep"));
 }
 
 const std::string& first_of(const FileList& files) {
@@ -330,24 +335,18 @@ const std::string& first_of(const FileList& files) {
 }
 
 /// Fails where a file has no samples of the view.
-void require_samples(const FrameSource& source, std::size_t file, const std::vector<int>& parts) {
-  if (parts.empty())
-    fail(ErrorKind::input, "{}: it holds no deep data{}; --behind takes flat depth (--deep)", source.files[file].path(),
+void require_samples(const FrameSource& source, const DeepFiles::Element& element) {
+  if (element.parts.empty())
+    fail(ErrorKind::input, "{}: it holds no deep data{}; --behind takes flat depth (--deep)",
+         source.files[element.file].path(),
          source.channels.view.empty() ? "" : fmt::format(" of the view {}", source.channels.view));
-}
-
-/// Calls a function for all files of samples and their parts, the first one first.
-template <class Visit>
-void for_each_deep(const FrameSource& source, const Visit& visit) {
-  visit(source.channels.deep->file, source.channels.deep->parts);
-  for (const auto& [file, parts] : source.channels.deep->elements) visit(file, parts);
 }
 
 /// The pixels that some of the samples' parts have. A renderer may have cut each element to its own.
 Window window_of_samples(const FrameSource& source) {
   std::uint64_t pixels = 0;
   std::int64_t left = std::numeric_limits<std::int64_t>::max(), top = left, right = -left, bottom = -left;
-  for_each_deep(source, [&](std::size_t file, const std::vector<int>& parts) {
+  for (const auto& [file, parts] : source.channels.deep->elements)
     for (const int part : parts) {
       const Window& data = source.files[file].parts()[std::size_t(part)].data;
       pixels += data.pixels();
@@ -356,23 +355,21 @@ Window window_of_samples(const FrameSource& source) {
       right = std::max(right, std::int64_t(data.x) + data.width);
       bottom = std::max(bottom, std::int64_t(data.y) + data.height);
     }
-  });
   // Files that hold little must not make a picture that no memory holds.
   constexpr std::int64_t kMost = std::numeric_limits<int>::max();
   constexpr std::uint64_t kMostTimes = 4;
   const bool fits = right - left <= kMost && bottom - top <= kMost;
-  const std::uint64_t most =
-      std::max<std::uint64_t>(source.files[source.channels.deep->file].display().pixels(), kMostTimes * pixels);
+  const std::uint64_t most = std::max<std::uint64_t>(deep_file(source).display().pixels(), kMostTimes * pixels);
   if (!fits || std::uint64_t(right - left) * std::uint64_t(bottom - top) > most)
     fail(ErrorKind::input, "{}: its deep parts and those beside them are too far apart for one picture (--deep)",
-         source.files[source.channels.deep->file].path());
+         deep_file(source).path());
   return {int(left), int(top), int(right - left), int(bottom - top)};
 }
 
 bool any_deep(const FrameSource& source, bool (*holds)(const ExrFile&, const std::vector<int>&)) {
-  bool any = false;
-  for_each_deep(source, [&](std::size_t file, const auto& parts) { any = any || holds(source.files[file], parts); });
-  return any;
+  return std::ranges::any_of(source.channels.deep->elements, [&](const DeepFiles::Element& element) {
+    return holds(source.files[element.file], element.parts);
+  });
 }
 
 bool has_backs(const ExrFile& file, const std::vector<int>& parts) {
@@ -397,7 +394,7 @@ bool goes_on_behind(ExrFile& file, int part, const Window& data) {
   return surfaces > 0 && double(more) >= kWhole * double(surfaces);
 }
 
-/// One way to read the depth of samples.
+/// A way to read the depth of samples.
 struct DeepReading {
   DepthKind kind;
   double scale;
@@ -430,13 +427,13 @@ std::vector<ChannelRef> find_deep_depth(FrameSource& source, ChannelSearch& sear
       return {};
     choose(source, search, search.open(first_of(settings.deep), "--deep"), settings);
   }
-  if (source.channels.deep->parts.empty()) {
+  if (source.channels.deep->elements[0].parts.empty()) {
     source.channels.deep.reset();
     return {};
   }
   source.channels.deep->data = window_of_samples(source);
   source.channels.deep->depth_is_half = any_deep(source, is_half);
-  return {{source.channels.deep->file, source.channels.deep->parts.front(), deep_channel(0, false)}};
+  return {{source.channels.deep->elements[0].file, deep_part(source), deep_channel(0, false)}};
 }
 
 void find_deep(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
@@ -444,24 +441,25 @@ void find_deep(FrameSource& source, ChannelSearch& search, const InputSettings& 
   if (!is_depth && !has_deep(settings)) return;
   if (!is_depth) choose(source, search, search.open(first_of(settings.deep), "--deep"), settings);
   if (!is_depth) source.channels.deep->data = source.reading.data;
-  for_each_deep(source, [&](std::size_t place, const std::vector<int>& parts) {
-    require_samples(source, place, parts);
-    const ExrFile& file = source.files[place];
+  for (const auto& element : source.channels.deep->elements) {
+    require_samples(source, element);
+    const ExrFile& file = source.files[element.file];
     if (file.display() != source.reading.display)
       fail(ErrorKind::input,
            "{}: its deep samples are of a picture of {}, and the depth of {} is of {}: both must cover the same pixels "
            "(--deep)",
            file.path(), to_string(file.display()), source.depth_path(), to_string(source.reading.display));
-  });
+  }
   if (common_part(window_of_samples(source), source.reading.data).pixels() == 0)
     fail(ErrorKind::input, "{}: its deep samples are {}, and the depth of {} is {}: they share no pixel (--deep)",
-         source.files[source.channels.deep->file].path(), to_string(window_of_samples(source)), source.depth_path(),
+         deep_file(source).path(), to_string(window_of_samples(source)), source.depth_path(),
          to_string(source.reading.data));
-  const ExrFile& file = source.files[source.channels.deep->file];
-  const int first = source.channels.deep->parts.front();
+  const ExrFile& file = deep_file(source);
+  const int first = deep_part(source);
   const bool half = any_deep(source, is_half), backs = any_deep(source, has_backs);
   const auto add = [&](std::size_t surface, bool back) {
-    source.channels[RawPlane::behind].push_back({source.channels.deep->file, first, deep_channel(surface, back)});
+    source.channels[RawPlane::behind].push_back(
+        {source.channels.deep->elements[0].file, first, deep_channel(surface, back)});
     source.reading.behind.push_back(
         {.kind = back ? BehindKind::backs : BehindKind::surfaces, .is_half = half, .is_whole = false});
   };
@@ -484,15 +482,16 @@ DeepRules deep_rules(const FrameSource& source, const ExrFile& file, const std::
 
 void take_deep(FrameSource& source, const InputSettings& settings) {
   if (!source.channels.deep) return;
-  ExrFile& file = source.files[source.channels.deep->file];
+  const DeepFiles& deep = *source.channels.deep;
+  DeepRules rules = deep_rules(source, deep_file(source), deep.elements[0].parts, settings);
   std::vector<DeepElement> others;
-  for (const auto& [other, parts] : source.channels.deep->elements) others.push_back({&source.files[other], parts});
-  DeepRules rules = deep_rules(source, file, source.channels.deep->parts, settings);
-  for (const auto& other : others) {
-    const DeepRules theirs = deep_rules(source, *other.file, other.parts, settings);
+  for (std::size_t i = 1; i < deep.elements.size(); i++) {
+    ExrFile& file = source.files[deep.elements[i].file];
+    const DeepRules theirs = deep_rules(source, file, deep.elements[i].parts, settings);
     rules.separation[1] = std::max(rules.separation[1], theirs.separation[1]);
+    others.push_back({&file, deep.elements[i].parts});
   }
-  file.take_deep(source.channels.deep->parts, rules, source.channels.deep->data, others);
+  deep_file(source).take_deep(deep.elements[0].parts, rules, deep.data, others);
 }
 
 void read_deep_like_meaning(FrameSource& source) {
@@ -508,22 +507,21 @@ void read_deep_like_meaning(FrameSource& source) {
 void settle_deep(FrameSource& source, const RawPart& raw) {
   if (!source.channels.deep) return;
   source.reading.deep_is_whole =
-      !source.reading.behind.empty() && goes_on_behind(source.files[source.channels.deep->file],
-                                                       source.channels.deep->parts.front(), source.reading.data);
+      !source.reading.behind.empty() && goes_on_behind(deep_file(source), deep_part(source), source.reading.data);
   read_deep_like_meaning(source);
   const ChannelRef& own = source.channels[RawPlane::depth][0];
-  if (own.file == source.channels.deep->file && source.part_of(own).deep) return;
+  if (own.file == source.channels.deep->elements[0].file && source.part_of(own).deep) return;
   std::vector<DeepReading> readings;
   for (const double scale : {source.reading.depth_scale, 1.0})
     for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) readings.push_back({kind, scale});
-  ExrFile& file = source.files[source.channels.deep->file];
+  ExrFile& file = deep_file(source);
   const Window& whole = source.reading.data;
   const View view = view_of(source.reading, raw.window);
   const DepthMap map = depth_map_of(source.reading);
   const double tolerance = 2 * std::abs(double(view.tangent_per_pixel.x)) + 2 * kHalfPrecision;
   const auto width = std::size_t(raw.window.width);
   std::vector<float> first(std::size_t(whole.width));
-  const ExrRead read{source.channels.deep->parts.front(), deep_channel(0, false), first.data()};
+  const ExrRead read{deep_part(source), deep_channel(0, false), first.data()};
   std::size_t compared = 0, found = 0;
   const int step = std::max(1, raw.window.height / kEvidenceRows);
   for (int y = step / 2; y < raw.window.height; y += step) {
@@ -550,12 +548,12 @@ void settle_deep(FrameSource& source, const RawPart& raw) {
   if (compared < kLeastPixels) return;
   const auto best = std::ranges::max_element(readings, {}, &DeepReading::same);
   if (double(best->same) < kLeastSame * double(compared))
-    fail(
-        ErrorKind::input,
-        "{}: the first surfaces of its deep samples are the depth of {} on {:.2g} % of the pixels only, be they planar "
-        "or along the ray: give --deep the samples of the same frame and camera, of all its elements, and flat depth "
-        "of others to --behind; --depth-kind and --depth-scale say how the depth is read",
-        file.path(), source.depth_path(), 100.0 * double(best->same) / double(compared));
+    fail(ErrorKind::input,
+         "{}: the first surfaces of its deep samples are the depth of {} on {:.2g} % of the pixels only, both as "
+         "planar depth and along the ray: give --deep the samples of the same frame and camera, of all its elements, "
+         "and flat depth "
+         "of others to --behind; --depth-kind and --depth-scale say how the depth is read",
+         file.path(), source.depth_path(), 100.0 * double(best->same) / double(compared));
   const bool is_own = best->kind == source.reading.depth_kind && best->scale == source.reading.depth_scale;
   source.reading.deep_kind = is_own ? DepthKind::automatic : best->kind;
   source.reading.deep_scale = is_own ? 1 : best->scale;
@@ -564,7 +562,7 @@ void settle_deep(FrameSource& source, const RawPart& raw) {
 
 Notes deep_notes(const FrameSource& source) {
   if (!source.channels.deep) return {};
-  const ExrFile& file = source.files[source.channels.deep->file];
+  const ExrFile& file = deep_file(source);
   const DeepCounts counts = file.deep_counts();
   if (counts.repaired == 0) return {};
   return {{NoteCode::repaired_samples,

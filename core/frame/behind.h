@@ -1,5 +1,4 @@
-// What lies behind the first surface: the planes that --behind names, the samples of deep files, and whether their
-// pixels can be what they are said to be.
+// Surfaces behind the first one: the planes that --behind names, the samples of deep files, and checks of their pixels.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,74 +13,72 @@ namespace alcove {
 
 // Deep samples: the frame's depth, or surfaces behind it.
 
-/// The deep parts that --layer and --view choose, whose samples count together: of a part's name, or else all of the
-/// view; empty where the file has none.
+/// Gives the deep parts that --layer and --view choose: the parts of that name, or else all parts of the view; none if
+/// the file has none. Their samples count together.
 std::vector<int> deep_parts_of(const ExrFile& file, const std::string& layer, const std::string& view);
 
-/// The frame's depth where deep samples are it: the file at `depth_file` holds nothing else, or there is --deep and
-/// that file has no flat depth. Else nothing.
+/// Gives the frame's depth if deep samples are it: the file at `depth_file` holds nothing else, or --deep is given and
+/// that file has no flat depth. Else gives nothing.
 std::vector<ChannelRef> find_deep_depth(FrameSource& source, ChannelSearch& search, std::size_t depth_file,
                                         const InputSettings& settings);
 
-/// Adds the planes behind the first surface that samples give, once the depth is found. Fails with ErrorKind::input
-/// where the file of --deep is flat, or has another window than the depth.
+/// Adds the planes of samples behind the first surface. The depth must be found. Fails with ErrorKind::input if the
+/// file of --deep is flat, or has another window than the depth.
 void find_deep(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
 
-/// Which samples of these parts are surfaces, for a frame whose camera is known.
+/// Gives the rules by which samples of these parts are surfaces. The frame's camera must be known.
 DeepRules deep_rules(const FrameSource& source, const ExrFile& file, const std::vector<int>& parts,
                      const InputSettings& settings);
 
-/// Opens the samples, once the camera is found, for it says how far apart two surfaces are in a pixel. Fails as
+/// Opens the samples. The camera must be found: it tells the distance of two surfaces in a pixel. Fails as
 /// ExrFile::take_deep() does.
 void take_deep(FrameSource& source, const InputSettings& settings);
 
-/// Settles whether samples beside a flat depth are planar or along the ray, and their scale: their first surfaces are
-/// those of the depth. Fails with ErrorKind::input where they are not. Tells too
-/// whether they list what is hidden.
+/// Settles kind (planar or along the ray) and scale of samples beside a flat depth, and whether they list hidden
+/// surfaces. Fails with ErrorKind::input if their first surfaces are not those of the depth.
 void settle_deep(FrameSource& source, const RawPart& raw);
 
 /// Reads the planes of samples as the frame's meaning says.
 void read_deep_like_meaning(FrameSource& source);
 
-/// What was repaired in the samples that were read.
+/// Gives a note on repaired samples, once they are read.
 Notes deep_notes(const FrameSource& source);
 
 // Planes of --behind.
 
-/// Finds the channels of --behind, once the depth of the frame and the rules of its program are found. A file may be
-/// one that the frame has already. Fails with ErrorKind::input, naming both files and the option that mends it, where a
-/// channel is not found, is the frame's own depth, or has other windows or another view than the depth.
+/// Finds the channels of --behind. Depth and rules of the frame must be found. A file may be one that the frame has
+/// already. Fails with ErrorKind::input if a channel is not found, is the frame's own depth, or has other windows or
+/// another view than the depth; the message names both files and the option that mends it.
 void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
 
-/// What the header of an output says of where its hidden surfaces come from: "peel2.exr Z surfaces; ...", in an order
-/// that does not depend on how they were given; "" where there are none.
+/// Gives the sources of hidden surfaces for the header of an output, sorted: "peel2.exr Z surfaces; ..."; "" if there
+/// are none.
 std::string hidden_sources_text(const FrameSource& source);
 
-/// Looks at what planes behind the first surface show beside it, over a part of a frame's pixels.
+/// Compares planes behind the first surface with it, over a part of a frame's pixels.
 class BehindSample {
  public:
-  /// Takes those of `window` that belong to some of `whole`. Windows that share pixels give each of them once, so that
-  /// it is all the same how the whole is cut into windows. `depth` and `behind` are as read, over the window.
+  /// Adds the pixels of `window` that belong to a sample of `whole`. A pixel counts once, however many windows share
+  /// it: the result does not depend on how the whole is cut. `depth` and `behind` are as read, over the window.
   void add(const Reading& reading, std::span<const float> depth, std::span<const float> behind, const Window& window,
            const Window& whole);
 
-  /// Says what of the planes is useless. Fails with ErrorKind::input where a plane cannot be what it is said to be: it
-  /// lies before the first surface, is along the ray where the depth is planar or the reverse, or is a thickness below
-  /// 0. They are planes of `source` that --behind has named.
+  /// Notes useless planes. Fails with ErrorKind::input if a plane of --behind contradicts its kind: it lies before the
+  /// first surface, is along the ray and the depth is planar or the reverse, or is a thickness below 0.
   Notes notes(const FrameSource& source) const;
 
  private:
   /// Numbers of pixels.
   struct Plane {
-    std::size_t surfaces = 0;   // where the plane has one, and the frame too
-    std::size_t before = 0;     // of those before the first surface
-    std::size_t same = 0;       // of those that are the first surface
-    std::size_t known = 0;      // of those that are it, or that a plane before this one has
-    std::size_t as_deep = 0;    // of a thickness, those where it is no less than the depth
-    std::size_t negative = 0;   // whose value is below 0
-    std::size_t oblique = 0;    // of the surfaces, those whose rays are clearly longer than their depth
-    std::size_t as_read = 0;    // of those that have the depth of the first surface
-    std::size_t otherwise = 0;  // of those that would have it if the plane were along the ray, or if it were not
+    std::size_t surfaces = 0;   // with a surface in the plane and in the frame
+    std::size_t before = 0;     // surfaces before the first one
+    std::size_t same = 0;       // surfaces that are the first one
+    std::size_t known = 0;      // surfaces that are the first one, or that an earlier plane has
+    std::size_t as_deep = 0;    // of a thickness: no less than the depth
+    std::size_t negative = 0;   // values below 0
+    std::size_t oblique = 0;    // surfaces on rays that are clearly longer than their depth
+    std::size_t as_read = 0;    // oblique ones with the depth of the first surface
+    std::size_t otherwise = 0;  // oblique ones that had it if the plane were of the other kind, planar or along the ray
     std::vector<float> parts;   // depth of the surfaces as parts of the first one's
   };
   Notes notes_of(const FrameSource& source, std::size_t plane) const;

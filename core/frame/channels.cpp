@@ -399,10 +399,10 @@ const NamedChannel* find_named(const std::vector<NamedChannel>& channels, const 
   return found;
 }
 
-/// Components of a layer that the user named: what they are is no question then, only their order.
+/// Further components of a layer that the user names: only their order is in question then.
 const Components kOtherComponents{{"0", "1", "2"}, {"u", "v", "w"}, {"nx", "ny", "nz"}, {"px", "py", "pz"}};
 
-/// What a layer that the user names may hold.
+/// The components that a layer named by the user may hold.
 Components sets_of(const AovNames& names) {
   Components sets = names.in_layer;
   sets.insert(sets.end(), kOtherComponents.begin(), kOtherComponents.end());
@@ -410,8 +410,8 @@ Components sets_of(const AovNames& names) {
   return sets;
 }
 
-/// Lists what may be given to the AOV's option, so that no message proposes what would be refused: channels, or of
-/// several components the layers that hold them.
+/// Lists the values that the AOV's option takes, for the proposals of messages: channels, or for several components the
+/// layers that hold them.
 std::vector<std::string> takes(const std::vector<NamedChannel>& channels, const AovNames& names) {
   std::vector<std::string> taken;
   const auto add = [&](const std::string& name) {

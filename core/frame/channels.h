@@ -1,5 +1,4 @@
-// Finds channels in files by the names that renderers use, or by those that the user chose; patterns of names, and
-// views.
+// Finds channels in files by the names that renderers use or the user chose; patterns of names, and views.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,8 +15,8 @@
 
 namespace alcove {
 
-/// Whether a whole name fits a pattern, in which * stands for any characters and ? for one, and what stands behind a
-/// backslash, one of these, for itself. Case counts.
+/// Whether a whole name fits a pattern: * stands for any characters, ? for one, and a backslash takes the next of these
+/// as it is. Case counts.
 bool fits_pattern(std::string_view name, std::string_view pattern);
 
 /// Whether a pattern may stand for several names.
@@ -57,7 +56,7 @@ std::string layer_of(const ExrPart& part);
 
 // Channels.
 
-/// One channel of one of the frame's files.
+/// A channel of a file of the frame.
 struct ChannelRef {
   std::size_t file;
   int part;
@@ -139,7 +138,7 @@ class ChannelSearch {
 
   /// Gives the channel of the same part and layer that has this last word, in lower case; nothing if it is subsampled.
   std::optional<ChannelRef> beside(const ChannelRef& ref, const std::string& component) const;
-  /// Whether there is such a channel, be it subsampled.
+  /// Whether there is such a channel, subsampled or not.
   bool has(const ChannelRef& ref, const std::string& component) const;
 
   /// Adds the alpha channel of the same layer to the r, g, b of a beauty, if there is one.

@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "core/base/ranks.h"
-#include "core/frame/flatness.h"
 #include "kernels/geometry/geometry.h"
 
 namespace alcove {
@@ -120,7 +119,7 @@ std::optional<SurfacePlace> surface_at(std::span<const float> raw, const DepthMa
                       view.orthographic ? Vector3{0, 0, 1} : Vector3{-p[0], -p[1], -p[2]}};
 }
 
-/// How far a point of view space is seen from the pixel, in pixels; infinite where it is behind the camera.
+/// The distance, in pixels, from a pixel to the place where a point of view space is seen; infinite behind the camera.
 double pixels_beside(const View& view, int x, int y, const Vector3& p) {
   if (!(-p[2] > 0)) return kInfinity;
   const Vector3 t = tangent_at(view, x, y);
@@ -153,7 +152,7 @@ std::size_t for_each_normal(const NormalPlanes& planes, const Visit& visit) {
   return count;
 }
 
-/// What one reading of the normals adds up to.
+/// The sums of one reading of the normals.
 class NormalSum {
  public:
   explicit NormalSum(NormalScore& score, const Camera& camera)
@@ -178,7 +177,7 @@ class NormalSum {
     for (double* share : {&score_.facing, &score_.agreement, &score_.opposite, &score_.close}) *share /= count;
     score_.angle =
         std::acos(std::max(-1.0, value_at_rank(cosines_, std::size_t(0.75 * double(cosines_.size()))))) / kRadians;
-    // What turns about the surfaces' own normals does not show.
+    // A turn about the surfaces' own normals does not show.
     constexpr double kUnseen = 1e-4;
     for (std::size_t i = 0; i < 3; i++) across_[i][i] += kUnseen * count;
     const double whole = determinant(across_);

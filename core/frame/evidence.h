@@ -1,8 +1,8 @@
-// What the pixels themselves say about depth and normals: statistics, and scores of the ways to read them. Knows no
-// renderer.
+// Evidence of the pixels on depth and normals: statistics, and scores of the ways to read them. Knows no renderer.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/reading.h"
 
 namespace alcove {
@@ -23,7 +23,7 @@ struct ValueStatistics {
 /// Counts every `step`-th value.
 ValueStatistics statistics_of(std::span<const float> values, std::size_t step = 1);
 
-/// Statistics of normals as they stand in the file, of those that are finite and not zero.
+/// Statistics of normals as they stand in the file, without those that are not finite or zero.
 struct NormalStatistics {
   std::uint64_t count = 0;
   double least = 0, most = 0;    // of all components
@@ -82,7 +82,7 @@ struct NormalPlanes {
 std::vector<NormalScore> score_normals(const NormalPlanes& planes);
 /// The score of one of them; null where there is none.
 const NormalScore* score_of(const std::vector<NormalScore>& scores, NormalSpace space, const NormalFlips& flips);
-/// How the frame agrees with normals that lost their components below 0, going by depth in the normals' own space.
+/// Agreement of a frame with normals that lost their components below 0. Depth tells, in the normals' own space.
 struct CutScore {
   double needed = 0;    // share of the normals with a component clearly below 0
   double absolute = 0;  // of those, the share within 20 degrees of the normal without signs
@@ -96,5 +96,95 @@ std::optional<NormalScore> score_normals_as(NormalSpace space, const NormalFlips
 
 /// Gives the axes, as "xz", or "none".
 std::string to_string(const NormalFlips& flips);
+
+// Flat surfaces as the measure of what depth values mean.
+
+/// The coarseness of stored values, whatever their sample type.
+struct Grain {
+  double median = 0;  // of the values' distances from 0; where there is a step, each of them counts once
+  double step = 0;    // from one value to the next at the median; 0: as fine as floats are, or too few values to tell
+  bool is_coarse = false;  // the step is more than a 2^14th of the median
+  bool is_fixed = false;   // the step is the same for small and large values
+  bool is_half = false;    // the steps are those of half floats, or of half floats times a scale
+};
+/// Finds the common divisor of the differences between neighbouring values, at three places of their distribution.
+/// Values of some 17 bits or fewer have a step; `sky`: values at or beyond it count for none.
+Grain grain_of(std::span<const float> raw, double sky);
+
+/// A way to read depth and how well the frame's flat surfaces agree with it.
+struct DepthScore {
+  DepthKind kind;
+  // The share of the smooth blocks that are flat by this kind and by no other.
+  double straight = 0;
+};
+/// Scores planar, ray and inverse depth, the best first. Inverse stands for all that is affine in 1/z, as device depth
+/// is. In an orthographic view planar stands for ray and device depth too, and inverse for itself. Gives nothing where
+/// too little of the frame is smooth. `sky`: values at or beyond it, and 0, are no surface.
+///
+/// On a plane 1/z is affine over the image (orthographic: z). Over each block a polynomial of second degree is fitted
+/// to the quantity that would be affine by each kind. A block is flat by the kind whose second-degree terms vanish
+/// within the block's own noise: its residual, and the step of the values. So neither rounding nor samples beside the
+/// pixels' centres speak for a kind. If two kinds are flat, the block does not tell.
+std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, const Grain& grain);
+
+/// Gives the noise of flat surfaces whose pixels show places beside their centres: the standard deviation of depth,
+/// relative to its change from one pixel to the next. A random place within each pixel gives 0.29, the mean of n of
+/// them 0.29 / sqrt(n). Gives none if the flat surfaces are exact, or if the noise does not follow the slope. `grain`
+/// is that of the raw values.
+std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map, const View& view, const Grain& grain);
+
+// Samples of a frame that is read window by window.
+
+/// The step, in pixels, that is fine enough for the statistics of a frame. It is a prime: no column is favoured.
+constexpr std::size_t kSparse = 31;
+
+/// A pixel of the sample.
+struct SampledPixel {
+  std::size_t number;            // in the sample of the whole
+  std::size_t at;                // in the planes of the window
+  std::array<double, 3> values;  // of the depth as the file has it: one, or three of a position
+  double ray;                    // length of the pixel's ray of unit depth; 1 where it is orthographic
+};
+
+/// Gives the step, in pixels, of a sample of about `count` pixels of the whole.
+inline std::size_t sampling_step(const Window& whole, std::size_t count) { return whole.pixels() / count + 1; }
+
+/// Calls `visit` with the pixels of `window` that belong to a sample of about `count` pixels of `whole`. A pixel has
+/// the same number in every window, so the sample does not depend on how the whole is cut. `depth` and `view` are the
+/// window's.
+template <class Visit>
+void for_each_sampled(const View& view, std::span<const float> depth, const Window& window, const Window& whole,
+                      std::size_t count, const Visit& visit) {
+  const std::size_t pixels = window.pixels(), step = sampling_step(whole, count);
+  for (std::size_t i = step / 2; i < whole.pixels(); i += step) {
+    const int column = whole.x + int(i % std::size_t(whole.width)) - window.x,
+              row = whole.y + int(i / std::size_t(whole.width)) - window.y;
+    if (column < 0 || column >= window.width || row < 0 || row >= window.height) continue;
+    SampledPixel pixel{i / step,
+                       std::size_t(row) * std::size_t(window.width) + std::size_t(column),
+                       {},
+                       ray_length(view, column, row)};
+    for (std::size_t axis = 0; axis < 3 && pixel.at + axis * pixels < depth.size(); axis++)
+      pixel.values[axis] = depth[pixel.at + axis * pixels];
+    visit(pixel);
+  }
+}
+
+// The facts together.
+
+/// A choice that neither settings nor camera make.
+struct Guess {
+  std::string what, chosen, why, option;  // the option makes the choice
+};
+
+/// Facts that the pixels of a frame show.
+struct Evidence {
+  bool tells = true;                     // false: the pixels left a question open
+  Grain grain;                           // of the depth's values
+  std::vector<DepthScore> depth_scores;  // of depth that is no position
+  // of the surfaces, scene units; none until the frame is settled, and where all is sky
+  std::optional<double> median_depth;
+  std::vector<Guess> guesses;
+};
 
 }  // namespace alcove

@@ -1,6 +1,6 @@
 // Least-squares fits over blocks of pixels, and common divisors of values.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/flatness.h"
+#include "core/frame/evidence.h"
 
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ constexpr std::size_t kAcross = 9;                     // samples of a block in 
 constexpr std::size_t kSamples = kAcross * kAcross;
 constexpr std::size_t kLeastBlocks = 12;  // fewer smooth ones tell nothing
 
-// What counts as flat. Second-degree terms are amplitudes at the block's edge, relative to the block's mean.
+// The limits of flat. Second-degree terms are amplitudes at the block's edge, relative to the block's mean.
 constexpr double kSmooth = 0.005;        // largest residual of one surface
 constexpr double kEdge = 0.05;           // a residual that no reading makes smooth
 constexpr double kNoise = 0.6;           // of the residual: an amplitude that noise may feign
@@ -61,8 +61,8 @@ struct Basis {
 
 using Samples = std::array<double, kSamples>;
 
-/// What a fit finds, relative to the block's mean: amplitudes of the line and of the second-degree terms at the block's
-/// edge, and the root mean square of what is left.
+/// The result of a fit, relative to the block's mean: amplitudes of the line and of the second-degree terms at the
+/// block's edge, and the root mean square of the rest.
 struct Fit {
   double slope = 0, bend = 0, residual = 0;
 };
@@ -116,7 +116,7 @@ double common_step(std::span<const double> sorted, double value) {
   return divisor > 16 * rounding && bits > kEnough ? divisor : 0;
 }
 
-/// How often each of the sorted values is there.
+/// The count of each of the sorted values.
 std::vector<std::size_t> counts_of_equal(std::span<const double> sorted) {
   std::vector<std::size_t> counts;
   for (std::size_t i = 0; i < sorted.size(); i++) {

@@ -1,4 +1,4 @@
-// What a frame holds: its planes, the rules it is read by, its camera, and the meaning of depth and normals.
+// Finds the planes of a frame, the rules of its program, its camera, and the meaning of depth and normals.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/gbuffer.h"
 
@@ -14,10 +14,9 @@
 #include "core/base/text.h"
 #include "core/formats/exr.h"
 #include "core/frame/behind.h"
-#include "core/frame/header_camera.h"
-#include "core/frame/linear_fit.h"
+#include "core/frame/camera/camera.h"
+#include "core/frame/camera/resection.h"
 #include "core/frame/matte.h"
-#include "core/frame/panorama.h"
 #include "core/frame/position_pass.h"
 
 namespace alcove {
@@ -26,7 +25,7 @@ namespace {
 
 // The parts of a beauty that AO may dim: a list of layers, colours and weights.
 
-/// One of the lights, as it was typed.
+/// A light, as the user typed it.
 struct TypedLight {
   std::string light, color;  // color: empty: nothing is said
   double weight = 1;
@@ -162,7 +161,7 @@ std::array<std::vector<float>, 3> sample_of(FrameSource& source, const Three& th
     std::vector<ExrRead> reads;
     for (std::size_t c = 0; c < 3; c++)
       reads.push_back({three[c].part, three[c].channel, planes[c].data() + std::size_t(i) * width});
-    source.files[three[0].file].read(reads, int((std::int64_t(2 * i + 1) * data.height) / (2 * rows)), 1);
+    source.file_of(three[0]).read(reads, int((std::int64_t(2 * i + 1) * data.height) / (2 * rows)), 1);
   }
   return planes;
 }
@@ -204,7 +203,7 @@ bool are_normals(const std::array<std::vector<float>, 3>& planes) {
 /// colours; adds a suspicious note where they are one in a layer that is called depth, and where the depth is the Z of
 /// X, Y and Z. Reads a few rows where there are two such channels, and nothing else.
 void doubt_depth_of_three(FrameSource& source, const ChannelSearch& search, const ChannelRef& depth) {
-  const std::string word = last_word(depth.channel), path = source.files[depth.file].path();
+  const std::string word = last_word(depth.channel), path = source.file_of(depth).path();
   const std::string layer = depth.channel.substr(0, depth.channel.size() - word.size());
   if (word == "y" && search.has(depth, "ry") && search.has(depth, "by"))
     fail(ErrorKind::input,
@@ -252,10 +251,9 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
   if (source.reading.supersampling > 1 && settings.supersampling == "auto")
     source.notes.push_back(
         {NoteCode::windows_differ,
-         fmt::format(
-             "the depth is of {} times the beauty's size: what is written is filtered to that of the beauty, {} "
-             "(--set supersampling, --set filter)",
-             source.reading.supersampling, to_string(picture_of(source.reading, source.reading.display)))});
+         fmt::format("the depth is {} times the beauty's size: outputs are filtered down to the beauty's size, {} "
+                     "(--set supersampling, --set filter)",
+                     source.reading.supersampling, to_string(picture_of(source.reading, source.reading.display)))});
   for (const auto* aov : {&source.channels[RawPlane::beauty], &source.channels[RawPlane::indirect],
                           &source.channels[RawPlane::diffuse_color]})
     require_common_window(source, *aov, "beauty", "--beauty",
@@ -266,11 +264,11 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
       beauty, [&](const ChannelRef& channel) { return window_of(channel) != window_of(beauty[0]); });
   if (other != beauty.end())
     fail(ErrorKind::input, "{}: the beauty's channel {} is {}, and {} is {}: all must cover the same pixels (--beauty)",
-         source.files[other->file].path(), other->channel, to_string(window_of(*other)), beauty[0].channel,
+         source.file_of(*other).path(), other->channel, to_string(window_of(*other)), beauty[0].channel,
          to_string(window_of(beauty[0])));
 }
 
-/// What is multiplied in, where the settings name a file or a channel of it.
+/// Finds the AO of materials, if the settings name a file or a channel of it.
 void find_material(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
   if (settings.material_ao.empty() && settings.material_ao_channel.empty()) return;
   const std::size_t file =
@@ -333,7 +331,7 @@ std::vector<ChannelRef> find_depth(FrameSource& source, const ChannelSearch& sea
   return depth;
 }
 
-/// The normals, none where there are none; and what the rules say of their space.
+/// Finds the normals, if there are any, and the space that the rules give them.
 std::vector<ChannelRef> find_normal(FrameSource& source, const ChannelSearch& search, std::size_t file,
                                     const InputSettings& settings) {
   if (source.program.rules->normal_space != NormalSpace::automatic)
@@ -364,8 +362,8 @@ void note_pixel_aspect(FrameSource& source, const std::string& camera) {
   source.notes.push_back(
       {NoteCode::said_otherwise,
        fmt::format("by fx {:.6g} and fy {:.6g} of {} a pixel is {:.4g} times as wide as high, and "
-                   "by the pixelAspectRatio of the frame {:.4g} times: is one of them wrong? Where "
-                   "the picture was cropped, give the camera of what is left of it (--camera)",
+                   "by the pixelAspectRatio of the frame {:.4g} times: one of them may be wrong; if the picture was "
+                   "cropped, give the camera of the crop (--camera)",
                    source.reading.camera.fx, source.reading.camera.fy, camera, aspect, source.reading.pixel_aspect)});
 }
 
@@ -375,17 +373,17 @@ void note_scaled_camera(FrameSource& source, const std::string& camera) {
   if (width == 0) return;
   source.notes.push_back(
       {NoteCode::camera_scaled,
-       fmt::format("the camera of {} is for {}x{} pixels and was scaled to the frame's {}x{}, as of a proxy: a cropped "
-                   "picture needs the camera of what is left of it (--camera)",
+       fmt::format("the camera of {} is for {}x{} pixels and was scaled to the frame's {}x{}, as for a proxy: a "
+                   "cropped picture needs the camera of the crop (--camera)",
                    camera, width, height, source.reading.camera.width, source.reading.camera.height)});
 }
 
-/// What the positions say of the camera that saw them: it, or why they tell none. Nothing where there are no positions
-/// that fit the depth.
+/// Gives the camera that saw the positions, or the reason for which they tell none. Gives nothing if no positions fit
+/// the depth.
 std::optional<std::variant<Resection, NoResection>> camera_by_positions(FrameSource& source,
                                                                         const InputSettings& settings) {
   if (source.channels.positions.empty()) return std::nullopt;
-  const ExrFile& file = source.files[source.channels.positions.front().file];
+  const ExrFile& file = source.file_of(source.channels.positions.front());
   const auto points = points_of(source, settings.sky, kManyBands);
   auto found = resection_of(points, file.display());
   if (std::holds_alternative<NoResection>(found))
@@ -408,7 +406,7 @@ std::vector<ChannelRef> positions_beside(const ChannelSearch& search, const Fram
 /// projection leave the camera where the header says that it stands.
 void find_camera(FrameSource& source, const ChannelSearch& search, const InputSettings& settings, int frame) {
   const ChannelRef& depth = source.channels[RawPlane::depth].front();
-  const ExrFile& file = source.files[depth.file];
+  const ExrFile& file = source.file_of(depth);
   const auto attributes = file.attribute_texts(depth.part);
   const std::string layer = source.layer_of(depth);
   require_no_panorama(attributes, file.path());
@@ -448,7 +446,7 @@ void find_camera(FrameSource& source, const ChannelSearch& search, const InputSe
   note_scaled_camera(source, settings.camera);
 }
 
-/// What of the meaning of depth and normals is said, and by whom; the rest is open.
+/// Takes the meaning of depth and normals from settings, camera and rules; the rest is open.
 void find_meaning(FrameSource& source, const InputSettings& settings) {
   const InputRules& rules = *source.program.rules;
   const auto decided = [](auto setting, auto from_camera, auto otherwise) {
@@ -490,13 +488,12 @@ void find_meaning(FrameSource& source, const InputSettings& settings) {
 /// Notes an INPUT that gives nothing although the frame has no normals: perhaps it holds them.
 void note_unused_input(FrameSource& source, const InputSettings& settings) {
   if (settings.input.empty() || !source.channels[RawPlane::normal].empty() || !wants_normals(settings)) return;
-  const auto is_of_input = [&](const ChannelRef& ref) { return source.files[ref.file].path() == settings.input; };
+  const auto is_of_input = [&](const ChannelRef& ref) { return source.file_of(ref).path() == settings.input; };
   const auto is_used = [&](const std::vector<ChannelRef>& plane) { return std::ranges::any_of(plane, is_of_input); };
   if (std::ranges::any_of(source.channels.planes.entries, is_used)) return;
-  source.notes.push_back({NoteCode::unused_input,
-                          fmt::format("no channel of {} is used: where it holds the normals, give it with --normal, "
-                                      "or name them with --normal-channels",
-                                      settings.input)});
+  source.notes.push_back({NoteCode::unused_input, fmt::format("no channel of {} is used: if it holds the normals, give "
+                                                              "it to --normal, or name them with --normal-channels",
+                                                              settings.input)});
 }
 
 }  // namespace
@@ -569,8 +566,7 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   take_deep(source, settings);
   if (!source.channels[RawPlane::normal].empty() && source.reading.normal_space == NormalSpace::world &&
       !source.open.normal_space && !source.reading.camera.view_from_world)
-    fail(ErrorKind::input, "{}: {}", source.files[source.channels[RawPlane::normal][0].file].path(),
-         kWorldWithoutMatrix);
+    fail(ErrorKind::input, "{}: {}", source.path_of(RawPlane::normal), kWorldWithoutMatrix);
   return source;
 }
 

@@ -13,29 +13,25 @@
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
 #include "core/frame/channels.h"
-#include "core/frame/flatness.h"
+#include "core/frame/evidence.h"
 #include "core/frame/input_rules.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 
 namespace alcove {
 
-/// Something that neither settings nor camera say, and what was chosen.
-struct Guess {
-  std::string what, chosen, why, option;  // option: the one that says it
-};
-
 /// FrameSource::camera_from where the pass of positions gave the camera.
 inline constexpr const char* kByPositions = "its positions";
 
 /// Deep samples that are the depth of a frame, or give planes behind it.
 struct DeepFiles {
-  std::size_t file;        // of FrameSource::files
-  std::vector<int> parts;  // of that file
-  // other files and their parts, whose samples count together with those
-  std::vector<std::pair<std::size_t, std::vector<int>>> elements = {};
-  Window data = {};            // over which samples are read
-  bool depth_is_half = false;  // samples are the depth, and were rounded to half floats
+  struct Element {
+    std::size_t file;        // of FrameSource::files
+    std::vector<int> parts;  // of that file
+  };
+  std::vector<Element> elements;  // whose samples count together; channels name those of the first
+  Window data = {};               // over which samples are read
+  bool depth_is_half = false;     // samples are the depth, and were rounded to half floats
 };
 
 /// The channels of a frame that are read.
@@ -74,28 +70,22 @@ struct OpenQuestions {
   bool camera = false;
 };
 
-/// Facts that the pixels of a frame show.
-struct Evidence {
-  bool tells = true;                     // false: the pixels did not show what was left open
-  Grain grain;                           // of the depth's values
-  std::vector<DepthScore> depth_scores;  // of depth that is no position
-  // of the surfaces, scene units; none until the frame is settled, and where all is sky
-  std::optional<double> median_depth;
-  std::vector<Guess> guesses;
-};
-
 /// A frame that was found: its files, the channels of its planes, and how they are read. Nothing but headers is read to
 /// find it.
 struct FrameSource {
   /// The file of the depth or the positions, after which the frame is called in messages.
-  const std::string& depth_path() const { return files[channels[RawPlane::depth][0].file].path(); }
+  const std::string& depth_path() const { return path_of(RawPlane::depth); }
   /// The file of the normals for notes on them: "" where it is the frame's own, or where there are none.
   std::string normal_file() const {
     const auto& normal = channels[RawPlane::normal];
-    return normal.empty() || normal[0].file == channels[RawPlane::depth][0].file ? "" : files[normal[0].file].path();
+    return normal.empty() || path_of(RawPlane::normal) == depth_path() ? "" : path_of(RawPlane::normal);
   }
+  /// The file of a channel, and of a plane.
+  ExrFile& file_of(const ChannelRef& ref) { return files[ref.file]; }
+  const ExrFile& file_of(const ChannelRef& ref) const { return files[ref.file]; }
+  const std::string& path_of(RawPlane plane) const { return file_of(channels[plane][0]).path(); }
   /// The part of a file that a channel lies in.
-  const ExrPart& part_of(const ChannelRef& ref) const { return files[ref.file].parts()[std::size_t(ref.part)]; }
+  const ExrPart& part_of(const ChannelRef& ref) const { return file_of(ref).parts()[std::size_t(ref.part)]; }
   /// Whether its samples are half floats.
   bool is_half(const ChannelRef& ref) const;
   /// The name of a channel without its last part, which a part's name stands for; "" where it has no layer.
@@ -108,8 +98,8 @@ struct FrameSource {
   OpenQuestions open;
   std::string camera_from;       // the header's attributes or the positions, which gave it; empty: the settings did
   std::optional<Window> region;  // that is written; none: all pixels are
-  bool settled = false;          // see core/frame/settle.h
-  Evidence evidence;
+  // by which the frame is settled, see core/frame/settle.h; none: it is not yet
+  std::optional<Evidence> evidence;
   Notes notes;                  // guesses that are unusual, and options that the pixels speak against
   Notes suspicious;             // on faults of the files that harm AO
   std::uint64_t rows_read = 0;  // that were decoded, each as often as it was
@@ -117,23 +107,23 @@ struct FrameSource {
 
 /// Opens the files that the settings name and finds the channels. `with_beauty` asks for the beauty and its ambient
 /// parts too, `with_albedo` for the diffuse colour.
-/// Fails with ErrorKind::input, listing what there is and naming the option that decides, when a channel is not found,
-/// is found twice, is subsampled, or has another size than the depth; with NoCamera where nothing gives one.
+/// Fails with ErrorKind::input if a channel is not found, is found twice, is subsampled, or has another size than the
+/// depth; the message lists the channels and names the option that decides. Fails with NoCamera if nothing gives one.
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
 
-/// What to do about normals in world space where the camera has no world_to_camera.
+/// The end of a refusal of normals in world space, if the camera has no world_to_camera.
 constexpr const char* kWorldWithoutMatrix =
     "its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal "
     "none, which reconstructs them from depth";
 
-/// Whether the header of the frame's depth or position file has a camera, or why it has none is known, or the file has
-/// positions, which may tell one. Fails as opening it does.
+/// Whether the file of the depth or the positions may tell a camera: its header has one, or looks as if it had, or the
+/// file has positions. Fails as opening it does.
 bool may_tell_camera(const InputSettings& settings);
 
-/// The settings with a camera that stands in for one where nothing gives any, so that all else can be looked at.
+/// Gives the settings with a camera that stands in for one, so that all else can be inspected without a camera.
 InputSettings with_some_camera(const InputSettings& settings);
 
-/// A plane, or several one behind the other, and where it goes.
+/// A plane, or several one behind the other, and its destination.
 struct PlaneRead {
   const std::vector<ChannelRef>* channels;
   float* to;
@@ -147,39 +137,40 @@ struct RawPart {
   Window window;
   std::span<const float> depth, normal;
 };
-/// Depth and normals of a frame, as they were read.
+/// The same in vectors of its own.
 struct RawFrame {
+  Window window;
   std::vector<float> depth, normal;
+
+  operator RawPart() const { return {window, depth, normal}; }
 };
 RawFrame read_raw_frame(FrameSource& source, const Window& window);
 
 /// Finds, reads and settles the depth and normals that the settings name. Fails as find_frame() and settle() do.
 HostFrame read_host_frame(const InputSettings& settings, int frame);
 
-// Planes whose files have another data window than the depth, or are of a picture that is so many times smaller.
+// Planes of files with another data window than the depth, or of a smaller picture.
 
-/// How many pixels of the depth, in x and in y, are one of a beauty's: what the option says, or with auto as their
-/// display windows have it, and 1 where they are of no such size. Fails with ErrorKind::input where the depth's window
-/// cannot be divided so, or the beauty's is another.
+/// Gives the pixels of the depth, in x and in y, per pixel of the beauty. The option says it; with auto the display
+/// windows tell, and it is 1 if they do not fit. Fails with ErrorKind::input if the depth's window cannot be divided
+/// so, or if the beauty has another one.
 int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const InputSettings& settings);
-/// The same without a beauty: 1 with auto.
+/// Does the same without a beauty: 1 with auto.
 int supersampling_of(const FrameSource& source, const InputSettings& settings);
 
-/// Fails with ErrorKind::input where channels, what they hold and the option that names them, have another data window
-/// than the depth and no pixel in common with it, or another display window, which alone shows which pixels belong
-/// together. A renderer may have cut each plane to its own pixels that are not 0.
+/// Fails with ErrorKind::input if channels have another data window than the depth, and either share no pixel with it
+/// or have another display window: nothing else tells which pixels belong together. A renderer may cut each plane to
+/// its pixels that are not 0. `what` names the channels' content, `option` their option.
 void require_same_picture(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                           const char* option);
 
-/// Fails with ErrorKind::input where channels, what they hold and the option that names them, share no pixel with the
-/// depth, or have another data window than it and a display window that is neither its own nor the picture's, since
-/// nothing then tells which pixels belong together. Notes another data window; `without` says what holds where one of
-/// them has no pixels.
+/// Does the same for channels that may be of the smaller picture: their display window is the depth's or the picture's.
+/// Notes another data window; `without` describes the pixels that the channels lack.
 void require_common_window(FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                            const char* option, const char* without);
 
-/// Puts values that change nothing into the pixels of a plane over a window that its files do not have: AO 1 of
-/// materials, no object of a matte. Of all other planes that is the 0 that is there.
+/// Fills the pixels of a plane over a window that its files lack with values that change nothing: AO 1 of materials, no
+/// object of a matte. All other planes keep their 0.
 void fill_missing(const FrameSource& source, const Window& window, RawPlane plane, std::span<float> values);
 
 }  // namespace alcove

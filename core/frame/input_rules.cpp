@@ -12,7 +12,7 @@
 namespace alcove {
 namespace {
 
-/// What a word of an option stands for; none where it is no word of it, or leaves open what it means.
+/// Gives the value of a word of an option; none if the option has no such word, or if the word leaves it open.
 template <class T>
 std::optional<T> known_meaning(const std::string& word) {
   for (const auto& [known, meaning] : kWordsOf<T>)

@@ -1,14 +1,13 @@
-// How the programs that write frames name and mean their AOVs: presets/input/*.toml, compiled into the program.
+// Rules of the programs that write frames, for names and meaning of AOVs: presets/input/*.toml, compiled into Alcove.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Keys: `detect`, patterns with * of header attributes ("arnold/*", "Software=Blender 3*") or of channels
-// ("channel:ViewLayer.*"), any of which tells the program; `detect-last`, those that other programs' files bear too, so
-// that theirs tell first; `depth-channel`, `normal-channels`, `position-channels`, layers, patterns of layers, or
+// ("channel:ViewLayer.*"), any of which tells the program; `detect-last`, patterns that other programs' files bear too,
+// so that theirs tell first; `depth-channel`, `normal-channels`, `position-channels`, layers, patterns of layers, or
 // channels with the likeliest first, each with its own kind or space behind a colon where it has one ("Nn:view"); and
-// `depth-kind`,
-// `near`, `far`, `reversed-z`, `normal-space` and `normal-encoding`, which mean what the options of these names mean;
-// and `normal-averaged`, true where normals are always averaged over the pixel, so that it is no fault of the file.
-// The pixels decide what the rules leave open.
+// `depth-kind`, `near`, `far`, `reversed-z`, `normal-space` and `normal-encoding`, which mean what the options of these
+// names mean; and `normal-averaged`, true where normals are always averaged over the pixel, so that it is no fault of
+// the file. The pixels decide the rest.
 #pragma once
 
 #include <optional>
@@ -22,7 +21,7 @@ namespace alcove {
 
 class ExrFile;
 
-/// A layer or a channel, and what is known of it alone. Where that is automatic, the program's rules hold.
+/// A layer or a channel, with its own kind or space; automatic: the program's rules hold.
 struct AovCandidate {
   std::string name;
   DepthKind kind = DepthKind::automatic;

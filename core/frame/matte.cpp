@@ -130,7 +130,7 @@ std::vector<Cryptomatte> cryptomattes_of(const ExrFile& file, const std::string&
 
 namespace {
 
-/// Which objects are meant, and the options that said so.
+/// The objects that a user selects, and the options that say so.
 struct Objects {
   const std::string& words;  // names, patterns or numbers, with commas; empty: none, but coverage
   const char* option;
@@ -164,7 +164,7 @@ std::vector<std::string> shown(const std::vector<std::string>& names) {
   return quoted;
 }
 
-/// What is before the next comma that belongs to no name, and behind it.
+/// Cuts a list at the next comma that belongs to no name.
 std::vector<std::string> parts_of(const std::string& words) {
   std::vector<std::string> parts(1);
   for (std::size_t i = 0; i < words.size(); i++) {
@@ -186,7 +186,7 @@ std::string trimmed(const std::string& text) {
   return text.substr(first, end - first);
 }
 
-/// What a user's list means in one Cryptomatte.
+/// The meaning of a user's list in one Cryptomatte.
 struct Meaning {
   /// A word of the list, and the names that it stands for: none, itself, or those that fit it as a pattern.
   struct Word {

@@ -1,4 +1,4 @@
-// Where AO is wanted, and what makes it: the planes of --matte, occluders and ignore; Cryptomattes.
+// Selections of surfaces: those that get AO (--matte), those that block (occluders, ignore); Cryptomattes.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -26,23 +26,22 @@ struct Cryptomatte {
   std::vector<Rank> ranks = {};  // the one that covers most first
 };
 
-/// All Cryptomattes of a view of a file, with their manifests, of which one may be a file beside it; those without
-/// channels are left out. Never fails: a header or a manifest that makes no sense is none.
+/// Gives all Cryptomattes of a view of a file that have channels, with their manifests. A manifest may be a file beside
+/// it. Never fails: a senseless header or manifest is none.
 std::vector<Cryptomatte> cryptomattes_of(const ExrFile& file, const std::string& view);
 
 /// The identifier of a name: MurmurHash3 (32 bits, Appleby) of its UTF-8, changed where it is no normal number.
 std::uint32_t cryptomatte_id(const std::string& name);
 
-/// Finds the matte where the settings ask for one, in --matte or else in INPUT. Without objects it is a plane of
-/// coverage. With objects it is what they cover in a Cryptomatte: names, in which * and ? stand for others, are looked
-/// up in its manifest, and are taken as they are where there is none. With matte-channel of another channel objects
-/// are its numbers. Fails with ErrorKind::input, naming the file and what it has, where nothing is found, and where
-/// the matte has another window than the depth.
+/// Finds the matte if the settings ask for one, in --matte or else in INPUT. Without objects it is a plane of coverage.
+/// With objects it is their coverage in a Cryptomatte: patterns and names are looked up in its manifest; without a
+/// manifest names are taken as they are. If matte-channel names another channel, objects are its numbers. Fails with
+/// ErrorKind::input if nothing is found, and names the file and its content, or if the matte has another window than
+/// the depth.
 void find_matte(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
 
-/// Finds what tells occluders from the rest, where the settings ask for it: a file of coverage; or objects, in
-/// the file of objects or else in INPUT, as above, where numbers need no object-channel if it has a usual name. Fails
-/// alike.
+/// Finds the selection of occluders if the settings ask for one: a file of coverage; or objects, as above, in the file
+/// of objects or else in INPUT. Numbers need no object-channel if the channel has a usual name. Fails alike.
 void find_occluders(FrameSource& source, ChannelSearch& search, const InputSettings& settings);
 
 }  // namespace alcove

@@ -8,12 +8,12 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/frame/channels.h"
-#include "core/frame/sampling.h"
+#include "core/frame/evidence.h"
 
 namespace alcove {
 namespace {
 
-/// px: what stands still may differ by it from what the cameras say, and by this part of the way, since vectors are
+/// px: the vector of a surface that stands still may be off by it, and by this part of the way, since vectors are
 /// often stored as half floats.
 constexpr double kStill = 0.1, kStillPart = 0x1p-10;
 /// The least share of surfaces that agree with the cameras by the right reading: the others may all move.
@@ -41,7 +41,7 @@ AovNames second_pair(const std::string& layer) {
 
 using Pixels = std::array<double, 2>;
 
-/// Where a pixel's surface would be seen if it stood still, less where it is; nothing behind the other camera.
+/// The step, px, of a pixel's surface in the picture if it stands still; nothing behind the other camera.
 std::optional<Pixels> by_cameras(const View& view, const FromThere& there, std::size_t pixel, float depth) {
   const double px = double(pixel % std::size_t(view.size.x)) + 0.5, py = double(pixel / std::size_t(view.size.x)) + 0.5;
   const SeenAt seen = seen_from(there.view, there.map, view, px, py, depth);

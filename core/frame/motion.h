@@ -1,4 +1,4 @@
-// Motion vectors of a frame: which way they are to be read, as the cameras prove it, and what moves by them.
+// Motion vectors of a frame: the reading that the cameras prove, and the pixels that move by it.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 namespace alcove {
 
@@ -21,8 +21,8 @@ struct MotionPlanes {
   std::vector<Pair> pairs;
 };
 
-/// Reads the vectors that the settings name, of a frame whose planes lie over this window. Fails with ErrorKind::input
-/// where there are none, or where they lie over other pixels.
+/// Reads the vectors that the settings name. `data` is the window of the frame. Fails with ErrorKind::input if there
+/// are none, or if they lie over other pixels.
 MotionPlanes read_motion(const InputSettings& settings, const Window& data);
 
 /// Another frame of the shot as this one's pixels are seen from it.
@@ -38,12 +38,12 @@ struct MotionFrame {
   std::optional<FromThere> previous, next;  // none at the ends of the shot
 };
 
-/// How vectors are read: to where a surface is in that frame, less where it is now.
+/// A way to read vectors, each the place of a surface in another frame less its place in this one.
 struct MotionReading {
   std::size_t pair = 0;
   MotionKind kind = MotionKind::previous;  // not automatic
   std::array<double, 2> scale{};           // px per unit, x to the right and y down
-  double share = 0;                        // of the surfaces whose vectors are what the cameras alone would make them
+  double share = 0;                        // of the surfaces that stand still by it
 };
 
 /// Gives the reading by which the most surfaces stand still: vectors may have either sign, y up or down, and be in
@@ -51,8 +51,8 @@ struct MotionReading {
 /// then the vectors are of other frames or of another unit. `kind` may say to which frame they lead.
 std::optional<MotionReading> best_motion_reading(const MotionPlanes& planes, const MotionFrame& frame, MotionKind kind);
 
-/// Gives 1 for each pixel whose surface moves by its vector, or that lies up to `around` pixels beside such a one; else
-/// 0. Sky stands still.
+/// Gives 1 for each pixel with a surface that moves by its vector, and for pixels up to `around` px beside it; else 0.
+/// Sky stands still.
 std::vector<std::uint8_t> moving_by(const MotionPlanes& planes, const MotionReading& reading, const MotionFrame& frame,
                                     int around = 1);
 

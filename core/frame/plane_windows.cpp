@@ -14,12 +14,12 @@
 namespace alcove {
 namespace {
 
-/// The most that is decoded at once of a file whose window is larger than what is wanted of it.
+/// The most bytes that are decoded at once of a file with a larger window than is needed.
 constexpr std::uint64_t kBandBytes = 8 << 20;
 
-/// How many pixels of the depth are one of a channel's file, in x and in y.
+/// The pixels of the depth, in x and in y, per pixel of a channel's file.
 int scale_of(const FrameSource& source, const ChannelRef& channel) {
-  const bool is_of_picture = source.files[channel.file].display() == picture_of(source.reading, source.reading.display);
+  const bool is_of_picture = source.file_of(channel).display() == picture_of(source.reading, source.reading.display);
   return is_of_picture ? source.reading.supersampling : 1;
 }
 
@@ -28,7 +28,7 @@ Window shown_by(const FrameSource& source, const ChannelRef& channel) {
   return enlarged(source.part_of(channel).data, source.reading.display, scale_of(source, channel));
 }
 
-/// What a channel has where its file has no pixels.
+/// The value of a channel beyond the pixels of its file.
 float outside_of(const FrameSource& source, const ChannelRef& channel) {
   for (const RawPlane plane : {RawPlane::normal, RawPlane::behind})
     if (std::ranges::find(source.channels[plane], channel) != source.channels[plane].end())
@@ -55,7 +55,7 @@ void read_from_other(ExrFile& file, const Window& from, int rows_together, const
   }
 }
 
-/// What to do about a file of another size than the depth.
+/// Says how to mend a file of another size than the depth.
 std::string way_out(const FrameSource& source, const Window& display) {
   if (display.width > source.reading.display.width)
     return "compute from a depth of that size, if need be with --resolution half, or render both at the same size";
@@ -75,7 +75,7 @@ struct ChannelRead {
 };
 
 /// Reads all of a window. Every part of every file is decoded once. Where their files have no pixels, normals and
-/// what lies behind are NaN, which is none in any encoding, and all else is 0. Channels of the smaller picture have
+/// hidden depths are NaN, which is none in any encoding, and all else is 0. Channels of the smaller picture have
 /// their value in all pixels of a block.
 void read_channels(FrameSource& source, const Window& window, std::span<const ChannelRead> reads) {
   const Window& own = source.reading.data;
@@ -86,7 +86,7 @@ void read_channels(FrameSource& source, const Window& window, std::span<const Ch
     groups[{read.channel.file, data.x, data.y, data.width, data.height}].push_back(&read);
   }
   for (const auto& [place, group] : groups) {
-    ExrFile& file = source.files[group[0]->channel.file];
+    ExrFile& file = source.file_of(group[0]->channel);
     const ExrPart& part = source.part_of(group[0]->channel);
     std::vector<ExrRead> of_file;
     for (const auto* read : group) of_file.push_back({read->channel.part, read->channel.channel, read->to});
@@ -112,7 +112,7 @@ int supersampling_of(const FrameSource& source, const InputSettings& settings) {
 }
 
 int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const InputSettings& settings) {
-  const ExrFile& file = source.files[beauty.file];
+  const ExrFile& file = source.file_of(beauty);
   if (settings.supersampling == "auto") {
     for (const int factor : {2, 3, 4})
       if (is_times(source.reading.display, file.display(), factor)) return factor;
@@ -130,7 +130,7 @@ int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const 
 void require_same_picture(const FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                           const char* option) {
   for (const auto& channel : channels) {
-    const ExrFile& file = source.files[channel.file];
+    const ExrFile& file = source.file_of(channel);
     const Window& data = source.part_of(channel).data;
     if (data == source.reading.data) continue;
     if (file.display() != source.reading.display)
@@ -149,7 +149,7 @@ void require_same_picture(const FrameSource& source, const std::vector<ChannelRe
 void require_common_window(FrameSource& source, const std::vector<ChannelRef>& channels, const char* what,
                            const char* option, const char* without) {
   for (const auto& channel : channels) {
-    const ExrFile& file = source.files[channel.file];
+    const ExrFile& file = source.file_of(channel);
     const Window& data = source.part_of(channel).data;
     if (data == source.reading.data && source.reading.supersampling == 1) continue;
     if (file.display() != source.reading.display &&
@@ -191,7 +191,7 @@ void read_planes(FrameSource& source, const Window& window, const std::vector<Pl
 }
 
 RawFrame read_raw_frame(FrameSource& source, const Window& window) {
-  RawFrame raw;
+  RawFrame raw{window, {}, {}};
   raw.depth.resize(source.channels[RawPlane::depth].size() * window.pixels());
   raw.normal.resize(source.channels[RawPlane::normal].size() * window.pixels());
   read_planes(

@@ -13,10 +13,8 @@
 
 #include "core/base/error.h"
 #include "core/base/ranks.h"
-#include "core/frame/flatness.h"
-#include "core/frame/linear_fit.h"
-#include "core/frame/panorama.h"
-#include "core/frame/settle.h"
+#include "core/frame/camera/resection.h"
+#include "core/frame/evidence.h"
 
 namespace alcove {
 namespace {
@@ -40,14 +38,14 @@ struct Band {
 
 bool is_surface(const Vector3& p, double sky) { return dot(p, p) > 0 && dot(p, p) < sky * sky; }
 
-/// How much the steps to two pixels on both sides differ, relative to them; infinite where one is none.
+/// The difference of the steps to the pixels on both sides, relative to them; infinite if one is no surface.
 double bend(const Vector3& before, const Vector3& here, const Vector3& after) {
   const double step = length(difference(after, before));
   const Vector3 second = difference(difference(after, here), difference(here, before));
   return step > 0 ? length(second) / step : std::numeric_limits<double>::infinity();
 }
 
-/// How little the surface about a pixel is a plane; infinite where it shows none.
+/// The bend of the surface about a pixel; infinite if the pixel shows none.
 double roughness(const Band& band, int x, int y, double sky) {
   const Vector3 here = band.at(x, y);
   const std::array<Vector3, 4> about{band.at(x - 1, y), band.at(x + 1, y), band.at(x, y - 1), band.at(x, y + 1)};
@@ -73,7 +71,7 @@ std::optional<std::pair<int, int>> place_in(const Band& band, const Window& cell
   return smooth.empty() ? best : smooth[random() % smooth.size()];
 }
 
-/// How far a point may be from its pixel because its numbers are rounded, px.
+/// The error of a point's place, px, since its numbers are rounded.
 double rounding_at(const Band& band, int x, int y, double relative) {
   const double across = length(difference(band.at(x + 1, y), band.at(x - 1, y)));
   const double down = length(difference(band.at(x, y + 1), band.at(x, y - 1)));
@@ -98,7 +96,7 @@ std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameS
 
 std::vector<SeenPoint> points_of(FrameSource& source, double sky, int bands) {
   const auto& positions = source.channels.positions;
-  ExrFile& file = source.files[positions.front().file];
+  ExrFile& file = source.file_of(positions.front());
   const ExrPart& part = file.parts()[std::size_t(positions.front().part)];
   const Window& data = part.data;
   const bool is_half = std::ranges::any_of(positions, [&](const ChannelRef& ref) { return source.is_half(ref); });
@@ -135,7 +133,7 @@ std::vector<SeenPoint> points_of(FrameSource& source, double sky, int bands) {
 
 namespace {
 
-/// Of the points, those that are counted are the nearest to their pixels: the rest may be of edges.
+/// The share of the points, nearest to their pixels first, that counts: the rest may be of edges.
 constexpr double kCounted = 0.9;
 /// px, and part of the picture's width: a lens that is off by less is one that was rounded.
 constexpr double kLeastBeside = 1, kLeastPart = 1e-3;
@@ -143,8 +141,8 @@ constexpr double kLeastBeside = 1, kLeastPart = 1e-3;
 /// nearer.
 constexpr double kNoCamera = 2;
 
-/// How far a lens puts points from the pixels that hold them, px, of most of them at most and beyond their rounding.
-/// The camera that stands where they are seen from places them.
+/// The largest distance, px, from most points to their pixels by a lens, beyond their rounding. `standing` is the
+/// camera that places them.
 double beside(const Camera& lens, const Camera& standing, std::span<const SeenPoint> points) {
   std::vector<double> distances;
   for (const auto& point : points) {
@@ -180,7 +178,7 @@ std::string text_of(const Camera& camera, double pixel_aspect) {
   return fmt::format("a field of view of {:.5g} degrees (--fov {:.5g})", degrees, degrees);
 }
 
-/// What gave the lens, as messages call it.
+/// Names the source of the lens for messages.
 std::string name_of_lens(const FrameSource& source, const InputSettings& settings) {
   if (!source.camera_from.empty()) return source.camera_from;
   if (!settings.camera.empty()) return "the camera of " + settings.camera;
@@ -188,13 +186,13 @@ std::string name_of_lens(const FrameSource& source, const InputSettings& setting
   return settings.focal ? "--focal with --aperture" : "--ortho-width";
 }
 
-/// How far a point is along the view, scene units.
+/// The planar depth of a point, scene units.
 double planar_of(const SeenPoint& point, const Camera& camera) {
   if (!camera.view_from_world) return std::abs(point.position[2]);
   return -(dot((*camera.view_from_world)[2], point.position) + camera.view_from_world_offset[2]);
 }
 
-/// How little numbers differ from their median, relative to it: the median of that.
+/// The median difference of numbers from their median, relative to it.
 double spread(std::vector<double> numbers) {
   const double median = median_of(numbers);
   for (double& number : numbers) number = std::abs(number / median - 1);
@@ -205,7 +203,7 @@ double spread(std::vector<double> numbers) {
 
 std::string settle_camera(FrameSource& source, const InputSettings& settings) {
   if (source.channels.positions.empty() || source.open.camera || source.camera_from == kByPositions) return "";
-  ExrFile& file = source.files[source.channels.positions.front().file];
+  ExrFile& file = source.file_of(source.channels.positions.front());
   const auto points = points_of(source, settings.sky, kFewBands);
   const double limit = std::max(kLeastBeside, kLeastPart * source.reading.display.width);
   if (points.empty() || beside(source.reading.camera, source.reading.camera, points) <= limit) return "";

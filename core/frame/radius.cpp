@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/ranks.h"
 #include "core/base/text.h"
-#include "core/frame/sampling.h"
+#include "core/frame/evidence.h"
 
 namespace alcove {
 namespace {
@@ -62,7 +62,7 @@ void DepthSample::add(const View& view, const DepthMap& map, const DepthPrecisio
   });
 }
 
-/// How wide a pixel is there, in scene units.
+/// The width of a pixel at a depth, in scene units.
 double DepthSample::pixel_at(double depth) const {
   return (view_.orthographic ? 1 : depth) * double(view_.tangent_per_pixel.x);
 }

@@ -1,5 +1,5 @@
-// The radius that is proposed to those who do not name one, and what the numbers of a frame cannot carry: a radius that
-// is lost in the depth's precision, below a pixel, or larger than the picture.
+// The radius that Alcove proposes, and notes on radii that a frame cannot carry: lost in the depth's precision, below a
+// pixel, or larger than the picture.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -28,8 +28,8 @@ class DepthSample {
  public:
   /// Takes a few thousand pixels of a window. `raw` is its depth as the file has it: one plane, or three of positions.
   void add(const View& view, const DepthMap& map, const DepthPrecision& precision, std::span<const float> raw);
-  /// Takes those of `window` that belong to a few thousand of `whole`. Windows that share pixels give each of them
-  /// once, so that it is all the same how the whole is cut into windows.
+  /// Takes the pixels of `window` that belong to a sample of a few thousand of `whole`. A pixel counts once, however
+  /// many windows share it: the result does not depend on how the whole is cut.
   void add(const View& view, const DepthMap& map, const DepthPrecision& precision, std::span<const float> raw,
            const Window& window, const Window& whole);
 

@@ -1,4 +1,4 @@
-// What follows from the table of planes, and from the files that settings name.
+// Lists made from the table of planes, and facts of the files that settings name.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/raw_plane.h"
 

@@ -1,5 +1,5 @@
-// The planes that a frame's files hold, before any pass: ONE table of what each is, and arrays with one entry for each;
-// and the files that the settings name.
+// The planes of a frame's files, before any pass: one table of their facts, arrays with an entry for each, and the
+// files that the settings name.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -118,7 +118,7 @@ inline constexpr std::array kRawPlanes{
                   .third_file = {"--set objects", &InputSettings::objects}},
 };
 
-/// One entry for each plane.
+/// An array with an entry for each plane.
 template <class T>
 struct RawPlaneArray {
   std::array<T, kRawPlanes.size()> entries{};

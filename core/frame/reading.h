@@ -1,5 +1,5 @@
-// How a frame is read: where its planes lie, what their values mean, and which camera saw them. One map leads from any
-// kind of depth to planar depth, the same on the host and in prepare.comp.
+// The reading of a frame: the windows of its planes, the meaning of their values, and its camera. One map leads from
+// any kind of depth to planar depth, the same on the host and in prepare.comp.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,7 +12,7 @@
 
 #include "core/base/image.h"
 #include "core/base/settings.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 namespace alcove {
 
@@ -28,7 +28,7 @@ struct DepthMap {
   double eye_distance = 0;
 };
 
-/// How far a planar depth z may be from the surface's: at[0] + at[1] z + at[2] z^2, scene units.
+/// The largest error of a planar depth z: at[0] + at[1] z + at[2] z^2, scene units.
 struct DepthPrecision {
   std::array<double, 3> at{};
 
@@ -38,8 +38,8 @@ struct DepthPrecision {
 /// With d the value and n, f the planes:
 /// planar z = d; ray: |position| = d; inverse z = 1/d; normalized z = n + d (f - n); log z = ((1 + C f)^d - 1) / C;
 /// device 1/z = 1/n - d (1/n - 1/f), of an orthographic camera z = n + d (f - n); position z = -(view z). `reversed`
-/// puts 1 - d for d, a device range of -1 to 1 (d + 1) / 2. Of device, normalized and log depth only what is strictly
-/// between 0 and 1 is a surface, but for normalized depth that goes on beyond its planes. Fails with
+/// puts 1 - d for d, a device range of -1 to 1 (d + 1) / 2. Device, normalized and log depth is a surface only if it is
+/// strictly between 0 and 1; normalized depth may go on beyond its planes. Fails with
 /// ErrorKind::usage where the kind needs a plane, a world matrix or a perspective that is not there.
 DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale,
                    double sky);
@@ -76,13 +76,13 @@ DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double
 
 // The whole reading.
 
-/// What the values mean, as options and headers say or as the pixels settle it. It is the same for all frames of a
+/// The meaning of the values, as options and headers say or as the pixels settle it. It is the same for all frames of a
 /// sequence.
 struct Meaning {
   DepthKind depth_kind = DepthKind::planar;  // not automatic
   DepthRange depth_range;
-  // How the depth values were rounded: to multiples of a step, 0: to none; and to this part of themselves, where that
-  // is more than their sample type does. See core/frame/flatness.h, and step_of().
+  // The rounding of depth values: to multiples of a step (0: to none), and to a part of themselves, if that is more
+  // than their sample type rounds. See Grain in core/frame/evidence.h, and step_of().
   double depth_step = 0, depth_rounding = 0;
   bool depth_is_coarse = false;                                // either is more than a 2^14th of the median value
   double found_sky = std::numeric_limits<double>::infinity();  // raw depth at or beyond it is sky, as the pixels show
@@ -97,10 +97,10 @@ struct Meaning {
   bool deep_is_whole = false;
 };
 
-/// One plane of depth behind the first surface.
+/// A plane of depth behind the first surface.
 struct BehindPlane {
   BehindKind kind = BehindKind::surfaces;
-  // how its values are read: automatic: as the frame's own depth; or planar or ray depth, times the scale
+  // of its values: automatic, as the frame's own depth is read; or planar or ray, times the scale
   DepthKind depth_kind = DepthKind::automatic;
   double scale = 1;      // scene units per unit; with planar and ray
   bool is_half = false;  // the values were rounded to half floats
@@ -110,21 +110,21 @@ struct BehindPlane {
 /// Whether planes together show all that is hidden: a pixel that has fewer surfaces than planes has no more of them.
 bool list_all(std::span<const BehindPlane> planes);
 
-/// What the planes of a matte hold.
+/// The content of a matte's planes.
 enum class MatteKind {
-  coverage,  // how much of each pixel it takes, 0 to 1
+  coverage,  // the part of each pixel that is selected, 0 to 1
   objects,   // the object of each pixel
   ranked,    // of Cryptomatte: an object and its coverage, and again for each further rank
 };
-/// How the planes of RawPlane::matte are read, or those of RawPlane::occluders.
+/// The reading of the planes of RawPlane::matte or RawPlane::occluders.
 struct MatteReading {
   MatteKind kind = MatteKind::coverage;
-  std::vector<std::uint32_t> objects = {};  // those that are meant, by the bits of their floats
-  double outside = 1;                       // the AO where it takes nothing, 0 to 1
-  bool ignores = false;                     // of occluders: what it takes is none; else all others are none
+  std::vector<std::uint32_t> objects = {};  // that are selected, by the bits of their floats
+  double outside = 1;                       // the AO where nothing is selected, 0 to 1
+  bool ignores = false;                     // of occluders: the selected ones are none; else all others are none
 };
 
-/// How a light of the planes of RawPlane::indirect is read: see composite.comp.
+/// The reading of a light of the planes of RawPlane::indirect: see composite.comp.
 struct AmbientReading {
   double weight = 1;
   int color = -1;  // of those in RawPlane::diffuse_color, which multiplies it; below 0: none
@@ -134,7 +134,7 @@ struct AmbientReading {
 struct Reading : Meaning {
   Window data;  // of the planes
   Window display;
-  // px for each of the picture that is written, in x and in y: what is written is filtered to those
+  // px, in x and in y, per pixel of the picture that is written; results are filtered down to it
   int supersampling = 1;
   double pixel_aspect = 1;          // width / height of a pixel
   Camera camera;                    // for the display window
@@ -146,9 +146,9 @@ struct Reading : Meaning {
   std::vector<AmbientReading> ambient;  // the lights that AO may dim; none: it dims the whole beauty
 };
 
-/// The same reading of a part of the frame.
+/// Gives the same reading for a part of the frame.
 Reading over(Reading reading, const Window& window);
-/// The projection over a part of the frame.
+/// Gives the projection over a part of the frame.
 View view_of(const Reading& reading, const Window& window);
 
 /// The part of the picture that is written for a part of the frame: see core/base/image.h.
@@ -165,18 +165,18 @@ constexpr double kLargestHalf = 65504;
 /// sky. Fails as depth_map() does.
 DepthMap depth_map_of(const Reading& reading);
 
-/// The map of a plane behind the first surface to planar depth, of a thickness to a length. Where the frame's own depth
-/// is neither planar nor along the ray a thickness is a planar length in the file's units, and so is what lies behind
+/// Gives the map of a plane behind the first surface to planar depth, of a thickness to a length. If the frame's own
+/// depth is neither planar nor along the ray, a thickness is a planar length in the file's units; so are planes behind
 /// positions. Fails as depth_map() does.
 DepthMap behind_map_of(const Reading& reading, const BehindPlane& plane);
 
-/// How far any depth may be from its surface's, of the first surface and of those behind it.
+/// The largest error of any depth, of the first surface and of those behind it.
 DepthPrecision hidden_precision_of(const Reading& reading);
 
 /// Whether depth values are too coarse for the normals of depth to be exact.
 bool has_coarse_depth(const Reading& reading);
 
-/// How far the planar depth that the map gives may be from the surface's.
+/// The largest error of the planar depth that the map gives.
 DepthPrecision depth_precision_of(const Reading& reading);
 
 /// Depth and normals of one frame, rows from the top, over the data window.

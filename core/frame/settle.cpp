@@ -12,14 +12,21 @@
 #include "core/base/text.h"
 #include "core/formats/exr.h"
 #include "core/frame/behind.h"
-#include "core/frame/flatness.h"
+#include "core/frame/evidence.h"
+#include "core/frame/position_pass.h"
 #include "core/frame/radius.h"
-#include "core/frame/sampling.h"
 
 namespace alcove {
 
-Settlement::Settlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, RawPlane about)
-    : source_(source), settings_(settings), raw_(raw), view_(view_of(source.reading, raw.window)), about_(about) {}
+Settlement::Settlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen,
+                       RawPlane about)
+    : source_(source),
+      reading_(source.reading),
+      settings_(settings),
+      raw_(raw),
+      seen_(seen),
+      view_(view_of(source.reading, raw.window)),
+      about_(about) {}
 
 void Settlement::note(NoteCode code, std::string text) {
   source_.notes.push_back({code, std::move(text), about_ == RawPlane::normal ? source_.normal_file() : ""});
@@ -27,7 +34,7 @@ void Settlement::note(NoteCode code, std::string text) {
 
 void Settlement::take_down(const std::string& what, const std::string& chosen, const std::string& why,
                            const std::string& option, bool unusual, bool proven) {
-  source_.evidence.guesses.push_back({what, chosen, why, option});
+  seen_.guesses.push_back({what, chosen, why, option});
   if (unusual)
     note(proven ? NoteCode::proven_reading : NoteCode::unusual_reading,
          fmt::format("{} taken as {}: {} ({} says otherwise)", what, chosen, why, option));
@@ -41,7 +48,7 @@ void Settlement::guess(const std::string& what, const std::string& chosen, const
   take_down(what, chosen, why, option, unusual, proven);
 }
 
-// What harms AO.
+// Faults that harm AO.
 
 namespace {
 
@@ -131,8 +138,8 @@ Notes letterbox(const FrameSource& source, const RawPart& raw) {
     if (border(!columns, false).empty > 0 || border(!columns, true).empty > 0) continue;
     return {{NoteCode::letterbox_bars,
              fmt::format("the first {} and the last {} {} are empty: they look like bars around the picture, and count "
-                         "as sky, so that AO next to them is too light; crop the file to the data window of what is "
-                         "left, and keep its display window",
+                         "as sky, so that AO next to them is too light; crop the data window of the file to the "
+                         "picture between them, and keep its display window",
                          first.empty, last.empty, columns ? "columns" : "rows")}};
   }
   return {};
@@ -149,11 +156,11 @@ Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
   const double unit = source.reading.normal_unorm ? s.unorm_unit_share : s.unit_share;
   if (!s.count || unit >= 1 - kMostShortened) return {};
   if (!source.reading.normal_unorm && s.usual_share > 1 - kMostOfOtherLength)
-    return {{NoteCode::scaled_normals,
-             fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO takes their direction "
-                         "alone",
-                         s.usual_length, 100 * s.usual_share),
-             source.normal_file()}};
+    return {
+        {NoteCode::scaled_normals,
+         fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO uses their direction only",
+                     s.usual_length, 100 * s.usual_share),
+         source.normal_file()}};
   const bool is_usual = source.program.rules->normal_averaged;
   return {{is_usual ? NoteCode::averaged_normals : NoteCode::shortened_normals,
            fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over the pixel, at edges "
@@ -162,7 +169,7 @@ Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
            source.normal_file()}};
 }
 
-/// What DWA has quantized, and where files end too early.
+/// Channels that DWA has quantized, and files that end too early.
 Notes damage(FrameSource& source) {
   Notes found;
   std::vector<std::set<int>> needed(source.files.size());
@@ -184,7 +191,7 @@ Notes damage(FrameSource& source) {
 /// Windows that are not those of the depth.
 Notes windows(const FrameSource& source) {
   Notes found;
-  for (const auto& part : source.files[source.channels[RawPlane::depth][0].file].parts())
+  for (const auto& part : source.file_of(source.channels[RawPlane::depth][0]).parts())
     if (part.data != source.reading.data) {
       found.push_back({NoteCode::windows_differ, fmt::format("part {} is {}, and the depth is {}", part.name,
                                                              to_string(part.data), to_string(source.reading.data))});
@@ -319,18 +326,17 @@ void note_jitter(FrameSource& source, const RawPart& raw, const Grain& grain) {
                    *jitter)});
 }
 
-/// What depth and normals are, by the camera as it is.
-void settle_meaning(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
-  settle_depth(source, settings, raw);
+/// Settles depth and normals by the camera as it is.
+void settle_meaning(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
+  settle_depth(source, settings, raw, seen);
   settle_deep(source, raw);
   if (source.channels[RawPlane::normal].empty())
     note_centre(source);
   else
-    settle_normals(source, settings, raw);
+    settle_normals(source, settings, raw, seen);
 }
 
-/// As many rows from the middle of a frame as have room in so many bytes, twice: as they are read, and what is made
-/// of them.
+/// Gives as many rows from the middle of a frame as fit into so many bytes twice: as they are read, and their results.
 Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
   constexpr std::uint64_t kLeastPixels = 1 << 18;  // fewer tell too little
   const Window& data = source.reading.data;
@@ -343,14 +349,14 @@ Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
 
 }  // namespace
 
-void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
-  Grain& grain = source.evidence.grain;
+void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
+  Grain& grain = seen.grain;
   refuse_8_bits(source, raw.depth);
   if (source.channels[RawPlane::depth].size() == 1) grain = grain_of(raw.depth, settings.sky);
   measure_grain(source, grain, raw.depth);
   const std::string refutation = settle_camera(source, settings);
   try {
-    settle_meaning(source, settings, raw);
+    settle_meaning(source, settings, raw, seen);
   } catch (const Error& error) {
     // By a wrong lens anything may look wrong.
     if (refutation.empty()) throw;
@@ -361,9 +367,14 @@ void settle(FrameSource& source, const InputSettings& settings, const RawPart& r
   note_jitter(source, raw, grain);
   Reading& reading = source.reading;
   if (is_between_planes(reading.depth_kind)) reading.depth_step = std::max(reading.depth_step, step_of(raw.depth));
-  source.evidence.median_depth = median_depth(over(reading, raw.window), raw.depth);
+  seen.median_depth = median_depth(over(reading, raw.window), raw.depth);
   std::ranges::move(findings(source, raw), std::back_inserter(source.suspicious));
-  source.settled = true;
+}
+
+void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
+  Evidence seen;
+  settle(source, settings, raw, seen);
+  source.evidence = std::move(seen);
 }
 
 void settle_by_planes(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
@@ -381,7 +392,7 @@ void settle_by_rows(FrameSource& source, const InputSettings& settings, std::uin
     fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device", source.depth_path(),
          rows.width);
   const RawFrame raw = read_raw_frame(source, rows);
-  settle(source, settings, {rows, raw.depth, raw.normal});
+  settle(source, settings, raw);
 }
 
 HostFrame read_host_frame(const InputSettings& settings, int number) {
@@ -389,7 +400,7 @@ HostFrame read_host_frame(const InputSettings& settings, int number) {
   const Window& data = source.reading.data;
   require_host_room(source.depth_path(), data);
   RawFrame raw = read_raw_frame(source, data);
-  settle(source, settings, {data, raw.depth, raw.normal});
+  settle(source, settings, raw);
   return {source.reading, std::move(raw.depth), std::move(raw.normal), {}, number};
 }
 
@@ -398,7 +409,8 @@ bool settle_like(FrameSource& source, const FrameSource& settled) {
     if (source.channels[plane].size() != settled.channels[plane].size()) return false;
   read_like(source.reading, settled.reading);
   read_deep_like_meaning(source);
-  return source.settled = true;
+  source.evidence = settled.evidence;
+  return true;
 }
 
 }  // namespace alcove

@@ -9,17 +9,16 @@
 
 #include "core/base/error.h"
 #include "core/base/option_words.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/evidence.h"
-#include "core/frame/sampling.h"
 #include "core/frame/settle.h"
 
 namespace alcove {
 namespace {
 
-// What was done to normals that have the lengths of no vectors.
+// Alterations of normals that left them with the lengths of no vectors.
 
-/// Of so many normals undoing the alteration must make vectors.
+/// Undoing the alteration must make vectors of this share of the normals.
 constexpr double kProven = 0.9;
 
 // The curve of sRGB, which goes on below 0 with the other sign.
@@ -40,7 +39,7 @@ std::vector<float> sparse(std::span<const float> planes, std::size_t pixels) {
   return some;
 }
 
-/// Gives what was done to signed normals or to 0.5 + 0.5 n if undoing it gives nearly all of them unit length: a
+/// Names the alteration of signed normals or of 0.5 + 0.5 n if undoing it gives nearly all of them unit length: a
 /// picture's curve, or an exposure. It ends a sentence that begins with "they look like". `normal` has three planes.
 std::optional<std::string> alteration_of(std::span<const float> normal, std::span<const float> raw,
                                          const DepthMap& map) {
@@ -66,13 +65,13 @@ std::optional<std::string> alteration_of(std::span<const float> normal, std::spa
 
 // The mistakes that cameras come with, each undone.
 
-/// A camera that was tried: what is wrong with the one that was given if this one is right, and its score.
+/// A camera that was tried, its score, and the fault of the given camera if this one is right.
 struct OtherCamera {
   std::string what;  // a sentence that says what to do, without a full stop
   NormalScore score;
 };
 
-/// Of the picture's width or height: a principal point that far from the centre is no rounding.
+/// A principal point that far from the centre is no rounding. Part of the picture's width or height.
 constexpr double kOffCentre = 0.02;
 
 struct Hypothesis {
@@ -228,7 +227,7 @@ std::optional<OtherCamera> best_other_width(const NormalPlanes& planes, const No
 
 // The normals.
 
-/// Where the normals agree with depth less than this part of the best agreement, another reading of them is chosen, or
+/// If the normals agree with depth less than this part of the best agreement, another reading of them is chosen or
 /// noted.
 constexpr double kNoBetter = 0.95;
 /// Degrees. If the best quarter of the normals is farther off than this, normals and depth are of different cameras or
@@ -257,8 +256,8 @@ constexpr double kBelowZero = -1.0 / 256, kLeastNeeded = 0.02, kLeastCut = 0.8;
 
 class NormalSettlement : private Settlement {
  public:
-  NormalSettlement(FrameSource& source, const InputSettings& settings, const RawPart& raw)
-      : Settlement(source, settings, raw, RawPlane::normal) {}
+  NormalSettlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen)
+      : Settlement(source, settings, raw, seen, RawPlane::normal) {}
 
   void run() {
     settle_encoding();
@@ -279,56 +278,55 @@ class NormalSettlement : private Settlement {
 
   void settle_encoding() {
     const bool is_open = source_.open.normal_encoding;
-    const NormalStatistics n = normal_statistics(raw_.normal, raw_.depth, depth_map_of(source_.reading), kSparse);
+    const NormalStatistics n = normal_statistics(raw_.normal, raw_.depth, depth_map_of(reading_), kSparse);
     if (!is_open) doubt_encoding(n);
-    has_any_ = n.count > 0 || normal_statistics(raw_.normal, raw_.depth, depth_map_of(source_.reading)).count > 0;
+    has_any_ = n.count > 0 || normal_statistics(raw_.normal, raw_.depth, depth_map_of(reading_)).count > 0;
     has_negative_ = n.least < kBelowZero;
     const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
-    const NormalEncoding said = source_.reading.normal_encoding;
+    const NormalEncoding said = reading_.normal_encoding;
     std::string why = source_.channels[RawPlane::normal].size() == 2
                           ? fmt::format("all in {:.2g} to {:.2g}", n.least, n.most)
                           : fmt::format("of unit length on {:.0f} %", 100 * n.unit_share);
     if (said == NormalEncoding::octahedral || said == NormalEncoding::spheremap ||
         source_.channels[RawPlane::normal].size() == 2) {
-      source_.reading.normal_unorm =
+      reading_.normal_unorm =
           said == NormalEncoding::unorm || (in_unit_range && (is_open || said != NormalEncoding::signed_float));
     } else {
       const bool is_unorm =
           is_open && in_unit_range && n.unorm_unit_share > 0.5 && n.unit_share < 0.5 * n.unorm_unit_share;
       if (is_unorm)
         why = fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share);
-      source_.reading.normal_unorm = is_unorm || said == NormalEncoding::unorm;
+      reading_.normal_unorm = is_unorm || said == NormalEncoding::unorm;
     }
     if (has_lengths(source_)) refuse_altered(n);
-    const double unit = source_.reading.normal_unorm ? n.unorm_unit_share : n.unit_share;
-    const double otherwise = source_.reading.normal_unorm ? n.unit_share : n.unorm_unit_share;
+    const double unit = reading_.normal_unorm ? n.unorm_unit_share : n.unit_share;
+    const double otherwise = reading_.normal_unorm ? n.unit_share : n.unorm_unit_share;
     const bool tells = has_lengths(source_) && std::max(unit, otherwise) > kUnit;
     const bool differs = !tells && compare_encodings(in_unit_range, why);
     if (!is_open) return;
-    const std::string name = encoding_name(source_.reading.normal_encoding, source_.reading.normal_unorm);
+    const std::string name = encoding_name(reading_.normal_encoding, reading_.normal_unorm);
     if (tells && unit > kUnit && otherwise < kNotUnit)
-      take_down("normal encoding", name, why, "--normal-encoding", source_.reading.normal_unorm, true);
+      take_down("normal encoding", name, why, "--normal-encoding", reading_.normal_unorm, true);
     else
-      guess("normal encoding", name, why, "--normal-encoding", differs || source_.reading.normal_unorm);
+      guess("normal encoding", name, why, "--normal-encoding", differs || reading_.normal_unorm);
   }
 
-  /// Refuses vectors whose lengths show that they went through what is made for colours.
+  /// Refuses vectors whose lengths show that they were treated as colours.
   void refuse_altered(const NormalStatistics& n) const {
     if (std::max(n.unit_share, n.unorm_unit_share) > kUnit || n.usual_share > kUnit) return;
-    if (const auto what = alteration_of(raw_.normal, raw_.depth, depth_map_of(source_.reading)))
+    if (const auto what = alteration_of(raw_.normal, raw_.depth, depth_map_of(reading_)))
       fail(ErrorKind::input, "{}: its normals ({}) are of unit length on {:.0f} % only: they look like {}; {}",
            normal_path(), channels(), 100 * n.unit_share, *what, kWithout);
   }
 
-  /// Takes normals without any component below 0 where by depth there should be some: what was lost is not in the file.
+  /// Takes normals without components below 0 if depth says that they lost some: the file does not hold the lost ones.
   /// Returns whether they are such.
   bool settle_cut(const std::vector<NormalScore>& scores) {
-    if (has_negative_ || !has_lengths(source_) || source_.reading.normal_unorm || source_.open.camera) return false;
+    if (has_negative_ || !has_lengths(source_) || reading_.normal_unorm || source_.open.camera) return false;
     const NormalScore* as = nullptr;
     CutScore best;
     for (const auto& score : scores) {
-      if (to_string(score.flips) != "none" ||
-          (!source_.open.normal_space && score.space != source_.reading.normal_space))
+      if (to_string(score.flips) != "none" || (!source_.open.normal_space && score.space != reading_.normal_space))
         continue;
       const auto cut = score_cut(score.space, planes());
       if (!cut || cut->needed < kLeastNeeded || std::max(cut->absolute, cut->clamped) < kLeastCut) continue;
@@ -344,7 +342,7 @@ class NormalSettlement : private Settlement {
         best.absolute > best.clamped ? "their absolute values were saved" : "values below 0 were cut off");
     if (as->explained() < kLeastAgreement) fail(ErrorKind::input, "{}: {}; {}", normal_path(), why, kWithout);
     if (source_.open.normal_space) {
-      source_.reading.normal_space = as->space;
+      reading_.normal_space = as->space;
       guess("normal space", word_of(as->space), text_of(*as), "--normal-space", false);
     }
     note(NoteCode::cut_normals, why + "; " + kWithout);
@@ -362,7 +360,7 @@ class NormalSettlement : private Settlement {
   /// If the normals do not agree with depth, and do so much better in another encoding, that one is chosen where nobody
   /// says one, and else noted. Returns whether it was chosen.
   bool compare_encodings(bool in_unit_range, std::string& why) {
-    const auto scores = scores_of(source_.reading.normal_encoding, source_.reading.normal_unorm);
+    const auto scores = scores_of(reading_.normal_encoding, reading_.normal_unorm);
     if (scores.empty() || agrees(scores[0])) return false;
     std::optional<std::pair<NormalEncoding, double>> best;
     for (const auto encoding : {NormalEncoding::signed_float, NormalEncoding::octahedral, NormalEncoding::spheremap}) {
@@ -376,14 +374,13 @@ class NormalSettlement : private Settlement {
         "as {} the best quarter of the normals agrees with depth within {:.1f} degrees, as {} within {:.1f}, and "
         "{:.0f} % agree at all",
         encoding_name(best->first, in_unit_range), best->second,
-        encoding_name(source_.reading.normal_encoding, source_.reading.normal_unorm), scores[0].angle,
-        100 * scores[0].agreement);
+        encoding_name(reading_.normal_encoding, reading_.normal_unorm), scores[0].angle, 100 * scores[0].agreement);
     if (!source_.open.normal_encoding) {
       note(NoteCode::said_otherwise, why + ": is --normal-encoding right?");
       return false;
     }
-    source_.reading.normal_encoding = best->first;
-    source_.reading.normal_unorm = in_unit_range;
+    reading_.normal_encoding = best->first;
+    reading_.normal_unorm = in_unit_range;
     return true;
   }
 
@@ -392,27 +389,27 @@ class NormalSettlement : private Settlement {
     if (source_.channels[RawPlane::normal].size() != 3) return;
     const bool is_signed = n.unit_share > kUnit && n.unorm_unit_share < kNotUnit;
     const bool is_unorm = n.unorm_unit_share > kUnit && n.unit_share < kNotUnit;
-    if (is_signed && source_.reading.normal_encoding != NormalEncoding::signed_float)
+    if (is_signed && reading_.normal_encoding != NormalEncoding::signed_float)
       note(NoteCode::said_otherwise,
            fmt::format("the normals are signed vectors by their lengths (of 1 on {:.0f} %), and --normal-encoding or "
                        "the camera file says otherwise",
                        100 * n.unit_share));
-    if (is_unorm && source_.reading.normal_encoding == NormalEncoding::signed_float)
+    if (is_unorm && reading_.normal_encoding == NormalEncoding::signed_float)
       note(NoteCode::said_otherwise,
            fmt::format("2 n - 1 of the normals is of unit length on {:.0f} %: are they unorm (--normal-encoding)?",
                        100 * n.unorm_unit_share));
   }
 
-  NormalPlanes planes() const { return {over(source_.reading, raw_.window), raw_.normal, raw_.depth}; }
+  NormalPlanes planes() const { return {over(reading_, raw_.window), raw_.normal, raw_.depth}; }
 
   void settle_space() {
-    const bool has_world = source_.reading.camera.view_from_world.has_value();
+    const bool has_world = reading_.camera.view_from_world.has_value();
     // The usual reading, and that of view space where the camera knows no world.
     const bool has_usual = has_world || source_.program.normal_space == NormalSpace::view;
     if (!has_any_) {
-      source_.evidence.tells = false;
+      seen_.tells = false;
       if (source_.open.normal_space)
-        source_.reading.normal_space = has_usual ? source_.program.normal_space : NormalSpace::view;
+        reading_.normal_space = has_usual ? source_.program.normal_space : NormalSpace::view;
       return;
     }
     const auto all_scores = score_normals(planes());
@@ -425,10 +422,10 @@ class NormalSettlement : private Settlement {
         score_of(scores, has_usual ? source_.program.normal_space : NormalSpace::view, settings_.flip_normal);
     const bool tells = plain && best_of(scores).explained() >= kLeastAgreement;
     if (!tells) {
-      source_.evidence.tells = false;
+      seen_.tells = false;
       if (!has_usual) refuse_without_matrix(scores);
-      source_.reading.normal_space = source_.program.normal_space;
-      guess("normal space", word_of(source_.reading.normal_space), "the frame does not tell", "--normal-space", false);
+      reading_.normal_space = source_.program.normal_space;
+      guess("normal space", word_of(reading_.normal_space), "the frame does not tell", "--normal-space", false);
       return doubt_normals(all_scores);
     }
     const bool is_plain = explains(*plain, scores);
@@ -444,10 +441,10 @@ class NormalSettlement : private Settlement {
 
   /// Takes a reading, and says so where it is not the usual one, or where no matrix would turn normals of the world.
   void take(const NormalScore& score, const std::string& why, bool has_world) {
-    source_.reading.normal_space = score.space;
-    source_.reading.flip_normal = score.flips;
+    reading_.normal_space = score.space;
+    reading_.flip_normal = score.flips;
     const bool is_flipped = to_string(score.flips) != to_string(settings_.flip_normal);
-    const bool is_proven = score.close > kUnit && !has_coarse_depth(source_.reading);
+    const bool is_proven = score.close > kUnit && !has_coarse_depth(reading_);
     guess("normal space", word_of(score.space), why,
           is_flipped || !has_world ? "--normal-space with --flip-normal" : "--normal-space",
           score.space != source_.program.normal_space || is_flipped, is_proven);
@@ -493,7 +490,7 @@ class NormalSettlement : private Settlement {
   /// Whether one reading has nothing of a turn that the normals as a whole have by the other, as those of a camera that
   /// is turned by little have in the wrong space.
   bool is_straighter(const NormalScore& score, const NormalScore& other) const {
-    const double least = !has_coarse_depth(source_.reading) ? kLeastTurn : kLeastTurnOfHalf;
+    const double least = !has_coarse_depth(reading_) ? kLeastTurn : kLeastTurnOfHalf;
     return other.turn_degrees() > least && kClear * score.turn_degrees() < other.turn_degrees() &&
            score.explained() >= kNoBetter * other.explained();
   }
@@ -512,11 +509,11 @@ class NormalSettlement : private Settlement {
         word_of(other.space), other.turn_degrees(), word_of(chosen.space), chosen.turn_degrees());
   }
 
-  /// Where no matrix places the camera, tells whether normals that are read in view space are those of a world in which
-  /// it is turned by little.
+  /// Tells whether normals that are read in view space are those of a world in which the camera is turned by little, if
+  /// no matrix places it.
   std::optional<std::string> turned_world(const NormalScore& score) const {
-    const double least = !has_coarse_depth(source_.reading) ? kClearTurn : kLeastTurnOfHalf;
-    if (source_.reading.camera.view_from_world || score.space != NormalSpace::view || score.turn_degrees() < least)
+    const double least = !has_coarse_depth(reading_) ? kClearTurn : kLeastTurnOfHalf;
+    if (reading_.camera.view_from_world || score.space != NormalSpace::view || score.turn_degrees() < least)
       return std::nullopt;
     const auto turned = slightly_turned_camera(planes(), score);
     if (!turned) return std::nullopt;
@@ -537,7 +534,7 @@ class NormalSettlement : private Settlement {
     fail(
         ErrorKind::input,
         "{}: {:.0f} % of its normals at most agree with depth in view space; those of world space need a --camera file "
-        "with world_to_camera; where they are in view space, {}; {}",
+        "with world_to_camera; if they are in view space, {}; {}",
         normal_path(), scores.empty() ? 0 : 100 * scores[0].agreement, kCheck, kWithout);
   }
 
@@ -547,10 +544,10 @@ class NormalSettlement : private Settlement {
                        s.opposite < 0.005 ? "" : fmt::format(", {:.0f} % are opposite to depth", 100 * s.opposite));
   }
 
-  /// Notes where depth speaks against the normals as they are read, and refuses what it refutes.
+  /// Notes normals that depth speaks against, and refuses normals that it refutes.
   void doubt_normals(const std::vector<NormalScore>& scores) {
     if (source_.open.camera) return;
-    const NormalScore* chosen = score_of(scores, source_.reading.normal_space, source_.reading.flip_normal);
+    const NormalScore* chosen = score_of(scores, reading_.normal_space, reading_.flip_normal);
     if (!chosen) return;
     const NormalScore* straighter = straighter_than(*chosen, scores);
     if (straighter)
@@ -569,7 +566,7 @@ class NormalSettlement : private Settlement {
                                                    100 * chosen->agreement, text_of(*chosen), kCheck));
     else if (const auto turned = turned_world(*chosen))
       note(NoteCode::normals_disagree, fmt::format("{} ({})", *turned, kSpaceOptions));
-    else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(source_.reading))
+    else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(reading_))
       note(NoteCode::normals_disagree,
            fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
                        chosen->angle, kCheck));
@@ -580,11 +577,10 @@ class NormalSettlement : private Settlement {
     const auto other = std::ranges::find_if(
         scores, [&](const auto& s) { return s.space == chosen.space && s.agreement >= kAsMany * chosen.explained(); });
     if (other == scores.end() || chosen.agreement >= kAsMany * other->agreement) return;
-    note(
-        NoteCode::turned_normals,
-        fmt::format("{:.0f} % of the normals are opposite to depth and are turned round, as for mirrored things; where "
-                    "an axis of all normals is flipped, as DirectX has it, give --flip-normal {}",
-                    100 * chosen.opposite, to_string(other->flips)));
+    note(NoteCode::turned_normals,
+         fmt::format("{:.0f} % of the normals are opposite to depth and are turned round, as for mirrored things; if "
+                     "an axis of all normals is flipped, as in DirectX, give --flip-normal {}",
+                     100 * chosen.opposite, to_string(other->flips)));
   }
 
   /// Whether one camera fits so much better than another that it is no chance.
@@ -602,7 +598,7 @@ class NormalSettlement : private Settlement {
     if (best.agreement >= kLeastAgreement && best.agreement > kClear * chosen.agreement)
       fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
-    if (chosen.explained() < kRefuted && !has_coarse_depth(source_.reading))
+    if (chosen.explained() < kRefuted && !has_coarse_depth(reading_))
       fail(ErrorKind::input, "{}, nor in any other space: {}; {}", read, kCheck, kWithout);
   }
 
@@ -622,7 +618,7 @@ class NormalSettlement : private Settlement {
 
   /// Refuses a principal point that fits elsewhere, and says where no pixel can tell.
   void doubt_centre(const NormalScore& chosen) {
-    if (!is_off_centre(source_.reading.camera)) return;
+    if (!is_off_centre(reading_.camera)) return;
     const auto other = best_other_point(planes(), chosen);
     if (!other) return;
     if (is_sharper(other->score, chosen))
@@ -684,7 +680,7 @@ const char* encoding_name(NormalEncoding encoding, bool unorm) {
 }
 
 void note_centre(FrameSource& source) {
-  // What a renderer writes into headers is its own camera.
+  // A renderer writes its own camera into headers.
   if (source.open.camera || !source.camera_from.empty() || !is_off_centre(source.reading.camera)) return;
   source.notes.push_back(
       {NoteCode::principal_point,
@@ -694,8 +690,8 @@ void note_centre(FrameSource& source) {
                    source.reading.camera.height)});
 }
 
-void settle_normals(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
-  NormalSettlement(source, settings, raw).run();
+void settle_normals(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
+  NormalSettlement(source, settings, raw, seen).run();
 }
 
 }  // namespace alcove

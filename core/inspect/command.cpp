@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/base/text.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/evidence.h"
 #include "core/frame/radius.h"
 #include "core/frame/raw_plane.h"
@@ -110,7 +110,7 @@ std::string command_of(const FrameSource& source, const CommandNames& names, boo
   add_depth(command, source, settings);
   add_normals(command, source, settings, has_camera);
   add_camera(command, settings, has_camera);
-  if (const auto radius = proposed_radius(source.reading.camera, source.evidence.median_depth))
+  if (const auto radius = proposed_radius(source.reading.camera, source.evidence->median_depth))
     command.add("--radius", radius);
   else
     command.add("--radius RADIUS");

@@ -23,11 +23,11 @@ namespace {
 
 /// How the depth of a file's samples is read.
 std::string depth_of(const FrameSource& source, const ExrFile& file) {
-  const auto is_it = [&](std::size_t other) { return source.files[other].path() == file.path(); };
-  const auto is_element = [&](const auto& element) { return is_it(element.first); };
-  const bool is_taken = source.channels.deep && (is_it(source.channels.deep->file) ||
-                                                 std::ranges::any_of(source.channels.deep->elements, is_element));
-  if (!is_taken || !source.settled) return "";
+  const auto is_it = [&](const DeepFiles::Element& element) {
+    return source.files[element.file].path() == file.path();
+  };
+  const bool is_taken = source.channels.deep && std::ranges::any_of(source.channels.deep->elements, is_it);
+  if (!is_taken || !source.evidence) return "";
   const ChannelRef& own = source.channels[RawPlane::depth][0];
   if (source.part_of(own).deep) return "the depth of the frame";
   const DepthKind kind =
@@ -183,6 +183,7 @@ struct Inspector {
   std::optional<FrameSource> known;  // the same frame, where it was found already
   FrameSource source = {};
   RawFrame raw = {};
+  Evidence seen = {};  // also where the frame is refused
   Inspection found = {};
 
   /// Adds those that can be opened: why others cannot is told.
@@ -261,7 +262,8 @@ struct Inspector {
   /// Settles what the pixels decide. A camera that nobody gave has nothing to say.
   void settle_frame() {
     const auto notes = source.notes;
-    settle(source, reading, {source.reading.data, raw.depth, raw.normal});
+    settle(source, reading, raw, seen);
+    source.evidence = seen;
     found.depth->kind = word_of(source.reading.depth_kind);
     if (has_camera) return;
     source.notes = notes;
@@ -279,12 +281,12 @@ struct Inspector {
   /// Whether it is known what the depth means, be it that the frame is refused for its normals.
   bool knows_depth() const {
     return !source.open.depth_kind ||
-           std::ranges::any_of(source.evidence.guesses, [](const Guess& guess) { return guess.what == "depth kind"; });
+           std::ranges::any_of(seen.guesses, [](const Guess& guess) { return guess.what == "depth kind"; });
   }
 
   void describe() {
     found.depth->distances = distances_of(source, raw.depth);
-    found.depth->scores = source.evidence.depth_scores;
+    found.depth->scores = seen.depth_scores;
     look_at_normals();
   }
 
@@ -298,9 +300,9 @@ struct Inspector {
       found.missing.push_back(error.what());
       describe_refused();
     }
-    found.shows_surfaces = source.evidence.tells;
+    found.shows_surfaces = seen.tells;
     found.suspicious = source.suspicious;
-    found.guesses = source.evidence.guesses;
+    found.guesses = seen.guesses;
     found.notes = source.notes;
   }
 
@@ -332,7 +334,7 @@ struct Inspector {
         if (auto deep = deep_samples(source, file, settings)) found.deep.push_back(std::move(*deep));
         // Those of several files together show more than each does.
         if (!found.deep.empty() && found.deep.back().file == file.path() &&
-            (!source.channels.deep || source.channels.deep->elements.empty()))
+            (!source.channels.deep || source.channels.deep->elements.size() == 1))
           leave_out_empty(found.deep.back());
       } catch (const Error& error) {
         found.suspicious.push_back({NoteCode::damaged_file, error.what()});

@@ -189,8 +189,8 @@ class SequenceInspector {
       require_host_room(source.depth_path(), source.reading.data);
       const RawFrame raw = read_raw_frame(source, source.reading.data);
       const InputSettings settings = plan_.at(frame).input;
-      settle(source, has_camera_ ? settings : with_some_camera(settings), {source.reading.data, raw.depth, raw.normal});
-      if (has_camera_ && source.evidence.tells) take("reading", reading_of(source), frame);
+      settle(source, has_camera_ ? settings : with_some_camera(settings), raw);
+      if (has_camera_ && source.evidence->tells) take("reading", reading_of(source), frame);
       for (const auto& note : source.suspicious) suspicious_[facts_of(note.code).meaning].insert(frame);
       shown_.depth.push_back({frame, distances_of(source, raw.depth)});
     } catch (const Error& error) {

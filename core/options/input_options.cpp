@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/text.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/input_rules.h"
 #include "core/frame/raw_plane.h"
 #include "core/options/options.h"

@@ -119,8 +119,8 @@ std::optional<double> FirstLook::radius_of_first(std::optional<Error>& error) {
     try {
       FrameSource& source = opened(frame);
       const InputSettings input = plan().at(frame).input;
-      if (!source.settled) settle_by_rows(source, lacks_camera_ ? with_some_camera(input) : input);
-      if (const auto radius = proposed_radius(source.reading.camera, source.evidence.median_depth)) return radius;
+      if (!source.evidence) settle_by_rows(source, lacks_camera_ ? with_some_camera(input) : input);
+      if (const auto radius = proposed_radius(source.reading.camera, source.evidence->median_depth)) return radius;
     } catch (const Error& failure) {
       opened_.erase(frame);  // which may be settled in part
       if (!error) error = failure;
@@ -195,9 +195,9 @@ std::optional<FrameSource> FirstLook::settle(std::uint64_t most_bytes) {
   for (const int frame : plan().evidence()) {
     try {
       FrameSource& source = opened(frame);
-      if (!source.settled) settle_by_rows(source, plan().at(frame).input, most_bytes);
-      if (!best || source.evidence.tells) best = frame;
-      if (source.evidence.tells) break;
+      if (!source.evidence) settle_by_rows(source, plan().at(frame).input, most_bytes);
+      if (!best || source.evidence->tells) best = frame;
+      if (source.evidence->tells) break;
     } catch (const Error&) {
       // The frame is computed like all others, and its report says then what is wrong with it.
       opened_.erase(frame);
@@ -206,7 +206,7 @@ std::optional<FrameSource> FirstLook::settle(std::uint64_t most_bytes) {
   }
   std::optional<FrameSource> settled;
   // A frame that shows nothing, such as one of sky, must not have others read that are refused by themselves.
-  if (best && (!is_refused || opened(*best).evidence.tells)) settled = std::move(opened(*best));
+  if (best && (!is_refused || opened(*best).evidence->tells)) settled = std::move(opened(*best));
   if (settled)
     for (auto& file : settled->files) file.close();
   opened_.clear();
@@ -244,7 +244,7 @@ std::string plan_text(FirstLook& look) {
 
   FrameSource source = look.open(first, plan.frames().front());
   // Frames of a sequence are read as one of them that shows enough.
-  if (!plan.is_sequence() && !source.settled)
+  if (!plan.is_sequence() && !source.evidence)
     settle_by_rows(source, first.input, memory_of_host(first.device).host_bytes);
   std::vector<std::string> channels;
   for (const auto& plane : source.channels.planes.entries)

@@ -435,7 +435,7 @@ void require_use_of_deep(const FrameSource& source, const EstimatorSettings& set
        "{}: beside a flat depth --deep applies to --estimator gtao or bitmask only: give one of these, or --set "
        "hidden=0, "
        "or leave --deep out",
-       source.files[source.channels.deep->file].path());
+       source.files[source.channels.deep->elements[0].file].path());
 }
 
 /// Fails with ErrorKind::input where a frame lacks what an output is made from.
@@ -515,7 +515,7 @@ void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& k
     }
     read_planes(source, source.reading.data, reads);
   }
-  if (!source.settled)
+  if (!source.evidence)
     settle_by_planes(source, settings.input, known[RawPlane::depth], known[RawPlane::normal], most_bytes);
 }
 
@@ -542,7 +542,7 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& wi
   for (const auto& row : kRawPlanes)
     if (planes[row.plane]) fill_missing(source, window, row.plane, values_of(row.plane));
   if (planes[RawPlane::beauty]) require_picture(source, window, values_of(RawPlane::beauty));
-  if (!source.settled)
+  if (!source.evidence)
     settle_by_planes(source, settings.input, values_of(RawPlane::depth), values_of(RawPlane::normal));
   FrameInputs inputs = inputs_of(over(source.reading, window), planes, frame);
   inputs.margin = margin_of(window, whole);

@@ -34,8 +34,8 @@ ReadPlanes kept_planes(const FrameInputs& inputs);
 /// Reads all planes where `known` are not all of them, and settles what is open about the frame, in so many bytes.
 void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& known, std::uint64_t most_bytes);
 
-/// Puts the planes over a window into upload buffers: from those of the whole frame that are known, where these are all,
-/// or else from the files. Settles what is open about the frame, which must be read whole then, and says what they mean.
+/// Puts the planes over a window into upload buffers: from `known`, if that is all planes of the whole frame, or else
+/// from the files. Settles what is open about the frame, which must be read whole then, and says what they mean.
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& window, const Settings& settings,
                        int frame, const ReadPlanes* known = nullptr);
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/png.h"
 #include "core/formats/sequence.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/settle.h"
 #include "tests/support/command_line.h"
 #include "tests/support/expect_error.h"

@@ -1,6 +1,6 @@
 // Camera files, cameras from numbers, and the projection that kernels are given.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 #include "tests/support/expect_error.h"
 #include "tests/support/program.h"

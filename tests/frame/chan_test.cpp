@@ -1,6 +1,6 @@
 // .chan files, as Blender's add-on writes them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 #include "tests/support/command_line.h"
 #include "tests/support/expect_error.h"
 

@@ -155,7 +155,7 @@ TEST_F(Doubts, an_option_says_that_it_is_known) {
   set_range(DepthKind::normalized, 0, 100, true);
   write_depth(falling, 0);
   expect(Reply::silent);
-  EXPECT_NEAR(*settled().evidence.median_depth, 4.5, 1) << "distances, and not fractions";
+  EXPECT_NEAR(*settled().evidence->median_depth, 4.5, 1) << "distances, and not fractions";
 }
 
 TEST_F(Doubts, options_that_the_kind_of_depth_takes_not_are_refused_and_named_but_those_of_presets_are_left_out) {

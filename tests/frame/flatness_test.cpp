@@ -1,6 +1,6 @@
 // What depth means is judged by flat surfaces, however coarsely their depth is stored; noise and steps are measured.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/flatness.h"
+#include "core/frame/evidence.h"
 #include "tests/support/test.h"
 
 namespace alcove::flatness_test {

@@ -1,6 +1,6 @@
 // Cameras in the headers of frames: standard attributes, matrices, and matrices without a projection.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/header_camera.h"
+#include "core/frame/camera/camera.h"
 #include "tests/support/source_frame.h"
 
 namespace alcove::header_camera_test {

@@ -93,7 +93,7 @@ TEST_F(NormalFiles, of_the_other_side_of_some_things_leave_the_reading_as_it_is)
 TEST_F(NormalFiles, that_are_all_zero_decide_nothing) {
   write([](Vec3, const test::Hit&) { return Vec3{}; });
   EXPECT_EQ(settled().reading.normal_space, NormalSpace::world) << "the usual one";
-  EXPECT_FALSE(settled().evidence.tells) << "so that a sequence is read as a later frame";
+  EXPECT_FALSE(settled().evidence->tells) << "so that a sequence is read as a later frame";
   leave_camera_out();
   EXPECT_EQ(settled().reading.normal_space, NormalSpace::view) << "without a matrix";
 }

@@ -15,12 +15,12 @@ FrameSource frame_at(double median, double fx, bool orthographic = false) {
   source.reading.camera.width = source.reading.camera.height = 100;
   source.reading.camera.fx = source.reading.camera.fy = fx;
   source.reading.camera.orthographic = orthographic;
-  source.evidence.median_depth = median;
+  source.evidence.emplace().median_depth = median;
   return source;
 }
 
 std::optional<double> radius_of(const FrameSource& source) {
-  return proposed_radius(source.reading.camera, source.evidence.median_depth);
+  return proposed_radius(source.reading.camera, source.evidence->median_depth);
 }
 
 TEST(Radius, is_a_tenth_of_the_distance_by_one_figure_but_no_more_than_a_quarter_of_what_is_seen) {
@@ -33,7 +33,7 @@ TEST(Radius, is_a_tenth_of_the_distance_by_one_figure_but_no_more_than_a_quarter
 
 TEST(Radius, needs_a_surface) {
   FrameSource source = frame_at(1, 100);
-  source.evidence.median_depth = std::nullopt;
+  source.evidence->median_depth = std::nullopt;
   EXPECT_EQ(radius_of(source), std::nullopt);
 }
 
@@ -48,12 +48,12 @@ TEST(Radius, of_a_settled_frame_follows_its_surfaces_alone) {
   file.write(settings.input);
   write_bytes(settings.camera, wall_camera().dump());
   const FrameSource source = settled(settings);
-  ASSERT_TRUE(source.evidence.median_depth);
-  EXPECT_GT(*source.evidence.median_depth, 1.5);
-  EXPECT_LE(*source.evidence.median_depth, 6);
+  ASSERT_TRUE(source.evidence->median_depth);
+  EXPECT_GT(*source.evidence->median_depth, 1.5);
+  EXPECT_LE(*source.evidence->median_depth, 6);
   for (auto& z : depth) z = 1e10f;
   file.write(settings.input);
-  EXPECT_EQ(settled(settings).evidence.median_depth, std::nullopt);
+  EXPECT_EQ(settled(settings).evidence->median_depth, std::nullopt);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // Cameras are found from the points that they see.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/resection.h"
+#include "core/frame/camera/resection.h"
 
-#include "core/frame/panorama.h"
+#include "core/formats/exr.h"
 #include "core/inspect/inspect.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"

@@ -5,8 +5,8 @@
 
 #include "core/base/half.h"
 #include "core/formats/exr.h"
-#include "core/frame/camera.h"
-#include "core/frame/linear.h"
+#include "core/frame/camera/camera.h"
+#include "core/frame/camera/linear.h"
 #include "tests/support/difference.h"
 #include "tests/support/program.h"
 #include "tests/support/wall_frame.h"

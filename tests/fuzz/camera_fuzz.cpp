@@ -1,6 +1,6 @@
 // Camera JSON, with the projection that kernels get.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 #include <cmath>
 

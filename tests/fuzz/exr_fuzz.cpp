@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/frame/header_camera.h"
+#include "core/frame/camera/camera.h"
 #include "core/frame/input_rules.h"
 #include "tests/fuzz/fuzz.h"
 

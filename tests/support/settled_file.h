@@ -13,11 +13,7 @@ namespace alcove::test {
 /// say. Fails as these steps do.
 inline FrameSource settled(const InputSettings& settings) {
   FrameSource source = find_frame(settings, false, 0);
-  std::vector<float> depth(source.channels[RawPlane::depth].size() * source.reading.data.pixels()),
-      normal(source.channels[RawPlane::normal].size() * source.reading.data.pixels());
-  read_planes(source, source.reading.data,
-              {{&source.channels[RawPlane::depth], depth.data()}, {&source.channels[RawPlane::normal], normal.data()}});
-  settle(source, settings, {source.reading.data, depth, normal});
+  settle(source, settings, read_raw_frame(source, source.reading.data));
   return source;
 }
 

@@ -11,7 +11,7 @@
 #include "core/base/settings.h"
 #include "core/chain/base/planes.h"
 #include "core/chain/results/debug.h"
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 namespace alcove {
 

@@ -1,15 +1,16 @@
-// One projection model: pixel <-> view ray, from a camera JSON file, a .chan file, or numbers.
+// The camera of a frame, pixel <-> view ray, from a camera JSON file, a .chan file, a header, or numbers.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 
 #include "core/base/error.h"
 #include "core/base/image.h"
 #include "core/base/settings.h"
-#include "core/frame/linear.h"
+#include "core/frame/camera/linear.h"
 #include "kernels/base/shared.h"
 
 namespace alcove {
@@ -31,9 +32,9 @@ struct Camera {
   bool left_handed = false;
   std::optional<double> near, far;  // clip planes, scene units; far may be infinite
   bool reversed_z = false;
-  // Where the source's projection matrix puts depth 0, if its z were the depth itself.
+  // The distance at which the source's projection matrix has depth 0, if its z is the depth itself.
   std::optional<double> matrix_near;
-  DepthKind depth_kind = DepthKind::automatic;  // what its source says of the frame's depth
+  DepthKind depth_kind = DepthKind::automatic;  // of the frame, as its source says; automatic: it does not
   NormalSpace normal_space = NormalSpace::automatic;
   NormalEncoding normal_encoding = NormalEncoding::automatic;
   std::optional<Vector3> chan_angles;  // of a .chan file about x, y and z, radians, which --chan-rotation puts in order
@@ -43,7 +44,8 @@ struct Camera {
 inline constexpr const char* kCameraOptions =
     "--camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or --ortho-width UNITS";
 
-/// ErrorKind::usage: nothing gives a camera to the frame of this file; `why` says of what might have why it does not.
+/// ErrorKind::usage: nothing gives a camera to the frame of this file. `why` says why the header or the positions do
+/// not.
 struct NoCamera : Error {
   explicit NoCamera(const std::string& file, const std::string& why = "");
   const std::string why;
@@ -53,9 +55,9 @@ struct NoCamera : Error {
 /// covers that much more in x.
 Camera centred(const Window& display, double fx, double pixel_aspect);
 
-/// Reads a camera JSON file, whose keys docs/inputs.md lists; if the file lists `frames`, the one of that number, and
-/// where it has `views`, the one of that name; "": what all views share. Fails with ErrorKind::input, naming file and
-/// field, on anything missing or senseless.
+/// Reads a camera JSON file; docs/inputs.md lists its keys. Takes the entry of `frame` if the file lists `frames`, and
+/// that of `view` if it has `views`; "" takes the fields that all views share. Fails with ErrorKind::input on missing
+/// or senseless fields, and names file and field.
 Camera read_camera(const std::string& path, int frame, const std::string& view = "");
 
 /// Gives the camera in the text of a camera file for a frame of this display window; `name` is for messages. Fails as
@@ -65,8 +67,8 @@ Camera camera_of(const std::string& text, const std::string& name, const Window&
 /// Whether a camera file lists `frames`. Fails with ErrorKind::input where it cannot be read.
 bool lists_frames(const std::string& path);
 
-/// Fails with ErrorKind::input where a camera file lists `frames` and none of them has this number. What stands in the
-/// entry is not looked at: its fields may be those of views.
+/// Fails with ErrorKind::input if a camera file lists `frames` and none of them has this number. Does not check the
+/// entry: its fields may be those of views.
 void require_listed(const std::string& path, int frame);
 
 /// Whether the settings give a camera, or at least try to.
@@ -89,10 +91,11 @@ ViewMap view_from_view(const Camera& to, const Camera& from);
 /// Gives the projection as kernels take it, for pixels counted from the data window's upper left corner.
 View view_of(const Camera& camera, const Window& data, const Window& display);
 
-/// Where a point at a place of one view, px, and at a planar depth is in another one: px, and its planar depth there.
+/// A place in a view, px, and the planar depth there.
 struct SeenAt {
   double x, y, depth;
 };
+/// Gives the place, in another view, of a point that one view shows at (x, y) and a planar depth.
 SeenAt seen_from(const View& other, const ViewMap& other_from_view, const View& view, double x, double y, double depth);
 
 /// The length of a pixel's ray at unit depth; 1 where it is orthographic.
@@ -106,7 +109,7 @@ bool is_chan_file(const std::string& path);
 /// Reads a .chan file: a line for each frame, of its number, the place x y z, the angles x y z in degrees and the
 /// vertical field of view in degrees. `rotation`: the axes in the order in which
 /// the angles turn the camera, such as zxy (Nuke's). The camera looks along -z, with y up; its projection is centred on
-/// the display window. Fails with ErrorKind::input, naming file, frame and what is wrong.
+/// the display window. Fails with ErrorKind::input, and names file, frame and fault.
 Camera read_chan(const std::string& path, int frame, const std::string& rotation, const Window& display,
                  double pixel_aspect);
 
@@ -115,5 +118,47 @@ Matrix3 view_by_angles(const Vector3& angles, const std::string& rotation);
 
 /// The orders in which a camera may be turned about the axes.
 inline constexpr std::array kChanRotations{"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"};
+
+// Cameras that renderers write into the headers of their frames.
+
+struct HeaderCamera {
+  Camera camera;     // for the display window
+  std::string from;  // the attributes that gave it
+};
+
+/// Attributes by name, as ExrFile::attribute_texts() gives them.
+using AttributeTexts = std::map<std::string, std::string>;
+
+/// Gives the camera of the attributes; none if they lack a field of view. They are tried in this order:
+/// - worldToCamera and worldToNDC (Arnold, RenderMan, Mantra, pbrt) or worldToScreen (Arnold of 3ds Max), for row or
+///   column vectors, NDC from 0 or from -1, y up or down, with lens shift, perspective or orthographic; a worldToNDC
+///   that does no more than worldToCamera (Karma) is none;
+/// - CameraFov, or CameraFocalLength and CameraFilmApertureHorizontal (Arnold), and worldToCamera if there is one;
+/// - rs/camera/transform, fov (Redshift);
+/// - unreal/.../fov, which includes the overscan, of the depth's pass and camera, and its curPos and curRot;
+/// - cameraTransform, cameraFov (V-Ray);
+/// - screenWindowWidth and screenWindowCenter, where they are not left at 1 and 0, or pinholeFocalLength or
+///   nominalFocalLength with sensorOverallDimensions (the standard attributes), and worldToCamera if there is one.
+/// Prefixes that Nuke puts before others' attributes (nuke/, exr/) do not matter. Numbers that make no camera are
+/// ignored. `depth_layer` is the layer of the depth's channel, whose name tells its pass and camera in Unreal's files.
+std::optional<HeaderCamera> header_camera(const AttributeTexts& attributes, const Window& display, const Window& data,
+                                          double pixel_aspect, const std::string& depth_layer);
+
+/// Says why header_camera() finds none in attributes that look as if they had one; "" if they do not look so.
+std::string why_no_header_camera(const AttributeTexts& attributes, const std::string& depth_layer);
+
+/// Places a camera with a projection from elsewhere, such as --fov, by the header's
+/// worldToCamera, rs/camera/transform, curPos and curRot of unreal/, or cameraTransform. A worldToCamera without a
+/// projection looks along +z if it mirrors the world, as the standard's does, and else along -z. Without any of these
+/// the camera stays as it is.
+void place_by_header(Camera& camera, const AttributeTexts& attributes, const Window& display, double pixel_aspect,
+                     const std::string& depth_layer);
+
+/// Fails with ErrorKind::input where the attributes say that the picture is no planar projection: envmap, V-Ray's
+/// cameraProjection.
+void require_no_panorama(const AttributeTexts& attributes, const std::string& path);
+
+/// Fails with ErrorKind::input: the file holds a panorama, as `by` says.
+[[noreturn]] void refuse_panorama(const std::string& path, const std::string& by);
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// The camera from points whose place in space and in the picture is known: resection, as photogrammetry calls it.
+// Resection, as photogrammetry calls it: the camera from points with known places in space and in the picture.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -6,8 +6,9 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 namespace alcove {
 
@@ -26,10 +27,10 @@ struct Resection {
   double focal_error = 0;  // standard deviation of fx, relative to it
 };
 
-/// Why no camera is found.
+/// The reason for which no camera is found.
 struct NoResection {
   std::string why;
-  double median = 0;  // px from point to pixel by the camera that fits best; 0 where that is not the reason
+  double median = 0;  // px from point to pixel by the camera that fits best; 0 if that is not the reason
 };
 
 /// A camera is found where nearly all points lie so near to their pixels, px, beyond their rounding.
@@ -47,5 +48,19 @@ constexpr std::size_t kLeastPoints = 60;
 /// the Eight-Point Algorithm, 1997) of the sample of points that leaves the fewest others beside their pixels (Torr and
 /// Zisserman, MLESAC, 2000); it is refined by least squares over all points that fit, with a camera without skew.
 std::variant<Resection, NoResection> resection_of(std::span<const SeenPoint> points, const Window& display);
+
+/// The points moved and scaled to be about 1 in size, and the way back.
+struct Normalized {
+  std::vector<SeenPoint> points;
+  Vector3 middle{};
+  double size = 1;
+};
+
+Normalized normalized(std::span<const SeenPoint> points);
+
+/// Names the panorama by which points are seen where their pixels are; "" if none of these fits: the whole sphere and
+/// half of it in longitude and latitude, cylinders, and fish eyes. It need not be upright. For points that no camera
+/// sees.
+std::string panorama_of(std::span<const SeenPoint> points, const Window& display);
 
 }  // namespace alcove

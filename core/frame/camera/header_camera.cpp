@@ -1,6 +1,6 @@
 // Turns matrices and numbers of headers into the one projection model.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/header_camera.h"
+#include "core/frame/camera/camera.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,6 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/frame/panorama.h"
 
 namespace alcove {
 namespace {
@@ -112,7 +111,7 @@ Placement inverted(const Placement& p) {
   return inverse;
 }
 
-/// Where a header says that its camera stands.
+/// The place of a camera, as a header says it.
 struct Pose {
   Placement view;  // camera space from the world
   bool looks_along_z;
@@ -261,13 +260,13 @@ std::optional<Pose> unreal_pose(const Attributes& a, const std::string& depth_la
 
 double focal_px(double width, double fov_degrees) { return 0.5 * width / std::tan(0.5 * fov_degrees * kRadian); }
 
-/// One row of the projection: image coordinate * w = along * x + shift * depth (perspective), or along * x + shift
+/// A row of the projection: image coordinate * w = along * x + shift * depth (perspective), or along * x + shift
 /// (orthographic).
 struct Axis {
   double along, shift;
 };
 
-/// Finds the projection from what worldToNDC does to points of camera space.
+/// Finds the projection from the images of points of camera space under worldToNDC.
 std::optional<Camera> projected(const Placement& view, const std::vector<double>& values, const Window& display) {
   if (values.size() != 16) return std::nullopt;
   Matrix4 ndc{};
@@ -443,6 +442,14 @@ void place_by_header(Camera& camera, const AttributeTexts& attributes, const Win
       camera.placement_from = pose->from;
       return;
     }
+}
+
+void refuse_panorama(const std::string& path, const std::string& by) {
+  fail(
+      ErrorKind::input,
+      "{}: a panorama ({}): its pixels have no plane of projection, which depth and AO here refer to; render it with a "
+      "perspective camera",
+      path, by);
 }
 
 void require_no_panorama(const AttributeTexts& attributes, const std::string& path) {

@@ -1,6 +1,6 @@
 // Camera JSON, .chan files, cameras from numbers, and the kernels' view of each.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/camera.h"
+#include "core/frame/camera/camera.h"
 
 #include <cmath>
 #include <limits>
@@ -23,7 +23,7 @@ constexpr std::size_t kWithoutView = 7, kWithView = 8;  // numbers of a line
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-/// The numbers of a line; what is no number is told by its text.
+/// Reads the numbers of a line. Fails with ErrorKind::input on a word that is no number.
 std::vector<double> numbers_in(const std::string& path, const std::string& line, int number) {
   std::vector<double> numbers;
   std::istringstream words(line);
@@ -113,7 +113,7 @@ bool is_scale(double pixels) { return pixels >= kLeastScale && pixels <= kMostSc
 /// A camera file being read: every complaint names the file and the field.
 struct CameraFile {
   std::string path;
-  // Those of the frame's own entry win over those outside, and within either those of the view.
+  // Fields of the frame's own entry win over those outside it, and within either those of the view.
   Json top, frame, view_of_top, view_of_frame;
 
   const Json* find(const char* field) const {

@@ -1,17 +1,13 @@
 // Tries the rays of panoramas on points whose place in space and in the picture is known.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/panorama.h"
-
-#include <fmt/format.h>
+#include "core/frame/camera/resection.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "core/base/error.h"
 #include "core/base/ranks.h"
-#include "core/frame/linear_fit.h"
 
 namespace alcove {
 namespace {
@@ -129,14 +125,6 @@ std::string panorama_of(std::span<const SeenPoint> points, const Window& display
   for (const auto& panorama : kPanoramas)
     if (share_seen(panorama, from.points, display) >= kNearlyAll) return panorama.name;
   return "";
-}
-
-void refuse_panorama(const std::string& path, const std::string& by) {
-  fail(
-      ErrorKind::input,
-      "{}: a panorama ({}): its pixels have no plane of projection, which depth and AO here refer to; render it with a "
-      "perspective camera",
-      path, by);
 }
 
 }  // namespace alcove

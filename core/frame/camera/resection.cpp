@@ -1,6 +1,6 @@
 // Direct linear transforms of samples, and least squares over what fits the best of them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/resection.h"
+#include "core/frame/camera/resection.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/base/ranks.h"
-#include "core/frame/linear_fit.h"
 
 namespace alcove {
 namespace {
@@ -75,7 +74,7 @@ double median_distance(const Pinhole& camera, std::span<const SeenPoint> points)
 
 using Picked = std::vector<const SeenPoint*>;
 
-/// Where the pixels lie, so that they are about 1 in size too.
+/// The places of the pixels, moved and scaled to be about 1 in size too.
 struct ImageScale {
   double x, y, size;
 };
@@ -182,8 +181,8 @@ std::optional<Pinhole> pinhole_of_orthographic(const Projection& m, const Window
 constexpr std::size_t kUnknowns = 10;  // fx, fy, cx, cy, a turn, an offset
 using Gradient = std::array<double, kUnknowns>;
 
-/// How the place of a point in the picture changes with the unknowns, in x and in y. What an orthographic view does not
-/// depend on is 0.
+/// The derivatives of a point's place in the picture by the unknowns, in x and in y. Those that an orthographic view
+/// does not depend on are 0.
 std::array<Gradient, 2> gradients_of(const Pinhole& camera, const Vector3& view) {
   const double over = camera.orthographic ? 1 : 1 / view[2];
   const Vector3 turned = difference(view, camera.offset);
@@ -287,7 +286,7 @@ double share_within(const Pinhole& camera, std::span<const SeenPoint> points) {
   return double(count) / double(points.size());
 }
 
-/// How badly a camera sees points, of which those that are far off count alike, however far (MSAC).
+/// The cost of a camera for points. Points far from their pixels count alike, however far (MSAC).
 double cost_of(const Pinhole& camera, std::span<const SeenPoint> points) {
   constexpr double kFarOff = 5 * kSeenWithin;
   double cost = 0;
@@ -402,6 +401,20 @@ Resection result_of(Pinhole solved, const Normalized& from, const Window& displa
 }
 
 }  // namespace
+
+Normalized normalized(std::span<const SeenPoint> points) {
+  Normalized result{{points.begin(), points.end()}, {}, 1};
+  for (std::size_t k = 0; k < 3; k++) {
+    std::vector<double> values;
+    for (const auto& seen : points) values.push_back(seen.position[k]);
+    result.middle[k] = median_of(std::move(values));
+  }
+  std::vector<double> distances;
+  for (const auto& seen : points) distances.push_back(length(difference(seen.position, result.middle)));
+  if (const double median = median_of(std::move(distances)); median > 0) result.size = median;
+  for (auto& seen : result.points) seen.position = scaled(difference(seen.position, result.middle), 1 / result.size);
+  return result;
+}
 
 std::variant<Resection, NoResection> resection_of(std::span<const SeenPoint> points, const Window& display) {
   if (points.size() < kLeastPoints)
