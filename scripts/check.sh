@@ -23,7 +23,7 @@ done
 parts=${*:-addresses threads tidy fuzzing}
 if [ "$parts" = all ]; then
   parts="addresses threads tidy fuzzing"
-  readers=(core/*/*.cpp cli/*.cpp)
+  mapfile -t readers < <(git ls-files 'core/*.cpp' 'cli/*.cpp')
   tests=()
 fi
 for part in $parts; do

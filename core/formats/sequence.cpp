@@ -274,7 +274,7 @@ FrameNumber number_of(const Part& part) {
 FrameNumber at_end_of_word(const Part& part) {
   const std::string digits = digits_at_end(part.text);
   if (digits.empty() || is_size(part.text) || digits.size() > kMostDigits) return {};
-  if (is_version(part.text)) return {{}, digits, fmt::format("{} is a version", part.text)};
+  if (is_version(part.text)) return {{}, "", fmt::format("{} is a version", part.text)};
   if (digits.size() < kUsualDigits)
     return {{}, digits, fmt::format("{} may be the number of a shot or of a take", part.text)};
   return {std::stoi(digits), digits, ""};

@@ -40,7 +40,7 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
 /// The frame number in the name of a single file.
 struct FrameNumber {
   std::optional<int> number;  // none: no number in the name is surely a frame's
-  std::string digits;         // source of the number, or digits that may be one
+  std::string digits;         // source of the number, or digits that may be one; "" for a version or a size
   std::string doubt;          // the reason why such digits do not count; "" without them
 };
 

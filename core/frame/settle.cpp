@@ -380,6 +380,8 @@ void settle(FrameSource& source, const InputSettings& settings, const RawPart& r
 void settle_by_planes(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
                       std::span<const float> normal, std::uint64_t most_bytes) {
   const Window& data = source.reading.data;
+  if (depth.size() % data.pixels() != 0)
+    fail(ErrorKind::input, "{}: a part of a frame cannot settle it", source.depth_path());
   if (data.pixels() <= kEvidencePixels && depth.size_bytes() + normal.size_bytes() <= most_bytes)
     return settle(source, settings, {data, depth, normal});
   const Window rows = middle_rows(source, most_bytes);

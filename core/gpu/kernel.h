@@ -36,7 +36,7 @@ Reflection reflect(std::span<const std::uint32_t> code);
 /// SPIR-V 1.4 or later with one entry point, and the device must have shaderSignedZeroInfNanPreserveFloat32.
 std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> code);
 
-/// The SPIR-V of kernels/STEM.comp, embedded at build time; empty if no kernel has that stem.
+/// The SPIR-V of kernels/FOLDER/STEM.comp, embedded at build time; empty if no kernel has that stem.
 std::span<const std::uint32_t> kernel_code(std::string_view stem);
 
 class Kernel {

@@ -79,6 +79,10 @@ double work_of(const PassTime& pass) {
 
 }  // namespace
 
+Binding::Binding(std::string_view name, const Buffer* bound) : block(name), buffer(bound) {
+  if (!bound) fail(ErrorKind::device, "block {} of a kernel has no buffer", name);
+}
+
 Recorder::Recorder(Device& device) : device_(&device) {
   VkCommandPoolCreateInfo pool_info{};
   pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;

@@ -19,10 +19,18 @@
 
 namespace alcove::gpu {
 
-/// A buffer for a block of a kernel, by the block's name in GLSL. Null: the kernel does not touch the block, because of
-/// its specialization or its parameters. Vulkan needs a buffer all the same, so the recorder binds one of a few bytes.
+/// A buffer, or null for a block that the kernel does not touch, because of its specialization or its parameters.
+/// Vulkan needs a buffer all the same, so the recorder binds one of a few bytes.
+struct Optional {
+  explicit Optional(const Buffer* bound) : buffer(bound) {}
+
+  const Buffer* buffer;
+};
+
+/// A buffer for a block of a kernel, by the block's name in GLSL. Fails with ErrorKind::device on null.
 struct Binding {
-  Binding(std::string_view name, const Buffer* bound) : block(name), buffer(bound) {}
+  Binding(std::string_view name, const Buffer* bound);
+  Binding(std::string_view name, Optional bound) : block(name), buffer(bound.buffer) {}
   Binding(std::string_view name, const Buffer& bound) : block(name), buffer(&bound) {}
 
   std::string_view block;

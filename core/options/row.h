@@ -1,4 +1,5 @@
-// Rows of the tables of options: what help and docs/options.md show of an option, and how its value is read and written.
+// Rows of the tables of options: what help and docs/options.md show of an option, and how its value is read and
+// written.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -65,8 +66,8 @@ struct RowOf : OptionRow {
   // Takes a value. Fails with ErrorKind::usage, naming the option, its mistake, and the nearest words. Null: the
   // option is of the command line alone, and no part of `Options`.
   std::function<void(Options&, const Words&)> read = nullptr;
-  // Each tells why the value has no effect beside the others, in a sentence; "" where it has one, or asks for nothing. A
-  // value without effect that is typed is refused; of a preset it is left out.
+  // Each tells why the value has no effect beside the others, in a sentence; "" where it has one, or asks for nothing.
+  // A value without effect that is typed is refused; of a preset it is left out.
   std::vector<std::function<std::string(const Options&)>> idle_reasons = {};
   Words usual = {};                 // the words of the default
   bool usual_asks_nothing = false;  // the default is no mistake, whatever is beside it
@@ -129,7 +130,8 @@ auto within(Outer outer, Inner inner) {
 }
 
 /// Appends rows of one group and one effect to a table. `part` leads from `Options` to the struct that has the values;
-/// `member` leads from there to a value. Both are pointers to members, or functions. The defaults are those of Options{}.
+/// `member` leads from there to a value. Both are pointers to members, or functions. The defaults are those of
+/// Options{}.
 template <class Options, class Part = std::identity>
 class OptionGroup {
  public:

@@ -97,6 +97,7 @@ FrameSource FirstLook::open(const Settings& settings, int frame) {
   if (found == opened_.end()) return open_frame(settings, frame);
   FrameSource source = std::move(found->second);
   opened_.erase(found);
+  source.rows_read = 0;  // a look is no part of the frame's reading
   return source;
 }
 
@@ -113,16 +114,30 @@ bool FirstLook::has_camera() {
   }
 }
 
+/// The radius that is proposed for a frame; none where all is sky. Depth and camera alone decide: a fault of the beauty
+/// or of an output is found when the frame is computed.
+std::optional<double> FirstLook::radius_of(int frame) {
+  const InputSettings given = plan().at(frame).input, input = lacks_camera_ ? with_some_camera(given) : given;
+  const auto proposed = [&](FrameSource& source) {
+    if (!source.evidence) settle_by_rows(source, input);
+    return proposed_radius(source.reading.camera, source.evidence->median_depth);
+  };
+  try {
+    return proposed(opened(frame));
+  } catch (const Error&) {
+    opened_.erase(frame);  // which may be settled in part
+    FrameSource source = find_frame(input, false, frame);
+    source.open.camera = lacks_camera_;
+    return proposed(source);
+  }
+}
+
 /// The radius that is proposed for the first frame that shows a surface, and why others could not be looked at.
 std::optional<double> FirstLook::radius_of_first(std::optional<Error>& error) {
   for (const int frame : plan().evidence()) {
     try {
-      FrameSource& source = opened(frame);
-      const InputSettings input = plan().at(frame).input;
-      if (!source.evidence) settle_by_rows(source, lacks_camera_ ? with_some_camera(input) : input);
-      if (const auto radius = proposed_radius(source.reading.camera, source.evidence->median_depth)) return radius;
+      if (const auto radius = radius_of(frame)) return radius;
     } catch (const Error& failure) {
-      opened_.erase(frame);  // which may be settled in part
       if (!error) error = failure;
     }
   }

@@ -58,6 +58,7 @@ class FirstLook {
  private:
   FrameSource& opened(int frame);
   bool has_camera();
+  std::optional<double> radius_of(int frame);
   std::optional<double> radius_of_first(std::optional<Error>& error);
   void take_proposed_radius(Notes& notes);
 

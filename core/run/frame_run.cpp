@@ -487,13 +487,13 @@ FrameReport report_of(const FramePlan& plan, int frame) {
   return report;
 }
 
-FrameReport run_frame(Lanes& lanes, const RunContext& run, const Room& room, int frame, const PartWatch& watch) {
+namespace {
+
+FrameReport run_on(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& watch) {
   FrameReport report;
-  std::optional<Lanes::Lease> lease;
+  lane.gpu.abandon();  // commands that a frame that failed has left
   try {
     report = report_of(run.plan, frame);
-    Lane& lane = lease.emplace(lanes).lane();
-    lane.gpu.abandon();  // commands that a frame that failed has left
     FrameRun(lane, run, room, frame, watch, report).run();
     report.state = FrameState::done;
   } catch (const Dropped&) {
@@ -518,8 +518,26 @@ FrameReport run_frame(Lanes& lanes, const RunContext& run, const Room& room, int
     report.state = FrameState::failed;
     report.error = Error(ErrorKind::some_frames_failed, fmt::format("{}: {}", report.input, error.what()));
   }
-  if (lease && !report.out_of_memory) lease->keep_buffers();
   return report;
+}
+
+}  // namespace
+
+FrameReport run_frame(Lanes& lanes, const RunContext& run, const Room& room, int frame, const PartWatch& watch) {
+  try {
+    Lanes::Lease lease(lanes);
+    FrameReport report = run_on(lease.lane(), run, room, frame, watch);
+    if (!report.out_of_memory) lease.keep_buffers();
+    return report;
+  } catch (const Error& error) {  // of making the lane, which is no fault of the frame
+    FrameReport report = report_of(run.plan, frame);
+    report.state = FrameState::failed;
+    report.error = error;
+    report.out_of_memory = dynamic_cast<const gpu::OutOfMemory*>(&error) != nullptr;
+    report.device_lost = dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr;
+    if (!report.out_of_memory && !report.device_lost) throw;
+    return report;
+  }
 }
 
 }  // namespace alcove

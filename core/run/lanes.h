@@ -21,9 +21,9 @@ struct Lane {
   EstimateSlots estimates;
 };
 
-/// One lane for each frame in flight, whose buffers are kept from frame to frame. Each lane on a CPU has a device of its
-/// own, so that every frame has a core of its own from its first byte to its last, and no frame waits for another. A GPU
-/// is shared by all lanes.
+/// One lane for each frame in flight, whose buffers are kept from frame to frame. Each lane on a CPU has a device of
+/// its own, so that every frame has a core of its own from its first byte to its last, and no frame waits for another.
+/// A GPU is shared by all lanes.
 class Lanes {
   struct Place {
     gpu::Device* device;

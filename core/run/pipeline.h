@@ -16,8 +16,8 @@ using TakeReport = std::function<void(FrameReport&&)>;
 using TakeProgress = std::function<void(std::span<const FrameProgress>)>;
 
 /// Runs the frames on the lanes, in any order, until one fails that ends the run; calls both functions on this thread,
-/// the first in the order of the frames. Where the device has no memory for a frame, the number of lanes is halved, down
-/// to one, and then the window that is computed at once; the frame is computed again, and says so in a note. Later
+/// the first in the order of the frames. Where the device has no memory for a frame, the number of lanes is halved,
+/// down to one, and then the window that is computed at once; the frame is computed again, and says so in a note. Later
 /// frames begin with what is left then.
 void run_pipeline(Lanes& lanes, const RunContext& run, const Room& room, std::span<const int> frames,
                   const TakeReport& take_report, const TakeProgress& take_progress);

@@ -299,7 +299,7 @@ void FramePlan::set_radius(double radius) {
 
 std::string pattern_for(const std::string& path) {
   const FrameNumber found = frame_number_in(path);
-  if (!found.number) return "";
+  if (found.digits.empty()) return "";
   const std::size_t at = path.rfind(found.digits), digits = found.digits.size();
   return path.substr(0, at) + (digits == 1 ? "%d" : std::string(digits, '#')) + path.substr(at + digits);
 }

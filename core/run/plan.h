@@ -111,8 +111,8 @@ class FramePlan {
   std::set<int> absent_;  // of the shot
 };
 
-/// The pattern of the sequence that a single file belongs to by the number in its name, such as shot.####.exr; "" where
-/// it has no clear number.
+/// The pattern of the sequence that a single file belongs to by the number in its name, such as shot.####.exr, be it
+/// a frame's or maybe that of a shot; "" without a number, and for a version or a size.
 std::string pattern_for(const std::string& path);
 
 /// The number of a single file's frame by its name (core/formats/sequence.h); 0 where there is none.

@@ -200,8 +200,8 @@ class SharedFrames {
   std::vector<Seen> seen(gpu::Recorder& gpu, const std::vector<int>& frames, PreparationCost& cost);
   Movement movement_of(gpu::Recorder& gpu, int frame, PreparationCost& cost);
   /// Marks pixels of a frame that move by its motion vectors, and up to `around` pixels beside each, with 1, all others
-  /// with 0. None where the settings name no vectors, and at an end of the shot where they lead out of it. Fails where no
-  /// reading of the vectors is right.
+  /// with 0. None where the settings name no vectors, and at an end of the shot where they lead out of it. Fails where
+  /// no reading of the vectors is right.
   std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparationCost& cost,
                                                              int around);
   /// `option`: by which it is taken.

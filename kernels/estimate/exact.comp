@@ -6,8 +6,8 @@
 // Out: the sums of blocked and of whole arcs; after the last direction visibility, 1 = open. The same of the mean open
 // direction (see bent.glsl), where it is asked for.
 //
-// horizon.comp takes samples; this kernel searches without gaps. It has the same slices and integrals. The steps have
-// their numbers at the code:
+// horizon.comp takes samples; this kernel searches without gaps. It has the same integrals, over slices of its
+// own. The steps have their numbers at the code:
 //  1. Slices are even on the image and shared by all pixels. Each weighs 1 / (ray_length of the line's foot * cosine
 //     from it), the Jacobian to azimuth about the view ray.
 //  2. The receiver is moved onto its line's plane along its tangent plane, by half a pixel at most: a flat surface

@@ -44,7 +44,7 @@ const Box kNowhere = Box(vec3(kSkyDepth), vec3(-kSkyDepth));
 /// Cells along an axis that are marked at most for one box: boxes of a tile are small but where a tile shows an edge.
 const int kMostCells = 64;
 
-/// A frame whose depths are looked up: the frame itself, or another one.
+/// The depth at a pixel of the frame itself, or of another one.
 float depth_at(bool of_own, uint first, int index) { return of_own ? own[index] : others[first + uint(index)]; }
 
 /// Pixels of a square about one, row by row.

@@ -27,7 +27,7 @@ readonly buffer Frames { TakenFrame frames[]; };
 // frame may see past what that one has in its own picture there
 writeonly buffer Bits { uint bits[]; };
 
-/// A frame whose depths are looked up: the frame itself, or another one.
+/// The depth at a pixel of the frame itself, or of another one.
 float depth_at(bool of_own, TakenFrame other, ivec2 pixel) {
   return abs(of_own ? own[index_of(params.view, pixel)] : others[other.first + uint(index_of(other.view, pixel))]);
 }

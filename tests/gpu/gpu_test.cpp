@@ -80,8 +80,11 @@ TEST(Kernel, refuses_parameters_bindings_and_constants_that_are_not_its_own) {
   EXPECT_THAT(
       dispatch(params, {{"Ao", buffer}}),
       HasSubstr("kernel shape has the blocks Ao, Counts, Depth, Material, Matte, Shaped, and the host binds Ao"));
-  std::vector<gpu::Binding> bindings{{"Ao", buffer},        {"Shaped", buffer}, {"Depth", nullptr},
-                                     {"Material", nullptr}, {"Matte", nullptr}, {"Counts", nullptr}};
+  const gpu::Buffer* const forgotten = nullptr;
+  EXPECT_THAT(error_of([&] { gpu::Binding("Depth", forgotten); }), HasSubstr("block Depth of a kernel has no buffer"));
+  const gpu::Optional none(nullptr);
+  std::vector<gpu::Binding> bindings{{"Ao", buffer},     {"Shaped", buffer}, {"Depth", none},
+                                     {"Material", none}, {"Matte", none},    {"Counts", none}};
   for (const char* further : {"Nosuch", "Ao"}) {
     bindings.emplace_back(further, buffer);
     EXPECT_THAT(dispatch(params, bindings), HasSubstr("the host binds"));
@@ -213,10 +216,10 @@ void record_copy(gpu::Recorder& gpu, const gpu::Buffer& source, const gpu::Buffe
   gpu.dispatch("shape", params,
                {{"Ao", source},
                 {"Shaped", target},
-                {"Depth", nullptr},
-                {"Material", nullptr},
-                {"Matte", nullptr},
-                {"Counts", nullptr}},
+                {"Depth", gpu::Optional(nullptr)},
+                {"Material", gpu::Optional(nullptr)},
+                {"Matte", gpu::Optional(nullptr)},
+                {"Counts", gpu::Optional(nullptr)}},
                {std::uint32_t(count), 1}, {0});
 }
 

@@ -138,15 +138,17 @@ Shot along_x(double fov, int width, int height, double units) {
 }
 
 std::vector<SlantedPlane> slanted_planes(const std::vector<double>& tilts, const std::vector<double>& turns,
-                                         const std::vector<double>& fovs, int width, int height) {
+                                         const std::vector<double>& fovs, int width, int height, double distance,
+                                         double units) {
   std::vector<SlantedPlane> all;
   for (const double tilt : tilts)
     for (const double turn : turns)
       for (const double fov : fovs) {
         const double sine = std::sin(tilt * kRadian);
         const Vec3 normal{-std::cos(tilt * kRadian), sine * std::cos(turn * kRadian), sine * std::sin(turn * kRadian)};
-        all.push_back({fmt::format("tilt {}, turn {}, field of view {}", tilt, turn, fov),
-                       render({{Plane{.point = {5, 0, 0}, .normal = normal}}}, along_x(fov, width, height))});
+        all.push_back(
+            {fmt::format("tilt {}, turn {}, field of view {}", tilt, turn, fov),
+             render({{Plane{.point = {distance, 0, 0}, .normal = normal}}}, along_x(fov, width, height, units))});
       }
   return all;
 }

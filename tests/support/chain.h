@@ -79,7 +79,8 @@ struct SlantedPlane {
   Rendering rendering;
 };
 std::vector<SlantedPlane> slanted_planes(const std::vector<double>& tilts, const std::vector<double>& turns,
-                                         const std::vector<double>& fovs, int width = 64, int height = 48);
+                                         const std::vector<double>& fovs, int width = 64, int height = 48,
+                                         double distance = 5, double units = 0.5);
 /// From the origin along x.
 Shot along_x(double fov, int width, int height, double units = 0.5);
 

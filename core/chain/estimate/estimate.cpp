@@ -71,10 +71,14 @@ gpu::Extent block_extent(const View& view) {
 
 /// The buffers that all estimators take, but for those of the exact search.
 std::vector<gpu::Binding> buffers_of(const GBuffer& gbuffer, const Estimate& out) {
-  return {{"Depth", gbuffer.depth},    {"Occluders", occluder_depth_of(gbuffer)},
-          {"Normal", gbuffer.normal},  {"Ao", out.ao},
-          {"List", out.listed.tiles},  {"Counts", out.listed.counts},
-          {"Sites", out.listed.sites}, {"SiteCountsBuffer", out.listed.site_counts}};
+  return {{"Depth", gbuffer.depth},
+          {"Occluders", occluder_depth_of(gbuffer)},
+          {"Normal", gbuffer.normal},
+          {"Ao", out.ao},
+          {"List", out.listed.tiles},
+          {"Counts", out.listed.counts},
+          {"Sites", gpu::Optional(out.listed.sites)},
+          {"SiteCountsBuffer", gpu::Optional(out.listed.site_counts)}};
 }
 
 double samples_of_a_radius(const EstimatorSettings& settings) {
@@ -225,18 +229,18 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                               skipping.needed.from,
                               skipping.needed.to};
   gpu.dispatch("classify", params,
-               {{"Bounds", skipping.bounds},
-                {"Changes", skipping.changes},
-                {"Needed", gbuffer.needed},
+               {{"Bounds", gpu::Optional(skipping.bounds)},
+                {"Changes", gpu::Optional(skipping.changes)},
+                {"Needed", gpu::Optional(gbuffer.needed)},
                 {"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},
-                {"Rows", sites.rows},
+                {"Rows", gpu::Optional(sites.rows)},
                 {"List", list.tiles},
                 {"Counts", list.counts},
                 {"Kinds", list.kinds},
                 {"Ao", out.ao},
-                {"Bent", out.bent},
-                {"Completed", out.completed}},
+                {"Bent", gpu::Optional(out.bent)},
+                {"Completed", gpu::Optional(out.completed)}},
                {groups_of(int(blocks.x), kGroupY) * kGroupX, blocks.y * kGroupY}, {sites.rows ? 1u : 0u, mode});
   return list;
 }
@@ -254,7 +258,7 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   params.plane = out.plane;
   params.depth_precision = gbuffer.depth_precision;
   std::vector<gpu::Binding> buffers = buffers_of(gbuffer, out);
-  buffers.insert(buffers.end(), {{"Bent", out.bent}, {"Completed", out.completed}});
+  buffers.insert(buffers.end(), {{"Bent", gpu::Optional(out.bent)}, {"Completed", gpu::Optional(out.completed)}});
   const uint mode = uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
   std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, out.listed.sites ? 1u : 0u, solid};

@@ -112,8 +112,8 @@ void draw_profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirect
                 {"Vertex", profile.vertex},
                 {"Mark", profile.mark},
                 {"Neighbor", profile.neighbor},
-                {"Hidden", occluder_hidden_of(gbuffer)},
-                {"Own", profile.own}},
+                {"Hidden", gpu::Optional(occluder_hidden_of(gbuffer))},
+                {"Own", gpu::Optional(profile.own)}},
                groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
                {directions.every_pixel ? 1u : 0u, profile.slots, slot > 0 ? 1 : profile.slots});
 }
@@ -180,8 +180,8 @@ void converge(gpu::Recorder& gpu, const GBuffer& gbuffer, const Convergence& sea
                 {"Whole", whole_arcs(gpu, gbuffer)},
                 {"Ao", result.ao},
                 {"Judged", judged},
-                {"List", listed.tiles},
-                {"Counts", listed.counts}},
+                {"List", gpu::Optional(listed.tiles)},
+                {"Counts", gpu::Optional(listed.counts)}},
                {tiles.columns, tiles.rows});
 }
 
@@ -203,8 +203,8 @@ void refine(gpu::Recorder& gpu, const GBuffer& gbuffer, Convergence& search, Est
   gpu.dispatch("refine", params,
                {{"Depth", gbuffer.depth},
                 {"Judged", judged_tiles(gpu, gbuffer)},
-                {"List", listed.tiles},
-                {"Counts", listed.counts},
+                {"List", gpu::Optional(listed.tiles)},
+                {"Counts", gpu::Optional(listed.counts)},
                 {"Error", result.error},
                 {"Squares", result.squares},
                 {"NextList", next.tiles},
@@ -212,7 +212,7 @@ void refine(gpu::Recorder& gpu, const GBuffer& gbuffer, Convergence& search, Est
                 {"NextLines", next.lines},
                 {"Whole", whole_arcs(gpu, gbuffer)},
                 {"Normal", gbuffer.normal},
-                {"Bent", bent}},
+                {"Bent", gpu::Optional(bent)}},
                {tiles.columns, tiles.rows}, {bent ? 1u : 0u});
   search.sums.listed = next;
   if (directions == 0) result.listed = next;
@@ -262,7 +262,7 @@ void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, cons
                   {"GoesOn", profile.goes_on},
                   {"Behind", profile.behind},
                   {"Depth", occluder_depth_of(gbuffer)},
-                  {"Hidden", occluder_hidden_of(gbuffer)}},
+                  {"Hidden", gpu::Optional(occluder_hidden_of(gbuffer))}},
                  groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
                  {profile.slots, gbuffer.hides_no_more ? 1u : 0u});
   }
@@ -304,13 +304,13 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {"Neighbor", profile.neighbor},
                 {"Whole", whole_arcs(gpu, gbuffer)},
                 {"Ao", out.ao},
-                {"List", out.listed.tiles},
-                {"Counts", out.listed.counts},
-                {"GoesOn", profile.goes_on},
-                {"Behind", profile.behind},
-                {"Completed", out.completed},
-                {"Bent", out.bent},
-                {"Own", profile.own}},
+                {"List", gpu::Optional(out.listed.tiles)},
+                {"Counts", gpu::Optional(out.listed.counts)},
+                {"GoesOn", gpu::Optional(profile.goes_on)},
+                {"Behind", gpu::Optional(profile.behind)},
+                {"Completed", gpu::Optional(out.completed)},
+                {"Bent", gpu::Optional(out.bent)},
+                {"Own", gpu::Optional(profile.own)}},
                is_listed ? list_extent(out.listed) : pixels,
                {is_listed ? 1u : 0u, completing, out.bent ? 1u : 0u, profile.slots, profile.has_unseen ? 1u : 0u});
 }

@@ -93,7 +93,7 @@ const gpu::Buffer& links(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteR
                {{"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},
                 {"Rows", rows},
-                {"Flat", rule.is_adaptive ? &flat_links(gpu, view, prefix) : nullptr}},
+                {"Flat", gpu::Optional(rule.is_adaptive ? &flat_links(gpu, view, prefix) : nullptr)}},
                {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))},
                {uint(rule.spacing), rule.is_adaptive ? 1u : 0u});
   return rows;

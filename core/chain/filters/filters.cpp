@@ -173,8 +173,8 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& pl
                   {"Depth", gbuffer.depth},
                   {"Normal", gbuffer.normal},
                   {"Result", to},
-                  {"List", listed.runs},
-                  {"Counts", listed.counts}},
+                  {"List", gpu::Optional(listed.runs)},
+                  {"Counts", gpu::Optional(listed.counts)}},
                  runs_extent(gbuffer, axis, listed),
                  {radius, denoiser.depth_sigma > 0 ? 1u : 0u, listed.runs ? 1u : 0u, planes_in(planes, gbuffer.view)});
   };
@@ -204,8 +204,8 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
                   {"Depth", gbuffer.depth},
                   {"Normal", gbuffer.normal},
                   {"Result", to},
-                  {"List", listed.runs},
-                  {"Counts", listed.counts},
+                  {"List", gpu::Optional(listed.runs)},
+                  {"Counts", gpu::Optional(listed.counts)},
                   {"Runs", written},
                   {"Sites", sites.rows}},
                  runs_extent(gbuffer, axis, listed),
@@ -262,8 +262,8 @@ gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer&
                 {"LowNormal", low.normal},
                 {"LowAo", low_planes},
                 {"Ao", planes},
-                {"List", listed.runs},
-                {"Counts", listed.counts}},
+                {"List", gpu::Optional(listed.runs)},
+                {"Counts", gpu::Optional(listed.counts)}},
                listed.counts ? gpu::Extent(*listed.counts) : every_block,
                {uint(grid.factor), count, listed.runs ? 1u : 0u});
   return planes;

@@ -79,7 +79,7 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string&
             GroupCount{groups_of(frame.view.size.x, kGroupX), groups_of(frame.view.size.y, kGroupY), 0});
   gpu.dispatch("prepare", frame.prepare,
                {{"RawDepth", raw_depth},
-                {"RawNormal", raw_normal},
+                {"RawNormal", gpu::Optional(raw_normal)},
                 {"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},
                 {"Counts", gbuffer.counts},
@@ -114,8 +114,8 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& 
                 {"Normal", gbuffer.normal},
                 {"LowDepth", low.depth},
                 {"LowNormal", low.normal},
-                {"Hidden", gbuffer.hidden},
-                {"LowHidden", low.hidden}},
+                {"Hidden", gpu::Optional(gbuffer.hidden)},
+                {"LowHidden", gpu::Optional(low.hidden)}},
                extent_of(low.view), {uint(grid.factor)});
   if (!gbuffer.occluder_depth) return low;
   GBuffer blocking = gbuffer;

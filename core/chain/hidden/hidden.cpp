@@ -110,11 +110,11 @@ GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& f
                             to_vec3(frame.hidden_precision.at),
                             float(layering.separation)};
   gpu.dispatch("layers", params,
-               {{"Found", found},
+               {{"Found", gpu::Optional(found)},
                 {"Depth", prepared.depth},
                 {"Hidden", gbuffer.hidden},
                 {"Counts", gbuffer.layer_counts},
-                {"Warped", warped},
+                {"Warped", gpu::Optional(warped)},
                 {"Open", open}},
                extent_of(prepared.view), {kept});
   if (params.open_planes == 0) return gbuffer;

@@ -127,7 +127,7 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
                 {"Normal", shown->normal},
                 {"Values", values},
                 {"Result", result},
-                {"Rows", sites.rows}},
+                {"Rows", gpu::Optional(sites.rows)}},
                extent_of(shown->view));
   return {&view, shown->view.size, &result};
 }

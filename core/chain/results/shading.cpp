@@ -31,8 +31,8 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
                {{"Ao", planes},
                 {"Shaped", shaped},
                 {"Depth", gbuffer.depth},
-                {"Material", material_ao},
-                {"Matte", matte.plane},
+                {"Material", gpu::Optional(material_ao)},
+                {"Matte", gpu::Optional(matte.plane)},
                 {"Counts", gbuffer.counts}},
                extent_of(gbuffer.view), {mode});
   return shaped;
@@ -80,7 +80,7 @@ gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu:
   const gpu::Buffer* albedo = frame[RawPlane::albedo];
   gpu::Buffer& result = gpu.buffer("color ao", 3 * plane_bytes(gbuffer.view));
   gpu.dispatch("multi_bounce", MultiBounceParams{gbuffer.view.size, albedo ? 1u : 0u, float(frame.albedo_value)},
-               {{"Ao", ao}, {"Albedo", albedo}, {"Result", result}}, extent_of(gbuffer.view));
+               {{"Ao", ao}, {"Albedo", gpu::Optional(albedo)}, {"Result", result}}, extent_of(gbuffer.view));
   return result;
 }
 

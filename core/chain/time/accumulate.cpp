@@ -97,8 +97,8 @@ Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
                   {"Near", near},
                   {"Sums", sums},
                   {"Ao", mean.ao},
-                  {"Scales", mean.scales},
-                  {"Bent", mean.bent}},
+                  {"Scales", gpu::Optional(mean.scales)},
+                  {"Bent", gpu::Optional(mean.bent)}},
                  extent_of(gbuffer.view), {uint(values), group.listed});
     params.place += group.count;
   }

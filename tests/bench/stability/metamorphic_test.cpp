@@ -43,8 +43,8 @@ TEST(Metamorphic, a_mirrored_frame_has_the_mirrored_ao) {
     for (const bool left_right : {true, false}) {
       const Difference d =
           difference(ao_of(mirrored(frame, left_right), settings), mirrored(upright, frame, left_right));
-      EXPECT_LE(std::abs(d.bias), 2e-3) << variant.name << " " << left_right;
-      EXPECT_LE(d.rmse, 0.02) << variant.name << " " << left_right;
+      EXPECT_LE(std::abs(d.bias), 1e-3) << variant.name << " " << left_right;
+      EXPECT_LE(d.rmse, searches_exactly(settings) ? 0.005 : 0.02) << variant.name << " " << left_right;
     }
   }
 }
@@ -55,6 +55,7 @@ TEST(Metamorphic, orthographic_is_the_limit_of_a_small_field_of_view) {
     const EstimatorSettings settings = converged(variant.settings, kRadius);
     const Difference d = difference(ao_of(narrow.frame, settings), ao_of(parallel.frame, settings));
     EXPECT_LE(d.rmse, 0.02) << variant.name << " " << place(d, narrow.frame);
+    EXPECT_LE(d.mean, variant.settings.estimator == Estimator::gtao ? 1e-3 : 0.01) << variant.name;
     EXPECT_LE(std::abs(d.bias), 2e-3) << variant.name;
   }
 }
@@ -98,6 +99,7 @@ TEST(Metamorphic, a_larger_radius_only_darkens) {
       const std::vector<float> ao = ao_of(frame, settings);
       for (std::size_t i = 0; i < ao.size(); i++)
         EXPECT_LE(ao[i], smaller[i] + slack) << variant.name << " radius " << radius << " pixel " << i;
+      if (radius < 1e-6) EXPECT_EQ(std::ranges::min(ao), 1.0f) << variant.name << " below a pixel";
       EXPECT_LE(difference(ao, smaller).bias, 0) << variant.name << " radius " << radius;
       smaller = ao;
     }
@@ -222,9 +224,9 @@ TEST(Metamorphic, a_convex_body_alone_is_open) {
 // the plane by part of what is left.
 TEST(Metamorphic, a_plane_at_a_grazing_angle_is_open) {
   for (const auto& [what, rendering] :
-       slanted_planes({60, 85, 89, 89.9, 89.99}, {0, 37, 90, 200}, {0, 0.01, 60}, 48, 36))
+       slanted_planes({60, 85, 89, 89.9, 89.99}, {0, 37, 90, 200}, {0, 0.01, 60}, 48, 36, 60, 0.01))
     for (const auto& variant : estimators())
-      for (const double radius : {0.005, 0.1, 1e5}) {
+      for (const double radius : {0.05, 1.0, 1e6}) {
         const EstimatorSettings settings = with_radius(variant.settings, radius);
         SCOPED_TRACE(what + ", " + variant.name);
         expect_open(rendering.frame, settings, searches_exactly(settings) ? 3e-3 : 1e-3);
