@@ -249,6 +249,13 @@ TEST_F(Radius, auto_is_one_number_for_a_whole_sequence) {
   for (const std::string& known : {std::string("auto"), radius})  // the number that was found is what counts
     EXPECT_THAT(done_with(known + " --resume").err, HasSubstr("3 kept"));
   EXPECT_THAT(run({"--radius", "auto", "--dry-run"}).out, HasSubstr("auto takes " + radius));
+
+  // Another chunk may find the beauty.
+  const Finished without_beauty =
+      run(typed("--normal-space world --depth-kind planar --radius auto --keep-going --beauty " + in +
+                "/none.%04d.exr --composite " + out + "/c.%04d.exr"));
+  EXPECT_EQ(without_beauty.code, 1) << without_beauty;
+  EXPECT_THAT(without_beauty.err, HasSubstr("--radius auto takes " + radius));
 }
 
 TEST_F(Radius, auto_is_the_only_one_and_needs_a_surface) {

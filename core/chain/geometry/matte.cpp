@@ -74,9 +74,9 @@ GBuffer occluders(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs&
                {{"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},
                 {"Matte", counted},
-                {"Hidden", gbuffer.hidden},
+                {"Hidden", gpu::Optional(gbuffer.hidden)},
                 {"Result", result.occluder_depth},
-                {"Behind", result.occluder_hidden}},
+                {"Behind", gpu::Optional(result.occluder_hidden)}},
                extent_of(view), {hidden});
   return result;
 }

@@ -127,7 +127,7 @@ gpu::Buffer& hidden_planes(gpu::Recorder& gpu, const GBuffer& gbuffer, const Lay
   const auto kept = uint(layering.kept);
   gpu::Buffer& planes = gpu.buffer("hidden planes", 2 * kept * plane_bytes(gbuffer.view));
   gpu.dispatch("hidden_planes", HiddenPlanesParams{gbuffer.view, gbuffer.surfaces - 1, kept},
-               {{"Hidden", gbuffer.hidden}, {"Planes", planes}}, extent_of(gbuffer.view));
+               {{"Hidden", gpu::Optional(gbuffer.hidden)}, {"Planes", planes}}, extent_of(gbuffer.view));
   return planes;
 }
 
