@@ -192,8 +192,6 @@ std::string objection(const SettingRow& row, const Settings& settings) {
   const bool is_given = row.is_given(settings);
   if (row.words(settings).empty() || (row.usual_asks_nothing && !is_given)) return "";
   std::string why;
-  for (const auto& reason : row.idle_reasons)
-    if (why.empty()) why = reason(settings);
   const auto look_for = [&](const Words& own, const Words& others, const char* reason) {
     if (!why.empty() || !is_given || std::ranges::find(own, row.key()) == own.end()) return;
     for (const auto& key : others)
@@ -204,6 +202,8 @@ std::string objection(const SettingRow& row, const Settings& settings) {
     look_for(one, other, reason);
     look_for(other, one, reason);
   }
+  for (const auto& reason : row.idle_reasons)
+    if (why.empty()) why = reason(settings);
   return why.empty() ? "" : fmt::format("{} has no effect: {}", row.long_name(), why);
 }
 

@@ -250,10 +250,11 @@ TEST_F(Radius, auto_is_one_number_for_a_whole_sequence) {
     EXPECT_THAT(done_with(known + " --resume").err, HasSubstr("3 kept"));
   EXPECT_THAT(run({"--radius", "auto", "--dry-run"}).out, HasSubstr("auto takes " + radius));
 
-  // Another chunk may find the beauty.
+  // Another chunk may find the beauty whole.
+  for (const int number : {1, 2, 3}) write_bytes(fmt::format("{}/b.{:04}.exr", in, number), "begun");
   const Finished without_beauty =
       run(typed("--normal-space world --depth-kind planar --radius auto --keep-going --beauty " + in +
-                "/none.%04d.exr --composite " + out + "/c.%04d.exr"));
+                "/b.%04d.exr --composite " + out + "/c.%04d.exr"));
   EXPECT_EQ(without_beauty.code, 1) << without_beauty;
   EXPECT_THAT(without_beauty.err, HasSubstr("--radius auto takes " + radius));
 }
