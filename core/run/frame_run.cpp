@@ -489,6 +489,14 @@ FrameReport report_of(const FramePlan& plan, int frame) {
 
 namespace {
 
+/// Puts into a report why its frame failed, and whether the device is why.
+void put_failure(FrameReport& report, const Error& error) {
+  report.state = FrameState::failed;
+  report.error = error;
+  report.out_of_memory = dynamic_cast<const gpu::OutOfMemory*>(&error) != nullptr;
+  report.device_lost = dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr;
+}
+
 FrameReport run_on(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& watch) {
   FrameReport report;
   lane.gpu.abandon();  // commands that a frame that failed has left
@@ -498,18 +506,13 @@ FrameReport run_on(Lane& lane, const RunContext& run, const Room& room, int fram
     report.state = FrameState::done;
   } catch (const Dropped&) {
     report.state = FrameState::dropped;
-  } catch (const gpu::DeviceLost& error) {
-    report.state = FrameState::failed;
-    report.error = error;
-    report.device_lost = true;
   } catch (const Error& error) {
-    report.state = FrameState::failed;
-    report.out_of_memory = dynamic_cast<const gpu::OutOfMemory*>(&error) != nullptr;
-    // Devices and numbers know of no file.
+    put_failure(report, error);
+    // Devices and numbers know of no file. A lost device is lost for all frames.
     const bool may_be_without = error.kind() == ErrorKind::device || error.kind() == ErrorKind::usage;
-    const bool is_named =
-        !may_be_without || std::string_view(error.what()).find(report.input) != std::string_view::npos;
-    report.error = is_named ? error : Error(error.kind(), fmt::format("{}: {}", report.input, error.what()));
+    const bool is_named = !may_be_without || report.device_lost ||
+                          std::string_view(error.what()).find(report.input) != std::string_view::npos;
+    if (!is_named) report.error = Error(error.kind(), fmt::format("{}: {}", report.input, error.what()));
   } catch (const std::bad_alloc&) {
     report.state = FrameState::failed;
     report.error = Error(ErrorKind::device,
@@ -531,10 +534,7 @@ FrameReport run_frame(Lanes& lanes, const RunContext& run, const Room& room, int
     return report;
   } catch (const Error& error) {  // of making the lane, which is no fault of the frame
     FrameReport report = report_of(run.plan, frame);
-    report.state = FrameState::failed;
-    report.error = error;
-    report.out_of_memory = dynamic_cast<const gpu::OutOfMemory*>(&error) != nullptr;
-    report.device_lost = dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr;
+    put_failure(report, error);
     if (!report.out_of_memory && !report.device_lost) throw;
     return report;
   }
