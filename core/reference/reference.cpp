@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <thread>
 
 #include "core/reference/reference_scene.h"
@@ -18,8 +19,8 @@ namespace alcove {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// The parts of a completed segment if blocked directions weigh by distance.
-constexpr int kPartsWithFalloff = 32;
+/// The parts of a completed segment: each blocks what is behind its ends, and in between.
+constexpr int kPartsOfSegment = 32;
 
 using Scene = ReferenceScene;
 using Sample = ReferenceSample;
@@ -104,18 +105,48 @@ Vector crossing(Vector within, Vector beyond, double radius) {
   return within + ((std::sqrt(std::max(0.0, b * b - a * c)) - b) / a) * step;
 }
 
-/// The angles that the surface between two neighbouring samples spans within the radius; empty (first > second) if it
-/// lies outside.
+/// The part of a solid within the sphere of the radius that lies behind one point of its front, on the eye's ray.
+struct Depths {
+  Vector begin, end;  // offsets from the receiver
+};
+
+/// The part of a solid behind a point of its front, which is `offset` away. Where the front is before the sphere, it
+/// begins where the eye's ray enters the sphere, unless the solid ends before; what has no end is no solid there.
+std::optional<Depths> depths_of(const Scene& scene, const Receiver& receiver, Vector offset, double thickness,
+                                double radius) {
+  const Vector position = receiver.position + offset;
+  const Vector away = scene.orthographic() ? Vector{0, 0, -1} : normalized(position);
+  const double middle = -dot(offset, away);
+  const double outside = dot(offset, offset) - radius * radius;
+  const double half = std::sqrt(std::max(0.0, middle * middle - outside));
+  const double leaves = middle + half;
+  // The ends of what the sphere has cut lie on it, but for rounding.
+  if (outside < 1e-9 * radius * radius) return Depths{offset, offset + std::min(thickness, leaves) * away};
+  const double enters = middle - half;
+  if (half == 0 || enters < 0 || enters >= thickness || std::isinf(thickness)) return std::nullopt;
+  return Depths{offset + enters * away, offset + std::min(thickness, leaves) * away};
+}
+
+/// The angles that a solid spans within the radius between two neighbouring samples of its front; empty (first >
+/// second) if it lies outside.
 std::pair<double, double> span_between(const Scene& scene, const Receiver& receiver, const Side& side, const Sample& a,
                                        const Sample& b, double radius) {
-  Vector from = a.position - receiver.position;
-  Vector to = b.position - receiver.position;
+  const Vector from = a.position - receiver.position;
+  const Vector to = b.position - receiver.position;
+  const auto first = depths_of(scene, receiver, from, a.thickness, radius);
+  const auto last = depths_of(scene, receiver, to, b.thickness, radius);
+  if (!same_surface(scene, a, b) || (!first && !last)) return {1, 0};
   const bool from_within = length(from) < radius;
   const bool to_within = length(to) < radius;
-  if (!same_surface(scene, a, b) || (!from_within && !to_within)) return {1, 0};
-  if (!to_within) to = crossing(from, to, radius);
-  if (!from_within) from = crossing(to, from, radius);
-  return std::minmax({angle_of(side, from), angle_of(side, to)});
+  std::pair<double, double> span{INFINITY, -INFINITY};
+  const auto add = [&](Vector offset) {
+    const double angle = angle_of(side, offset);
+    span = {std::min(span.first, angle), std::max(span.second, angle)};
+  };
+  if (first) add(first->begin);
+  if (last) add(last->begin);
+  if (from_within != to_within) add(from_within ? crossing(from, to, radius) : crossing(to, from, radius));
+  return span;
 }
 
 /// The integrals over the blocked angles of a slice's side.
@@ -159,52 +190,49 @@ class Blocking {
         const double weight = 0.5 * (weight_of(settings_, before) + weight_of(settings_, distance));
         if (low > 0 && low <= lowest_) sum = sum + weight * blocked_.add(low, std::min(high, limit_));
       }
-      if (sample.depth == 0 || distance >= settings_.radius || distance == 0) continue;
-      const double front = angle_of(side_, offset);
+      if (sample.depth == 0 || distance == 0) continue;
+      const auto solid = depths_of(scene_, receiver_, offset, sample.thickness, settings_.radius);
+      if (!solid) continue;
+      const double front = angle_of(side_, solid->begin);
       if (front <= 0 || front >= lowest_) continue;
-      const double back = back_of(sample.position, offset, distance, front, sample.thickness);
-      sum = sum + weight_of(settings_, distance) * blocked_.add(front, back);
+      sum = sum + weight_of(settings_, distance) * blocked_.add(front, back_of(*solid, front));
     }
     return sum;
   }
 
-  /// The angle, as seen from the receiver, of the end of the solid behind a point: it lies on the eye's ray, and within
-  /// the sphere of the radius.
-  double back_of(Vector position, Vector offset, double distance, double front, double thickness) const {
-    const Vector away = scene_.orthographic() ? Vector{0, 0, -1} : normalized(position);
-    const double along = dot(offset, away);
-    const double exit =
-        -along + std::sqrt(std::max(0.0, along * along - distance * distance + settings_.radius * settings_.radius));
-    const double angle = angle_of(side_, offset + std::min(thickness, exit) * away);
+  /// The angle, as seen from the receiver, of the end of a solid.
+  double back_of(const Depths& solid, double front) const {
+    const double angle = angle_of(side_, solid.end);
     // An angle that wrapped round lies beyond the tangent plane. On the sphere, rounding may turn the end before the
     // front.
     return angle < 0 ? limit_ : std::min(std::max(angle, front), limit_);
   }
 
   Vector by_segment(const CompletedSegment& segment) {
-    const int parts = settings_.falloff == Falloff::none ? 1 : kPartsWithFalloff;
     Vector sum;
     Vector from = segment.nearer;
-    for (int i = 1; i <= parts; i++) {
-      const Vector to = segment.nearer + (double(i) / parts) * (segment.farther - segment.nearer);
+    for (int i = 1; i <= kPartsOfSegment; i++) {
+      const Vector to = segment.nearer + (double(i) / kPartsOfSegment) * (segment.farther - segment.nearer);
       sum = sum + by_part(from, to, segment.thickness);
       from = to;
     }
     return sum;
   }
 
-  /// Blocks a straight part: its fronts are one interval of angles, and its backs follow them.
+  /// Blocks a straight part: what it blocks is one interval of angles.
   Vector by_part(Vector from, Vector to, double thickness) {
-    const auto [low, high] = std::minmax({angle_of(side_, from), angle_of(side_, to)});
-    if (low <= 0 || low >= lowest_) return {};
-    double back = std::min(high, limit_);
-    double weight = 0;
+    double low = INFINITY, high = -INFINITY, back = 0, weight = 0;
     for (const Vector end : {from, to}) {
-      const double distance = length(end);
-      back = std::max(back, back_of(receiver_.position + end, end, distance, angle_of(side_, end), thickness));
-      weight += 0.5 * weight_of(settings_, distance);
+      const auto solid = depths_of(scene_, receiver_, end, thickness, settings_.radius);
+      if (!solid) continue;
+      const double front = angle_of(side_, solid->begin);
+      low = std::min(low, front);
+      high = std::max(high, front);
+      back = std::max(back, back_of(*solid, front));
+      weight += 0.5 * weight_of(settings_, length(end));
     }
-    return weight * blocked_.add(low, back);
+    if (!(low > 0) || low >= lowest_ || high < low) return {};
+    return weight * blocked_.add(low, std::max(back, std::min(high, limit_)));
   }
 
   const Scene& scene_;

@@ -118,9 +118,9 @@ class Completer {
     return dot(receiver_.normal, offset) >= kLeastHeight * length(offset);
   }
 
-  /// Whether a surface that goes on has left the sphere's range of depth for good.
-  bool has_left(double nearness, double change) const {
-    const double nearest = receiver_.depth - settings_.radius;
+  /// Whether a surface that goes on has left for good the range of depth in which its solid may reach into the sphere.
+  bool has_left(const Course& course, double nearness, double change) const {
+    const double nearest = receiver_.depth - settings_.radius - reach_of(course);
     if (change < 0) return nearness < nearness_at(receiver_.depth + settings_.radius);
     return (nearest > 0 || scene_.orthographic()) && nearness > nearness_at(nearest);
   }
@@ -143,7 +143,7 @@ class Completer {
       if (step == steps_) return add_beyond_border(course);
       const double nearness = course.at(step);
       if (hider(step).depth == 0 || nearness >= nearness_of(hider(step))) return add(course, step - way);
-      if ((way > 0 && step > side_.reach + 1) || has_left(nearness, course.slope * way)) return add_ray(course, way);
+      if ((way > 0 && step > side_.reach + 1) || has_left(course, nearness, course.slope * way)) return add_ray(course, way);
     }
   }
 
@@ -178,18 +178,36 @@ class Completer {
     add_part(course, from, along, meets_eye ? sample(course.edge).depth / along.z : INFINITY, way > 0);
   }
 
-  /// Adds the points from + t along, 0 <= t <= most, that lie in the sphere.
+  /// Adds the points from + t along, 0 <= t <= most, that lie in the sphere, and apart those whose solid may reach into
+  /// it from before it.
   void add_part(const Course& course, Vector from, Vector along, double most, bool away) {
+    const auto [first, last] = within(from, along, settings_.radius);
+    const auto [nearest, farthest] = within(from, along, settings_.radius + reach_of(course));
+    std::vector<double> cuts{std::max(0.0, nearest), std::min(most, farthest)};
+    for (const double cut : {first, last})
+      if (first < last && cut > cuts.front() && cut < cuts.back()) cuts.insert(cuts.end() - 1, cut);
+    for (std::size_t i = 1; i < cuts.size() && cuts.front() < cuts.back(); i++) {
+      const Vector begin = from + cuts[i - 1] * along;
+      const Vector end = from + cuts[i] * along;
+      segments_.push_back({away ? begin : end, away ? end : begin, sample(course.edge).thickness});
+    }
+  }
+
+  /// How far before the sphere a surface may lie for its solid to reach into it.
+  double reach_of(const Course& course) const {
+    const double thickness = sample(course.edge).thickness;
+    return thickness < INFINITY ? thickness : 0;
+  }
+
+  /// The t, from the first to the last, for which from + t along is no farther away than a distance; none: the first is
+  /// not before the last.
+  static std::pair<double, double> within(Vector from, Vector along, double distance) {
     const double a = dot(along, along);
     const double b = dot(from, along);
-    const double c = dot(from, from) - settings_.radius * settings_.radius;
-    const double root = std::sqrt(std::max(0.0, b * b - a * c));
-    const double first = std::max(0.0, (-b - root) / a);
-    const double last = std::min(most, (-b + root) / a);
-    if (b * b < a * c || !(first < last)) return;
-    const Vector begin = from + first * along;
-    const Vector end = from + last * along;
-    segments_.push_back({away ? begin : end, away ? end : begin, sample(course.edge).thickness});
+    const double c = dot(from, from) - distance * distance;
+    if (b * b < a * c) return {0, 0};
+    const double root = std::sqrt(b * b - a * c);
+    return {(-b - root) / a, (-b + root) / a};
   }
 
   const ReferenceScene& scene_;

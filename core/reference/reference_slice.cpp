@@ -12,6 +12,9 @@ namespace {
 /// The least thickness, in radii, of a run that the picture's border cuts: its width is unknown.
 constexpr double kCutThickness = 0.5;
 
+/// A run counts as so many radii wide at most.
+constexpr double kWidest = 2;
+
 /// With Completion::all, surfaces that begin within so many reaches of the receiver may go on into the sphere. The
 /// seven rendered scenes came ever nearer to ray tracing up to 3.
 constexpr double kFarReach = 3;
@@ -32,7 +35,7 @@ bool goes_on(const ReferenceSettings& settings, const ReferenceSide& side, const
     const ReferenceSample& sample = line[index];
     const int first = firsts[std::size_t(index)];
     if (settings.thickness == ThicknessRule::width && sample.nearer >= 0 &&
-        length(sample.position - line[first].position) * settings.width_share <= 2 * settings.radius)
+        length(sample.position - line[first].position) * settings.width_share <= kWidest * settings.radius)
       return true;
   }
   return completes_behind(settings) && line.at(step, 0).depth > 0 && step <= kFarReach * side.reach + 1;
@@ -104,7 +107,10 @@ double thickness_of_run(const ReferenceScene& scene, const ReferenceLine& line, 
   // single blades of grass would vanish.
   const double pixel = size_of_pixel(scene, line[first].depth);
   const double chord = length(line[last].position - line[first].position) + pixel;
-  const double thickness = settings.width_share * chord + settings.width_pixels * pixel;
+  // A long run levels off: a wall is not as thick as it is long.
+  const double most = kWidest * settings.radius;
+  const double width = std::min(settings.width_share * chord + settings.width_pixels * pixel, most);
+  const double thickness = width - width * width * width / (3 * most * most);
   return cut && settings.complete != Completion::none ? std::max(thickness, kCutThickness * settings.radius)
                                                       : thickness;
 }

@@ -12,10 +12,6 @@
 const float kLeastRise = 4e-3;
 const float kLeastElevation = 1e-3;  // sine
 
-/// An end of a surface goes on behind something, or beyond the border, if it is no farther from the receiver than this,
-/// in radii: what is farther seldom comes back within reach.
-const float kFarEnd = 1.2;
-
 /// Beyond the border an end goes on if it stands so high above the tangent plane, in radii, where it leaves the sphere:
 /// a floor that the border cuts stays open, whatever its normal map.
 const float kLeastRisen = 0.1;

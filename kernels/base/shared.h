@@ -63,6 +63,13 @@ ALCOVE_CONSTANT float kSkyDepth = 1e30;
 // width is not known. Endless it would be as near to ray tracing in one picture, but flicker in a moving one.
 ALCOVE_CONSTANT float kCutThickness = 0.5;
 
+// An end of a surface goes on behind something, or beyond the border, if it is no farther from the receiver than this,
+// in radii: what is farther seldom comes back within reach.
+ALCOVE_CONSTANT float kFarEnd = 1.2;
+// Of the thickness that a run has by its width: the most radii that count, which is also what it levels off at. A wall
+// is not as thick as it is long.
+ALCOVE_CONSTANT float kWidestRun = 2;
+
 // The R2 sequence (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018) goes on by 1/g and
 // 1/g^2, where g^3 = g + 1.
 ALCOVE_NUMBER kR2X = 0.75487766624669276;

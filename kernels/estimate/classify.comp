@@ -10,7 +10,7 @@
 //     and farthest depth.
 //  2. The box in space that holds the receivers, and the part of the image within their reach, follow from these.
 //  3. If another frame's estimates still lie there, and nothing within reach has changed, they stay.
-//  4. If nothing is hidden within kFarEnd radii of the receivers, nor closes a solid whose front is there, an estimator
+//  4. If nothing is hidden so near to the receivers that it may block, nor closes a solid whose front is there, an estimator
 //     finds what it finds where nothing is hidden at all, to the bit (surfaces.glsl). Such tiles are listed without
 //     kTileLayered. Distances are those of the boxes in space that hold receivers and hidden surfaces.
 //  5. The tiles that are left are counted and listed; the others get what estimators write for sky.
@@ -129,7 +129,7 @@ bool is_as_before(Rect rect) {
 
 /// Whether something is hidden so near to receivers that an estimator looks at it, as far as one invocation of a row
 /// searches for all of them.
-bool is_hidden_near(View view, Box box, float reach, Rect rect) {
+bool is_hidden_near(View view, Box box, float front, Rect rect) {
   const ivec2 from = ivec2(rect.least) / (kTile * kTileBlock);
   const ivec2 extent = ivec2(rect.most) / (kTile * kTileBlock) - from + 1;
   const int columns = blocks_of(view.size).x;
@@ -137,7 +137,7 @@ bool is_hidden_near(View view, Box box, float reach, Rect rect) {
   for (int i = int(gl_LocalInvocationID.x); i < extent.x * extent.y && !is_found; i += int(kGroupX)) {
     const ivec2 block = from + ivec2(i % extent.x, i / extent.x);
     const vec2 depths = bounds[block.y * columns + block.x];
-    const bool is_near = distance_sq(box, box_of(view, block, depths.x, depths.y)) <= kFarEnd * kFarEnd * reach * reach;
+    const bool is_near = distance_sq(box, box_of(view, block, depths.x, depths.y)) <= front * front;
     is_found = depths.x <= depths.y && is_near;
   }
   return is_found;
@@ -225,9 +225,10 @@ void main() {
     const Box box = box_of(view, block, uintBitsToFloat(nearest[row]), farthest_here);
     const float reach = reach_of_samples(view, params.radius, farthest_here);
     const Rect rect = image_of_reach(view, box, reach);
+    const float front = reach_of_samples(view, params.front, farthest_here);
     if (kReuses) is_kept = is_as_before(rect);  // 3.
     // 4.
-    if (kTellsLayered && !is_kept && is_hidden_near(view, box, reach, rect)) atomicOr(layered[row], 1u);
+    if (kTellsLayered && !is_kept && is_hidden_near(view, box, front, rect)) atomicOr(layered[row], 1u);
   }
   // 5.
   if (tile == ivec2(0) && gl_LocalInvocationID.x == 0u) counts.groups.z = 1u;

@@ -46,6 +46,7 @@ ALCOVE_CONSTANT int kChangeBlock = 32;  // px of the frame a side of the blocks 
 struct ClassifyParams {
   View view;
   float radius;      // scene units: the farthest at which anything blocks
+  float front;       // scene units: the farthest front of a surface that blocks within the radius
   uint plane;        // of the AO
   ivec2 frame_size;  // px; the frame is the image, or `factor` times as large
   ivec2 overhang;    // px of the first pixel of the image that are outside of the frame
@@ -69,6 +70,7 @@ struct HorizonParams {
   View view;
   float radius;          // scene units
   float falloff_start;   // scene units, below the radius
+  float front;           // scene units: the farthest front that may block; the solid behind it reaches into the radius
   ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
   vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
   float bias;            // sine of the elevation above the tangent plane below which nothing blocks

@@ -80,6 +80,9 @@ const float kNone = 1e30;
 /// the sphere and its slopes are those of the vertex within 0.1 %, and long enough not to be lost in rounding.
 const float kShortStroke = 0.999;
 
+/// A ray that misses the sphere by less than this part of its squared radius touches it.
+const float kTouches = 1e-3;
+
 /// A walk from vertex to vertex of one side.
 struct Walk {
   vec2 last;        // the vertex before, in (across, toward)
@@ -98,18 +101,32 @@ struct Stroke {
 struct Clipped {
   vec2 near, far;
   bool is_within;  // whether it holds anything
-  vec2 parts;      // of the stroke: where near and far are on it
 };
 
-/// slope_of() the back of an occluder: it lies `thickness` further along the eye's ray through its front (across,
-/// toward), but not beyond the sphere.
-float back_of(vec2 front, float eye_distance, float thickness, float radius_sq) {
+/// slope_of() the back of an occluder that is endless: where the eye's ray through its front (across, toward) leaves the
+/// sphere.
+float back_of(vec2 front, float eye_distance, float radius_sq) {
   const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1);
   const vec2 direction = ray * inversesqrt(dot(ray, ray));
   const float middle = dot(front, direction);
   const float leaves = sqrt(max(0.0, middle * middle - dot(front, front) + radius_sq)) - middle;
-  const vec2 back = front + min(thickness, leaves) * direction;
+  const vec2 back = front + min(kNone, leaves) * direction;
   return slope_of(back);
+}
+
+/// slope_of() where the eye's ray through a front (across, toward) enters what of a solid lies within the sphere, and
+/// where it leaves that; (-1, 1): nothing of it lies there. The solid is `thickness` deep.
+vec2 depths_of(vec2 front, float eye_distance, float thickness, float radius_sq) {
+  const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1);
+  const vec2 direction = ray * inversesqrt(dot(ray, ray));
+  const float middle = dot(front, direction);
+  const float outside_sq = dot(front, front) - radius_sq;
+  const float inside_sq = middle * middle - outside_sq;
+  const float inside = sqrt(max(0.0, inside_sq));
+  const float enters = outside_sq > 0.0 ? -inside - middle : 0.0;
+  const float leaves = min(thickness, inside - middle);
+  const bool exists = both(both(front.x > 0.0, inside_sq > -kTouches * radius_sq), both(enters >= 0.0, enters <= leaves));
+  return exists ? vec2(slope_of(front + enters * direction), slope_of(front + leaves * direction)) : vec2(-1, 1);
 }
 
 /// The part of a stroke within the sphere of the radius about the receiver: with from + t (to - from), the t between
@@ -117,8 +134,7 @@ float back_of(vec2 front, float eye_distance, float thickness, float radius_sq) 
 /// scene's numbers are large. So `along` is divided by a power of two near the receiver's depth, and t is multiplied by
 /// it, which changes no bit.
 Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
-  const float per_unit = 1.0 / unit;
-  const vec2 from = stroke.from, along = per_unit * (stroke.to - stroke.from);
+  const vec2 from = stroke.from, along = (1.0 / unit) * (stroke.to - stroke.from);
   const float a = dot(along, along);
   const float middle = dot(from, along);
   const float beside = from.x * along.y - from.y * along.x;
@@ -127,8 +143,7 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
   const float scale = 1.0 / a;
   const float enters = max(0.0, (-middle - inside) * scale);
   const float leaves = min(unit, (inside - middle) * scale);
-  return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves),
-                 per_unit * vec2(enters, leaves));
+  return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
 }
 
 /// The largest power of two that is not above a depth.
@@ -245,33 +260,50 @@ Corner corner_at(Context c, int at, int step, float z, bool toward) {
   return corner;
 }
 
+/// The part of a stroke that the eye sees before the sphere or within it.
+Stroke before_sphere(Stroke stroke, vec2 leaving) {
+  const float from = dot(stroke.from, leaving) - params.radius, to = dot(stroke.to, leaving) - params.radius;
+  const vec2 end = mix(stroke.from, stroke.to, from / (from - to));
+  return Stroke(both(from > 0.0, to < 0.0) ? end : stroke.from, both(to > 0.0, from < 0.0) ? end : stroke.to);
+}
+
 /// 7. Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set
 /// apart. It belongs to the vertex at a corner. goes_on: from there on it is not seen, or up to there, and need not be
 /// straight with what is; both hang together there, so they block one interval.
-void block(inout Blocked blocked, Walk walk, Context c, Clipped stroke, Corner corner, bool goes_on) {
+void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner corner, bool goes_on) {
   const Search search = c.search;
   const float eye_distance = c.point.eye_distance, radius_sq = c.radius_sq;
-  const float near_slope = slope_of(stroke.near);
-  const float far_slope = slope_of(stroke.far);
-  float high = max(near_slope, far_slope);
-  float low = min(near_slope, far_slope);
-  float height = max(dot(stroke.near, search.normal), dot(stroke.far, search.normal));
-  const float thickness = kSlots > 1u ? walk.thickness + stroke.parts.y * walk.change : walk.thickness;
-  float back = back_of(stroke.far, eye_distance, thickness, radius_sq);
-  IF_ANY (kSlots > 1u && walk.change != 0.0)
-    back = min(back, back_of(stroke.near, eye_distance, walk.thickness + stroke.parts.x * walk.change, radius_sq));
-  if (kCompletes != kCompletesNothing) {
-    const bool bends = both(goes_on, dot(corner.place, corner.place) < radius_sq);
-    const float slope = slope_of(corner.place),
-                back_of_bend = back_of(corner.place, eye_distance, thickness, radius_sq);
-    high = bends ? max(high, slope) : high;
-    low = bends ? min(low, slope) : low;
-    height = bends ? max(height, dot(corner.place, search.normal)) : height;
-    back = bends ? min(back, back_of_bend) : back;
+  const Clipped front = clip_to_sphere(stroke, radius_sq, search.unit);
+  const bool is_within = both(front.is_within, min(front.near.x, front.far.x) > 0.0);
+  const float near_slope = slope_of(front.near), far_slope = slope_of(front.far);
+  // The largest and the smallest slope of what lies within the sphere.
+  vec2 slopes = is_within ? vec2(max(near_slope, far_slope), min(near_slope, far_slope)) : vec2(-1, 1);
+  float height = is_within ? max(dot(front.near, search.normal), dot(front.far, search.normal)) : -kNone;
+  const bool bends = kCompletes != kCompletesNothing && goes_on;
+  const float last = walk.thickness + walk.change;
+  if (walk.is_own || walk.thickness >= kNone) {
+    // What has no end blocks by its front within the sphere alone.
+    const bool bends_within = both(bends, dot(corner.place, corner.place) < radius_sq);
+    const float bend = slope_of(corner.place);
+    slopes.y = is_within ? min(slopes.y, back_of(front.far, eye_distance, radius_sq)) : slopes.y;
+    slopes.x = bends_within ? max(slopes.x, bend) : slopes.x;
+    slopes.y = bends_within ? min(slopes.y, min(bend, back_of(corner.place, eye_distance, radius_sq))) : slopes.y;
+    height = bends_within ? max(height, dot(corner.place, search.normal)) : height;
+  } else {
+    const Stroke ends = before_sphere(stroke, search.leaving);
+    const vec2 from = depths_of(ends.from, eye_distance, walk.thickness, radius_sq);
+    const vec2 to = depths_of(ends.to, eye_distance, last, radius_sq);
+    slopes = vec2(max(slopes.x, max(from.x, to.x)), min(slopes.y, min(from.y, to.y)));
+    height = from.x >= from.y ? max(height, dot(ends.from, search.normal)) : height;
+    height = to.x >= to.y ? max(height, dot(ends.to, search.normal)) : height;
+    IF_ANY (bends) {
+      const vec2 bend = depths_of(corner.place, eye_distance, last, radius_sq);
+      slopes = vec2(max(slopes.x, bend.x), min(slopes.y, bend.y));
+      height = bend.x >= bend.y ? max(height, dot(corner.place, search.normal)) : height;
+    }
   }
-  const bool rises = both(min(stroke.near.x, stroke.far.x) > 0.0, high > search.lowest);
-  const float top = both(stroke.is_within, both(rises, height > corner.least)) ? high : -1.0;
-  const float bottom = walk.is_own ? -1.0 : min(low, back);
+  const float top = both(slopes.x > search.lowest, height > corner.least) ? slopes.x : -1.0;
+  const float bottom = walk.is_own ? -1.0 : slopes.y;
   const bool onto_own = bottom <= blocked.own;
   blocked.sectors |=
       onto_own || top < bottom ? 0u : sectors_below(top, search.shift) & ~sectors_below(bottom, search.shift);
@@ -398,7 +430,7 @@ struct Found {
 /// 5. to 7. Adds the stroke that ends at a vertex. goes_on: its surface goes on there unseen.
 void add_stroke(inout Found found, Walk walk, Context c, Stroke stroke, Corner corner, bool begins, bool goes_on) {
   if (kCompletes == kCompletesApart)
-    block(found.seen, walk, c, clip_to_sphere(stroke, c.radius_sq, c.search.unit), corner, false);
+    block(found.seen, walk, c, stroke, corner, false);
   // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
   // beyond the sphere, only the former matters.
   const bool is_first_beyond = both(walk.starts, dot(corner.place, corner.place) > c.radius_sq);
@@ -408,7 +440,7 @@ void add_stroke(inout Found found, Walk walk, Context c, Stroke stroke, Corner c
     stroke.from = draws_on ? whole.from : stroke.from;
     stroke.to = draws_on ? whole.to : stroke.to;
   }
-  block(found.all, walk, c, clip_to_sphere(stroke, c.radius_sq, c.search.unit), corner, draws_on);
+  block(found.all, walk, c, stroke, corner, draws_on);
 }
 
 /// 5. Adds the surface that goes on towards the receiver behind the end of a walk. last: the walk's last vertex; below
@@ -425,7 +457,7 @@ void add_beyond(inout Found found, Walk walk, Context c, int last) {
     walk.thickness = params.thickness == 0.0 || kWalks > 1 ? thickness_at(marked) : params.thickness;
     walk.change = 0.0;
     const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
-    block(found.all, walk, c, clip_to_sphere(stroke, c.radius_sq, c.search.unit), corner, true);
+    block(found.all, walk, c, stroke, corner, true);
   }
 }
 

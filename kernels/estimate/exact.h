@@ -36,6 +36,7 @@ struct ProfileParams {
   float tolerance;  // px: how far in depth a pixel may be from the profile, in its own widths
   // A run's thickness is its width times the first and so many widths of its pixels.
   float depth_per_width, more_pixels;
+  float widest;           // scene units: the most that counts of that, and what thickness levels off at
   float least_at_border;  // scene units: a run that the image's border cuts is taken to be at least so thick
   uint slot;              // planes of what comes out before that of the first slot
 };

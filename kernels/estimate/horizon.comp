@@ -76,6 +76,7 @@ const int kSurfaces = ALCOVE_SURFACES;
 const uint kFalloff = kMode & ~(kWithBent | kWithCompleted);
 const bool kBent = (kMode & kWithBent) != 0u;
 const bool kTellsCompleted = (kMode & kWithCompleted) != 0u;
+const bool kHard = kFalloff == kFalloffNone;
 const uint kThickness = kSolid & 3u;
 const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
 const bool kBehindOthers = (kSolid & kCompletesHidden) != 0u;
@@ -138,17 +139,47 @@ vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
   return own + arcs_of(side, others);
 }
 
-/// 6. The sectors that a run blocks. gap_behind: steps to the sample behind it. is_open: it has samples without a known
-/// back.
-uint sectors_of(Receiver r, Reach reach, Run run, bool is_open, float z, float gap_behind, float shift) {
+/// How thick a run is, in scene units. gap_behind: steps to the sample behind it.
+float thickness_of(Receiver r, Reach reach, Run run, float z, float gap_behind) {
+  if (kThickness != kThicknessWidth) return reach.thickness;
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
   const float width = run.share * (length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind)));
+  return levelled(width, kWidestRun * reach.radius);
+}
+
+/// 6. The sectors that a run blocks whose front lies within the sphere. is_open: it has samples without a known back.
+uint sectors_of(Receiver r, Reach reach, Run run, bool is_open, float thickness, float shift) {
   // What is as deep as wide is not clipped to the sphere: no difference in the error, and it takes a tenth off the
   // time.
-  const float back = slope_of(kThickness == kThicknessWidth ? run.start + width * away_from_eye(r, run.start)
-                                                            : back_of(r, run.start, reach.thickness, reach.radius));
+  const float back = slope_of(kThickness == kThicknessWidth ? run.start + thickness * away_from_eye(r, run.start)
+                                                            : back_of(r, run.start, thickness, reach.radius));
   const float far = is_open ? min(back, run.far) : run.far;
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(far, shift) : 0u;
+}
+
+/// A run that begins or ends before the sphere; the solid behind it may reach into the sphere.
+struct Before {
+  vec2 start, end;
+  float thickness;  // 0: there is none
+};
+
+/// Of such runs the thickest of a side counts.
+void take_before(inout Before before, Run run, bool is_before, float thickness) {
+  const bool taken = both(is_before, thickness > before.thickness);
+  before.start = taken ? run.start : before.start;
+  before.end = taken ? run.end : before.end;
+  before.thickness = taken ? thickness : before.thickness;
+}
+
+/// The sectors that it blocks.
+uint sectors_of(Receiver r, Reach reach, Before before, float shift) {
+  uint sectors = 0u;
+  IF_ANY (before.thickness > 0.0) {
+    const vec2 first = depths_of(r, before.start, before.thickness, reach.radius_sq);
+    const vec2 last = depths_of(r, before.end, before.thickness, reach.radius_sq);
+    sectors = sectors_between(vec2(max(first.x, last.x), min(first.y, last.y)), shift);
+  }
+  return sectors;
 }
 
 /// The slopes that a sample blocks, largest and smallest: its own where it `blocks`, and where the surface from the
@@ -158,8 +189,6 @@ vec2 slopes_of(Sample s, bool crosses, float crossing) {
   return vec2(max(blocks ? s.slope : -1.0, crosses ? crossing : -1.0),
               min(blocks ? s.slope : 1.0, crosses ? crossing : 1.0));
 }
-
-const bool kHard = kFalloff == kFalloffNone;
 
 /// The blocked directions that a search has found.
 struct Found {
@@ -289,6 +318,8 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   Sample last = receiver_sample(r);
   Run run = Run(vec2(0), vec2(0), 0.0, 1.0, -1.0, 1.0);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
+  Before before = Before(vec2(0), vec2(0), 0.0);
+  bool is_before = false;  // the run has samples before the sphere
   for (int k = 0; k < count; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
     const float gap = s.offset - last.offset;
@@ -299,7 +330,12 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     if (kBehindOthers) take_down(interrupted, k, s, last, connected, connected, reach);
     if (connected) run.end = s.place;
     if (!connected || !s.above) {
-      if (kHard) found.blocked.sectors |= sectors_of(r, reach, run, true, last.z, gap, draw.shift);
+      if (kHard) {
+        const float thickness = thickness_of(r, reach, run, last.z, gap);
+        found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
+        take_before(before, run, is_before, thickness);
+      }
+      is_before = false;
       run = Run(s.place, s.place, gap, 1.0, -1.0, 1.0);
       own = !s.above;
     }
@@ -308,9 +344,10 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     } else {
       run.near = max(run.near, slopes.x);
       run.far = min(run.far, slopes.y);
+      is_before = s.above && is_before_sphere(r, reach, s.place) ? true : is_before;
     }
     if (!kHard) {
-      found.blocked.sectors |= sectors_of(r, reach, run, true, s.z, 1.0, draw.shift);
+      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness_of(r, reach, run, s.z, 1.0), draw.shift);
       add_faded(found, side, reach, draw, s.place);
     }
     last = s;
@@ -319,7 +356,12 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       interrupted = Interruptions(k + 1, 0u, 0u);
     }
   }
-  if (kHard) found.blocked.sectors |= sectors_of(r, reach, run, true, last.z, 1.0, draw.shift);
+  if (kHard) {
+    const float thickness = thickness_of(r, reach, run, last.z, 1.0);
+    found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
+    take_before(before, run, is_before, thickness);
+    found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
+  }
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
@@ -332,6 +374,7 @@ const uint kSlotAbove = 1u, kSlotWithin = 2u;
 const uint kSlotOwn = 4u;   // the receiver's surface
 const uint kSlotOpen = 8u;  // samples of the run that block have no known back
 const uint kSlotKnows = 16u;
+const uint kSlotBefore = 32u;  // samples of the run without a known back are before the sphere
 
 /// A surface of the last sample, and the run that it belongs to. Of the run `share` is told by kSlotKnows.
 struct Slot {
@@ -355,19 +398,22 @@ Slot chosen(Slot a, Slot b, bool second) {
   return s;
 }
 
-/// sectors_of() the run of a slot.
-uint sectors_of(Receiver r, Reach reach, Slot slot, float gap_behind, float shift) {
+float thickness_of(Receiver r, Reach reach, Slot slot, float gap_behind) {
   Run run = slot.run;
   run.share = (slot.bits & kSlotKnows) != 0u ? kKnownShare : 1.0;
-  return sectors_of(r, reach, run, (slot.bits & kSlotOpen) != 0u, slot.z, gap_behind, shift);
+  return thickness_of(r, reach, run, slot.z, gap_behind);
 }
 
-/// sectors_of() the runs of those slots whose bits are set; most of the time it is none or one.
-uint sectors_of_ending(Receiver r, Reach reach, Slot slots[kMostSurfaces], uint ending, float gap_behind, float shift) {
-  uint sectors = 0u;
-  for (int j = 0; j < kSurfaces; j++)
-    sectors |= (ending >> j & 1u) != 0u ? sectors_of(r, reach, slots[j], gap_behind, shift) : 0u;
-  return sectors;
+/// Ends the runs of those slots whose bits are set; most of the time it is none or one.
+void end_runs(inout Found found, inout Before before, Receiver r, Reach reach, Slot slots[kMostSurfaces], uint ending,
+              float gap_behind, float shift) {
+  for (int j = 0; j < kSurfaces; j++) {
+    const bool ends = (ending >> j & 1u) != 0u;
+    const float thickness = thickness_of(r, reach, slots[j], gap_behind);
+    const bool is_open = (slots[j].bits & kSlotOpen) != 0u;
+    found.blocked.sectors |= ends ? sectors_of(r, reach, slots[j].run, is_open, thickness, shift) : 0u;
+    take_before(before, slots[j].run, both(ends, (slots[j].bits & kSlotBefore) != 0u), thickness);
+  }
 }
 
 /// search_runs() for pixels of several surfaces: as many runs at a time.
@@ -379,6 +425,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   for (int i = 0; i < kSurfaces; i++)
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
+  Before before = Before(vec2(0), vec2(0), 0.0);
   for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
     const Surfaces here = surfaces_at(r, side, reach, offset, plane);
@@ -392,7 +439,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
     // Runs end that no surface continues, and those of surfaces that sink below the tangent plane.
     uint ending = 0u;
     for (int j = 0; j < kSurfaces && kHard; j++) {
-      bool ends = slots[j].run.near >= slots[j].run.far;
+      bool ends = slots[j].run.near >= slots[j].run.far || (slots[j].bits & kSlotBefore) != 0u;
       for (int i = 0; i < kSurfaces; i++) {
         const bool linked = from[i] == j;
         slots[j].run.end = linked ? here.at[i].place : slots[j].run.end;
@@ -400,7 +447,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       }
       ending |= ends ? 1u << j : 0u;
     }
-    found.blocked.sectors |= sectors_of_ending(r, reach, slots, ending, gap, draw.shift);
+    end_runs(found, before, r, reach, slots, ending, gap, draw.shift);
     Slot now[kMostSurfaces];
     for (int i = 0; i < kSurfaces; i++) {
       const Sample s = here.at[i];
@@ -423,14 +470,17 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       slot.run.near = max(slot.run.near, counts ? slopes.x : -1.0);
       slot.run.far = min(slot.run.far, counts ? slopes.y : 1.0);
       const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
-      slot.bits = (begins ? 0u : slot.bits & (kSlotOpen | kSlotKnows)) | (s.above ? kSlotAbove : 0u) |
+      const bool is_open = both(counts, !here.has_back[i]);
+      const bool is_before = kHard ? both(both(is_open, s.above), is_before_sphere(r, reach, s.place)) : false;
+      slot.bits = (begins ? 0u : slot.bits & (kSlotOpen | kSlotKnows | kSlotBefore)) | (s.above ? kSlotAbove : 0u) |
                   (s.within ? kSlotWithin : 0u) | (own ? kSlotOwn : 0u) | (knows ? kSlotKnows : 0u) |
-                  (both(counts, !here.has_back[i]) ? kSlotOpen : 0u);
+                  (is_open ? kSlotOpen : 0u) | (is_before ? kSlotBefore : 0u);
       slot.z = here.exists[i] ? s.z : kNoLastSurface;
       slot.slope = s.slope;
       now[i] = slot;
       if (!kHard && here.exists[i]) {
-        found.blocked.sectors |= sectors_of(r, reach, slot, 1.0, draw.shift);
+        const float thickness = thickness_of(r, reach, slot, 1.0);
+        found.blocked.sectors |= sectors_of(r, reach, slot.run, (slot.bits & kSlotOpen) != 0u, thickness, draw.shift);
         add_faded(found, side, reach, draw, s.place);
       }
     }
@@ -441,7 +491,8 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       interrupted = Interruptions(k + 1, 0u, 0u);
     }
   }
-  if (kHard) found.blocked.sectors |= sectors_of_ending(r, reach, slots, (1u << kSurfaces) - 1u, 1.0, draw.shift);
+  if (kHard) end_runs(found, before, r, reach, slots, (1u << kSurfaces) - 1u, 1.0, draw.shift);
+  if (kHard) found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
@@ -493,7 +544,7 @@ void estimate(ivec2 pixel) {
     return;
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius, params.depth_precision);
-  const Reach reach = reach_of(view, params.radius, params.falloff_start, params.thickness, params.bias);
+  const Reach reach = reach_of(view, params.radius, params.falloff_start, params.front, params.thickness, params.bias);
   const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
   float blocked = 0.0;
   float whole = 0.0;

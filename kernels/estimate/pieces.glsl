@@ -163,6 +163,8 @@ Piece piece_beyond(Receiver r, Side side, Reach reach, Sample border) {
 /// width is not known, it is kCutThickness radii thick, or as the user says.
 vec2 slopes_at_border(Receiver r, Reach reach, Sample border) {
   const float thickness = reach.thickness > 0.0 ? reach.thickness : kCutThickness * reach.radius;
-  const float back = slope_of(back_of(r, border.place, thickness, reach.radius));
+  if (kThickness != kThicknessEndless)
+    return border.above ? depths_of(r, border.place, thickness, reach.radius_sq) : vec2(-1, 1);
+  const float back = slope_of(back_of(r, border.place, kNone, reach.radius));
   return both(border.above, border.within) ? vec2(border.slope, min(border.slope, back)) : vec2(-1, 1);
 }

@@ -240,7 +240,7 @@ float thickness_of(View view, LinePlane plane, ivec2 steps, Step first, Step las
   const float pixel = view.tangent_per_pixel.x * nearer;
   const float width = length(last.place - first.place) + pixel;
   const bool is_cut = first.at == steps.x || last.at == steps.y - 1;
-  const float thickness = params.depth_per_width * width + params.more_pixels * pixel;
+  const float thickness = levelled(params.depth_per_width * width + params.more_pixels * pixel, params.widest);
   return is_cut ? max(thickness, params.least_at_border) : thickness;
 }
 

@@ -43,6 +43,7 @@ const float kRunSlope = 8.0;
 /// parameter anew at each use within a loop.
 struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
+  float front_sq;                          // of the farthest front that may block, squared
   float thickness;                         // scene units, infinite allowed; 0: as deep as wide
   // square of the sine of the elevation above the tangent plane below which nothing blocks
   float least_elevation_sq;
@@ -225,9 +226,9 @@ float slope_of(vec2 place) { return place.y / (place.x + abs(place.y)); }
 /// A place at the angle that a slope stands for.
 vec2 place_at(float slope) { return vec2(1.0 - abs(slope), slope); }
 
-Reach reach_of(View view, float radius, float falloff_start, float thickness, float bias) {
+Reach reach_of(View view, float radius, float falloff_start, float front, float thickness, float bias) {
   const float least = max(bias, kLeastElevation);
-  return Reach(radius, radius * radius, falloff_start, thickness, least * least, least_rise(view),
+  return Reach(radius, radius * radius, falloff_start, front * front, thickness, least * least, least_rise(view),
                view.tangent_per_pixel.x, view.size.x);
 }
 
@@ -273,4 +274,30 @@ vec2 back_of(Receiver r, vec2 front, float thickness, float radius) {
   const float along = dot(front, away);
   const float exit = sqrt(max(0.0, along * along - dot(front, front) + radius * radius)) - along;
   return front + min(thickness, exit) * away;
+}
+
+/// The thickness of a run by its width: a long one levels off, a wall is not as thick as it is long. most: the width
+/// from which it grows no more.
+float levelled(float width, float most) {
+  const float counted = min(width, most);
+  return counted - counted * counted * counted / (3.0 * most * most);
+}
+
+/// Whether a place lies outside of the sphere of the radius, and the eye's ray comes nearer to the receiver behind it.
+bool is_before_sphere(Receiver r, Reach reach, vec2 place) {
+  const float distance_sq = dot(place, place);
+  return both(distance_sq > reach.radius_sq, r.perspective ? distance_sq < place.y * r.eye_distance : place.y > 0.0);
+}
+
+/// slope_of() where the eye's ray through a front enters what of a solid lies within the sphere of the radius, and where
+/// it leaves that; (-1, 1): nothing of it lies there. The solid is `thickness` deep.
+vec2 depths_of(Receiver r, vec2 front, float thickness, float radius_sq) {
+  const vec2 away = away_from_eye(r, front);
+  const float middle = -dot(front, away);
+  const float outside_sq = dot(front, front) - radius_sq;
+  const float inside_sq = middle * middle - outside_sq, inside = sqrt(max(0.0, inside_sq));
+  const float enters = outside_sq > 0.0 ? middle - inside : 0.0;
+  const float leaves = min(thickness, middle + inside);
+  const bool exists = both(inside_sq > 0.0, both(enters >= 0.0, enters <= leaves));
+  return exists ? vec2(slope_of(front + enters * away), slope_of(front + leaves * away)) : vec2(-1, 1);
 }

@@ -35,7 +35,7 @@ Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, int plane
   for (int i = 0; i < kSurfaces; i++) {
     const float z = i == 0 ? occluder_depth[index] : hidden[index + (i - 1) * plane];
     const Sample s = sample_of(r, side, reach, offset, beside, abs(z));
-    const bool is_near = s.distance_sq < kFarEnd * kFarEnd * reach.radius_sq;
+    const bool is_near = s.distance_sq < reach.front_sq;
     found.at[i] = s;
     found.exists[i] = i == 0 ? true : both(s.z < kSkyDepth, is_near);
     closes[i] = z < 0.0;
@@ -45,8 +45,8 @@ Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, int plane
     const bool is_solid = i + 1 < kSurfaces ? closes[min(i + 1, kMostSurfaces - 1)] : false;
     const Sample back = found.at[min(i + 1, kSurfaces - 1)];
     found.has_back[i] = is_solid ? true : closes[i];
-    const float exit = slope_of(back_of(r, s.place, kNone, reach.radius));
-    found.solid[i] = both(s.above, s.within) ? vec2(s.slope, is_solid ? max(back.slope, exit) : s.slope) : vec2(-1, 1);
+    const float thickness = is_solid ? length(back.place - s.place) : 0.0;
+    found.solid[i] = s.above ? depths_of(r, s.place, thickness, reach.radius_sq) : vec2(-1, 1);
   }
   return found;
 }

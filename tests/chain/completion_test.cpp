@@ -162,13 +162,15 @@ TEST_F(CompletedPlanes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
 
 TEST_F(CompletedPlanes, are_0_in_tiles_that_are_left_out_and_else_as_they_were) {
   const float radius = 0.05f;
+  Reach reach{};
+  reach.radius = reach.front = radius;
   // What nobody needs is left out too.
   const Skipping skipping{.skips_sky = true, .changes = nullptr, .needed = {{20, 12}, gbuffer.view.size}};
   for (const int spacing : {1, 4, 16}) {
     Estimate out;
     out.ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
     out.completed = &plane("completed of a test", std::vector<float>(frame.data.pixels(), kBefore));
-    const TileList list = classify(recorder(), gbuffer, skipping, radius, sites_of(spacing), out);
+    const TileList list = classify(recorder(), gbuffer, skipping, reach, sites_of(spacing), out);
     recorder().download(*list.kinds);
     recorder().download(*out.ao);
     const std::vector<float> completed = finished(*out.completed);

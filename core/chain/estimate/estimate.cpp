@@ -25,6 +25,17 @@ float thickness_of(const EstimatorSettings& settings) {
   return float(settings.thickness_length);
 }
 
+/// The farthest, in scene units, that a front may lie away for its solid to reach into the radius. Where what blocks
+/// fades towards the radius, that has no weight.
+double front_reach_of(const EstimatorSettings& settings, double radius) {
+  double thickness = 0;
+  if (settings.falloff == Falloff::none && settings.thickness == ThicknessKind::automatic)
+    thickness = 2.0 / 3 * kWidestRun * radius;
+  if (settings.falloff == Falloff::none && settings.thickness == ThicknessKind::constant)
+    thickness = settings.thickness_length;
+  return std::max(radius + thickness, kFarEnd * radius);
+}
+
 uint thickness_rule_of(float thickness) {
   if (thickness == 0) return kThicknessWidth;
   return std::isinf(thickness) ? kThicknessEndless : kThicknessLength;
@@ -130,6 +141,7 @@ Reach reach_of(const EstimatorSettings& settings, double radius) {
   // Crytek's samples fill the sphere of the radius whatever the falloff.
   const double end = settings.estimator == Estimator::crytek ? 1 : settings.falloff_end;
   return {float(radius * end),
+          float(front_reach_of(settings, radius * end)),
           float(radius * settings.falloff_start),
           settings.falloff,
           thickness_of(settings),
@@ -182,7 +194,7 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
   for (uint plane = 0; plane < radii.size(); plane++) {
     const Reach reach = reach_of(settings, radii[plane]);
     Estimate out = of_radius(result, plane, radii.size());
-    out.listed = classify(gpu, gbuffer, skipping, reach.radius, sites, out);
+    out.listed = classify(gpu, gbuffer, skipping, reach, sites, out);
     list_sites(gpu, gbuffer, sites, out.listed);
     switch (settings.estimator) {
       case Estimator::gtao:
@@ -205,7 +217,7 @@ const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skip
   return &result;
 }
 
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, float radius,
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, const Reach& reach,
                   const Sites& sites, const Estimate& out, const std::string& prefix) {
   const gpu::Extent tiles = tile_extent(gbuffer.view);
   const gpu::Extent blocks = block_extent(gbuffer.view);
@@ -220,7 +232,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                     (out.completed ? kClassifyWithCompleted : 0) | (skipping.changes ? kClassifyReuses : 0) |
                     (selects ? kClassifySelects : 0) | (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
   const ClassifyParams params{gbuffer.view,
-                              radius,
+                              reach.radius,
+                              reach.front,
                               out.plane,
                               gbuffer.grid.frame_size,
                               gbuffer.grid.overhang,
@@ -251,6 +264,7 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   params.view = gbuffer.view;
   params.radius = reach.radius;
   params.falloff_start = reach.falloff_start;
+  params.front = reach.front;
   params.noise_origin = gbuffer.grid.origin;
   params.noise_shift = sampling.noise_shift;
   params.thickness = reach.thickness;

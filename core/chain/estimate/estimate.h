@@ -74,6 +74,7 @@ Estimate of_radius(const Estimate& all, uint plane, std::size_t radii);
 /// The rules by which surfaces around a receiver block, for one radius.
 struct Reach {
   float radius;         // scene units: nothing beyond blocks
+  float front;          // scene units: no front farther away than this blocks by the solid behind it
   float falloff_start;  // scene units: what is nearer blocks fully
   Falloff falloff;
   float thickness;      // scene units that an occluder goes on behind what is seen of it; 0: as deep as wide
@@ -113,10 +114,10 @@ Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame
 /// nothing is left out.
 const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping);
 
-/// Lists the tiles that an estimator must compute for one radius. Into the plane of `out` it writes the visibility of
+/// Lists the tiles that an estimator must compute within one reach. Into the plane of `out` it writes the visibility of
 /// the sites of those that are left out, and into out.completed 0 for them. `prefix` stands before the names of its
 /// buffers where there is another estimate.
-TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, float radius,
+TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, const Reach& reach,
                   const Sites& sites, const Estimate& out, const std::string& prefix = "");
 
 /// gtao and bitmask. Tiles that have hidden surfaces within reach are searched by horizon_layers.

@@ -103,6 +103,7 @@ void draw_profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirect
                        kProfileTolerance,
                        is_thinner ? kCompletedDepthPerWidth : 1,
                        is_thinner ? kCompletedMorePixels : 0,
+                       kWidestRun * reach.radius,
                        reach.complete != Completion::none ? kCutThickness * reach.radius : 0,
                        slot};
   // With several slots a thickness of 0 is one that is not known, for which exact takes the given one.

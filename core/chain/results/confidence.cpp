@@ -43,7 +43,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
     reach.thickness = thickness;
     reach.complete = complete;
     Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view))};
-    out.listed = classify(gpu, gbuffer, skipping, reach.radius, chosen, out, prefix);
+    out.listed = classify(gpu, gbuffer, skipping, reach, chosen, out, prefix);
     list_sites(gpu, gbuffer, chosen, out.listed, prefix);
     horizon(gpu, counted, reach, sampling, out);
     return chosen.rows ? interpolate(gpu, gbuffer, *out.ao, chosen, denoiser, prefix)

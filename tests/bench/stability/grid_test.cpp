@@ -166,7 +166,7 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
             exact(gpu, gbuffer, lines, directions, reach, out);
           }
         } else {
-          out.listed = classify(gpu, gbuffer, skipping, reach.radius, Sites{}, out);
+          out.listed = classify(gpu, gbuffer, skipping, reach, Sites{}, out);
           switch (settings.estimator) {
             case Estimator::gtao:
             case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
