@@ -115,8 +115,8 @@ float back_of(vec2 front, float eye_distance, float radius_sq) {
 }
 
 /// slope_of() where the eye's ray through a front (across, toward) enters what of a solid lies within the sphere, and
-/// where it leaves that; (-1, 1): nothing of it lies there. The solid is `thickness` deep.
-vec2 depths_of(vec2 front, float eye_distance, float thickness, float radius_sq) {
+/// where it leaves that; (-1, 1): nothing of it lies there. The solid is `thickness` deep. back: its end.
+vec2 depths_of(vec2 front, float eye_distance, float thickness, float radius_sq, out vec2 back) {
   const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1);
   const vec2 direction = ray * inversesqrt(dot(ray, ray));
   const float middle = dot(front, direction);
@@ -125,6 +125,7 @@ vec2 depths_of(vec2 front, float eye_distance, float thickness, float radius_sq)
   const float inside = sqrt(max(0.0, inside_sq));
   const float enters = outside_sq > 0.0 ? -inside - middle : 0.0;
   const float leaves = min(thickness, inside - middle);
+  back = front + thickness * direction;
   const bool exists = both(both(front.x > 0.0, inside_sq > -kTouches * radius_sq), both(enters >= 0.0, enters <= leaves));
   return exists ? vec2(slope_of(front + enters * direction), slope_of(front + leaves * direction)) : vec2(-1, 1);
 }
@@ -291,13 +292,20 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
     height = bends_within ? max(height, dot(corner.place, search.normal)) : height;
   } else {
     const Stroke ends = before_sphere(stroke, search.leaving);
-    const vec2 from = depths_of(ends.from, eye_distance, walk.thickness, radius_sq);
-    const vec2 to = depths_of(ends.to, eye_distance, last, radius_sq);
+    Stroke back;
+    const vec2 from = depths_of(ends.from, eye_distance, walk.thickness, radius_sq, back.from);
+    const vec2 to = depths_of(ends.to, eye_distance, last, radius_sq, back.to);
     slopes = vec2(max(slopes.x, max(from.x, to.x)), min(slopes.y, min(from.y, to.y)));
-    height = from.x >= from.y ? max(height, dot(ends.from, search.normal)) : height;
-    height = to.x >= to.y ? max(height, dot(ends.to, search.normal)) : height;
+    // Behind a part of the stroke alone the solid may reach into the sphere, or farther down in it than at the ends.
+    const Clipped ends_back = clip_to_sphere(back, radius_sq, search.unit);
+    const bool is_solid = both(ends_back.is_within, min(ends_back.near.x, ends_back.far.x) > 0.0);
+    const float a = slope_of(ends_back.near), b = slope_of(ends_back.far);
+    slopes = is_solid ? vec2(max(slopes.x, max(a, b)), min(slopes.y, min(a, b))) : slopes;
+    height = is_solid || from.x >= from.y ? max(height, dot(ends.from, search.normal)) : height;
+    height = is_solid || to.x >= to.y ? max(height, dot(ends.to, search.normal)) : height;
     IF_ANY (bends) {
-      const vec2 bend = depths_of(corner.place, eye_distance, last, radius_sq);
+      vec2 unused;
+      const vec2 bend = depths_of(corner.place, eye_distance, last, radius_sq, unused);
       slopes = vec2(max(slopes.x, bend.x), min(slopes.y, bend.y));
       height = bend.x >= bend.y ? max(height, dot(corner.place, search.normal)) : height;
     }
