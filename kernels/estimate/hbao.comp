@@ -141,9 +141,9 @@ void main() {
       side.normal = vec2(float(sign) * n_t, n_v);
       side.direction_px = float(sign) / pixels * image_t;
       side.least_height = clearance;
-      bool is_cut;
+      float whole_reach;
       side.reach = reach_of_side(params.view, pixel, side.direction_px, pixels, eye.z, float(sign) * t.z, sin_reach,
-                                 params.radius, is_cut);
+                                 params.radius, whole_reach);
       blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))));
     }
   }

@@ -221,13 +221,13 @@ float add_faded(inout Found found, Side side, Reach reach, Draw draw, vec2 place
 }
 
 /// 7. Adds what a completed surface blocks.
-void add_completed(inout Found found, Side side, Reach reach, Draw draw, Piece piece) {
+void add_completed(inout Found found, Side side, Reach reach, Draw draw, vec2 slopes, vec2 place) {
   if (kHard) {
-    block(found.completed, slopes_of(piece), draw.shift);
+    block(found.completed, slopes, draw.shift);
     return;
   }
-  block(found.blocked, slopes_of(piece), draw.shift);
-  found.completed_sum += add_faded(found, side, reach, draw, 0.5 * (piece.near + piece.far));
+  block(found.blocked, slopes, draw.shift);
+  found.completed_sum += add_faded(found, side, reach, draw, place);
 }
 
 /// Adds what goes on behind something nearer. behind_last: the sample after the last one.
@@ -236,17 +236,34 @@ void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw
   for (uint left = interrupted.jumps; left != 0u; left &= left - 1u) {
     const Piece piece =
         piece_behind(r, side, reach, draw, count, interrupted, interrupted.first + findLSB(left), behind_last);
-    add_completed(found, side, reach, draw, piece);
+    add_completed(found, side, reach, draw, slopes_of(piece), 0.5 * (piece.near + piece.far));
   }
 }
+
+/// Samples of a side beyond the border.
+const int kStepsBeyond = 6;
 
 /// Adds what the image's border cuts, and what goes on of it beyond the border.
 void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
   const Sample border = sample_at(r, side, reach, floor(side.reach));
-  const Piece piece = piece_beyond(r, side, reach, border);
   block(found.blocked, slopes_at_border(r, reach, border), draw.shift);
   if (!kHard) add_faded(found, side, reach, draw, border.place);
-  add_completed(found, side, reach, draw, piece);
+  const float rest = min(side.whole_reach, side.reach + float(reach.width)) - border.offset;
+  Sample last = border;
+  vec2 last_slopes = slopes_at_border(r, reach, border);
+  for (int k = 0; k < kStepsBeyond; k++) {
+    const Sample s = sample_beyond(r, side, reach, border.offset + rest * ((float(k) + draw.jitter) / float(kStepsBeyond)));
+    vec2 slopes = slopes_at_border(r, reach, s);
+    const bool joins = both(both(s.above, last.above), same_surface(r, reach, s.z, last.z, s.offset - last.offset));
+    const vec2 joined = vec2(max(slopes.x, last_slopes.x), min(slopes.y, last_slopes.y));
+    // Where it crosses the sphere it blocks half way to the sample beyond.
+    const bool crosses = both(joins, s.within != last.within);
+    const float half_way = mix(s.slope, last.slope, 0.5);
+    const vec2 counted = joins ? vec2(crosses ? max(joined.x, half_way) : joined.x, crosses ? min(joined.y, half_way) : joined.y) : slopes;
+    add_completed(found, side, reach, draw, counted, s.place);
+    last = s;
+    last_slopes = slopes;
+  }
 }
 
 /// The solids at the last sample, where occluders are endless otherwise.
@@ -507,7 +524,7 @@ vec4 search(Receiver r, Side side, Reach reach, Draw draw) {
     search_layers(found, r, side, reach, draw, count);
   else
     search_runs(found, r, side, reach, draw, count);
-  IF_ANY (kBeyondBorder && side.is_cut && side.reach >= 1.0) complete_beyond(found, r, side, reach, draw);
+  IF_ANY (kBeyondBorder && side.reach < side.whole_reach) complete_beyond(found, r, side, reach, draw);
   if (!kHard) return vec4(found.sum, found.completed_sum);
   const Blocked all =
       Blocked(max(found.blocked.near, found.completed.near), min(found.blocked.far, found.completed.far),

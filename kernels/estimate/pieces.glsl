@@ -1,10 +1,13 @@
 // What goes on behind what interrupts it, and beyond the image's border, in a search that takes samples.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A surface that something nearer interrupts, or the image's border, goes on in its plane. In a slice that is a
-// straight piece from the surface's end; so all that it blocks is one more interval of angles. The plane is that of the
-// normal at the end: with samples far apart it says better how a surface goes on than the line through two of them.
-// A piece ends where it would be seen, and where it leaves the sphere of the radius.
+// A surface that something nearer interrupts goes on in its plane. In a slice that is a straight piece from the
+// surface's end; so all that it blocks is one more interval of angles. The plane is that of the normal at the end: with
+// samples far apart it says better how a surface goes on than the line through two of them. A piece ends where it would
+// be seen, and where it leaves the sphere of the radius.
+//
+// Beyond the image's border the surfaces that it cuts go on in their planes. There samples are taken, each of the plane
+// of the border's nearest pixel.
 //
 // Only what stands above the receiver's tangent plane goes on behind something. There, a deeper point of a ray never
 // stands higher above that plane than what is seen on the ray, measured by depth.
@@ -144,27 +147,35 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
   return piece;
 }
 
-/// The piece by which the surface at the image's border goes on beyond it.
-Piece piece_beyond(Receiver r, Side side, Reach reach, Sample border) {
-  const vec2 beside = round(side.direction_px * border.offset);
-  const ivec2 hit = r.pixel + ivec2(beside);
-  const vec2 n = normal_in_slice(r, side, normal[hit.y * reach.width + hit.x]);
-  Piece piece = piece_of(reach, border.place, vec2(n.y, -n.x), kNone);
-  // Where the end is moved into the slice its height in it may be another one than its own.
-  const float height = height_of(r, beside, border.z, border.scale) +
-                       dot(piece.far - border.place, vec2(dot(r.normal, side.t), dot(r.normal, r.eye)));
-  const bool is_near = both(border.place.x > 0.0, border.distance_sq < kFarEnd * kFarEnd * reach.radius_sq);
-  const bool goes_on = both(height > kLeastRisen * reach.radius + r.least_height, is_told_by(n, r, border.place));
-  piece.exists = both(piece.exists, both(is_near, goes_on));
-  return piece;
+/// A surface goes on beyond the border no nearer to the eye and no farther from it than so many times its depth there.
+const float kMostChange = 2.0;
+
+/// The sample so many steps from the receiver beyond the image's border: the plane of the border's nearest pixel goes on
+/// there.
+Sample sample_beyond(Receiver r, Side side, Reach reach, float offset) {
+  const vec2 beside = side.direction_px * offset;
+  const ivec2 nearest = clamp(r.pixel + ivec2(round(beside)), ivec2(0), params.view.size - 1);
+  const int index = nearest.y * reach.width + nearest.x;
+  const float z = occluder_depth[index];
+  const vec3 n = octahedral_direction(unpackSnorm2x16(normal[index]));
+  const vec2 from = tangent_of(params.view, vec2(nearest) + 0.5);
+  const vec2 to = tangent_of(params.view, vec2(r.pixel) + 0.5 + beside);
+  const float facing_from = (r.perspective ? dot(n.xy, from) : 0.0) - n.z;
+  const float facing_to = (r.perspective ? dot(n.xy, to) : 0.0) - n.z;
+  const float there = r.perspective ? z * facing_from / facing_to : z - dot(n.xy, to - from) / facing_to;
+  const bool exists = both(max(facing_from, facing_to) < -kLeastFacingToGoOn,
+                           both(there > z / kMostChange, there < min(z * kMostChange, kSkyDepth)));
+  Sample s = sample_of(r, side, reach, offset, beside, exists ? there : kSkyDepth);
+  const float height = height_of(r, beside, s.z, s.scale);
+  s.above = both(exists, both(s.above, height > kLeastRisen * reach.radius + r.least_height));
+  return s;
 }
 
-/// The slopes that a sample at the border blocks from its front to its back, the largest and the smallest. As its
-/// width is not known, it is kCutThickness radii thick, or as the user says.
-vec2 slopes_at_border(Receiver r, Reach reach, Sample border) {
+/// The slopes that a sample at the border or beyond it blocks from its front to its back, the largest and the smallest.
+/// As its width is not known, it is kCutThickness radii thick, or as the user says.
+vec2 slopes_at_border(Receiver r, Reach reach, Sample s) {
   const float thickness = reach.thickness > 0.0 ? reach.thickness : kCutThickness * reach.radius;
-  if (kThickness != kThicknessEndless)
-    return border.above ? depths_of(r, border.place, thickness, reach.radius_sq) : vec2(-1, 1);
-  const float back = slope_of(back_of(r, border.place, kNone, reach.radius));
-  return both(border.above, border.within) ? vec2(border.slope, min(border.slope, back)) : vec2(-1, 1);
+  if (kThickness != kThicknessEndless) return s.above ? depths_of(r, s.place, thickness, reach.radius_sq) : vec2(-1, 1);
+  const float back = slope_of(back_of(r, s.place, kNone, reach.radius));
+  return both(s.above, s.within) ? vec2(s.slope, min(s.slope, back)) : vec2(-1, 1);
 }
