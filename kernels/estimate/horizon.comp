@@ -82,9 +82,9 @@ const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
 const bool kBehindOthers = (kSolid & kCompletesHidden) != 0u;
 const bool kAllInSectors = (kSolid & kInSectors) != 0u;
 
-/// A run is wider than the distance of its outer samples by a pixel and, on average, by this part of the gaps to the
-/// samples before and behind it.
-const float kGapShare = 0.5;
+/// A run is so many times as thick as it is wide: its outer samples are a pixel nearer together than its edges, and on
+/// average the gaps to the samples before and behind it are a part of it too.
+const float kThicknessPerWidth = 1.25;
 
 /// All that is endless is one surface. Two samples of it on either side of the sphere are neighbours if their squared
 /// distances are within this factor of its.
@@ -99,7 +99,6 @@ const float kSameSurface = 1.44;
 /// blocks.
 struct Run {
   vec2 start, end;  // its outer samples
-  float gap;        // steps from the sample before it
   float share;      // of its width that it is thick
   float near, far;  // largest and smallest of the samples that block
 };
@@ -139,12 +138,11 @@ vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
   return own + arcs_of(side, others);
 }
 
-/// How thick a run is, in scene units. gap_behind: steps to the sample behind it.
-float thickness_of(Receiver r, Reach reach, Run run, float z, float gap_behind) {
+/// How thick a run is, in scene units. z: depth of its last sample.
+float thickness_of(Receiver r, Reach reach, Run run, float z) {
   if (kThickness != kThicknessWidth) return reach.thickness;
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
-  const float width = run.share * (length(run.end - run.start) + pixel * (1.0 + kGapShare * (run.gap + gap_behind)));
-  return levelled(width, kWidestRun * reach.radius);
+  return levelled(run.share * (length(run.end - run.start) + pixel), kWidestRun * reach.radius);
 }
 
 /// 6. The sectors that a run blocks whose front lies within the sphere. is_open: it has samples without a known back.
@@ -333,7 +331,7 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
 void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   bool own = true;
   Sample last = receiver_sample(r);
-  Run run = Run(vec2(0), vec2(0), 0.0, 1.0, -1.0, 1.0);
+  Run run = Run(vec2(0), vec2(0), kThicknessPerWidth, -1.0, 1.0);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0);
   bool is_before = false;  // the run has samples before the sphere
@@ -348,12 +346,12 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     if (connected) run.end = s.place;
     if (!connected || !s.above) {
       if (kHard) {
-        const float thickness = thickness_of(r, reach, run, last.z, gap);
+        const float thickness = thickness_of(r, reach, run, last.z);
         found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
         take_before(before, run, is_before, thickness);
       }
       is_before = false;
-      run = Run(s.place, s.place, gap, 1.0, -1.0, 1.0);
+      run = Run(s.place, s.place, kThicknessPerWidth, -1.0, 1.0);
       own = !s.above;
     }
     if (own) {
@@ -364,7 +362,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       is_before = s.above && is_before_sphere(r, reach, s.place) ? true : is_before;
     }
     if (!kHard) {
-      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness_of(r, reach, run, s.z, 1.0), draw.shift);
+      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness_of(r, reach, run, s.z), draw.shift);
       add_faded(found, side, reach, draw, s.place);
     }
     last = s;
@@ -374,7 +372,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     }
   }
   if (kHard) {
-    const float thickness = thickness_of(r, reach, run, last.z, 1.0);
+    const float thickness = thickness_of(r, reach, run, last.z);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
     take_before(before, run, is_before, thickness);
     found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
@@ -382,9 +380,8 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
-/// A run is so much of its width thick where it is known what lies behind it within reach: its width stands in for what
-/// is hidden, too.
-const float kKnownShare = 0.6;
+/// The same where it is known what lies behind the run within reach: its width stands in for what is hidden, too.
+const float kKnownThicknessPerWidth = 0.6;
 
 // Of a surface of the last sample and of its run, as bits.
 const uint kSlotAbove = 1u, kSlotWithin = 2u;
@@ -408,25 +405,24 @@ Slot chosen(Slot a, Slot b, bool second) {
   s.bits = second ? b.bits : a.bits;
   s.run.start = second ? b.run.start : a.run.start;
   s.run.end = second ? b.run.end : a.run.end;
-  s.run.gap = second ? b.run.gap : a.run.gap;
-  s.run.share = 1.0;
+  s.run.share = kThicknessPerWidth;
   s.run.near = second ? b.run.near : a.run.near;
   s.run.far = second ? b.run.far : a.run.far;
   return s;
 }
 
-float thickness_of(Receiver r, Reach reach, Slot slot, float gap_behind) {
+float thickness_of(Receiver r, Reach reach, Slot slot) {
   Run run = slot.run;
-  run.share = (slot.bits & kSlotKnows) != 0u ? kKnownShare : 1.0;
-  return thickness_of(r, reach, run, slot.z, gap_behind);
+  run.share = (slot.bits & kSlotKnows) != 0u ? kKnownThicknessPerWidth : kThicknessPerWidth;
+  return thickness_of(r, reach, run, slot.z);
 }
 
 /// Ends the runs of those slots whose bits are set; most of the time it is none or one.
 void end_runs(inout Found found, inout Before before, Receiver r, Reach reach, Slot slots[kMostSurfaces], uint ending,
-              float gap_behind, float shift) {
+              float shift) {
   for (int j = 0; j < kSurfaces; j++) {
     const bool ends = (ending >> j & 1u) != 0u;
-    const float thickness = thickness_of(r, reach, slots[j], gap_behind);
+    const float thickness = thickness_of(r, reach, slots[j]);
     const bool is_open = (slots[j].bits & kSlotOpen) != 0u;
     found.blocked.sectors |= ends ? sectors_of(r, reach, slots[j].run, is_open, thickness, shift) : 0u;
     take_before(before, slots[j].run, both(ends, (slots[j].bits & kSlotBefore) != 0u), thickness);
@@ -437,7 +433,7 @@ void end_runs(inout Found found, inout Before before, Receiver r, Reach reach, S
 void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
-  const Run nothing = Run(vec2(0), vec2(0), 0.0, 1.0, -1.0, 1.0);
+  const Run nothing = Run(vec2(0), vec2(0), kThicknessPerWidth, -1.0, 1.0);
   Slot slots[kMostSurfaces];
   for (int i = 0; i < kSurfaces; i++)
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
@@ -464,7 +460,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       }
       ending |= ends ? 1u << j : 0u;
     }
-    end_runs(found, before, r, reach, slots, ending, gap, draw.shift);
+    end_runs(found, before, r, reach, slots, ending, draw.shift);
     Slot now[kMostSurfaces];
     for (int i = 0; i < kSurfaces; i++) {
       const Sample s = here.at[i];
@@ -477,7 +473,6 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       const vec2 slopes = here.has_back[i] ? here.solid[i] : open;
       const bool begins = both(connected, s.above) ? false : true;
       slot.run.start = begins ? s.place : slot.run.start;
-      slot.run.gap = begins ? gap : slot.run.gap;
       slot.run.near = begins ? -1.0 : slot.run.near;
       slot.run.far = begins ? 1.0 : slot.run.far;
       slot.run.end = s.place;
@@ -496,7 +491,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       slot.slope = s.slope;
       now[i] = slot;
       if (!kHard && here.exists[i]) {
-        const float thickness = thickness_of(r, reach, slot, 1.0);
+        const float thickness = thickness_of(r, reach, slot);
         found.blocked.sectors |= sectors_of(r, reach, slot.run, (slot.bits & kSlotOpen) != 0u, thickness, draw.shift);
         add_faded(found, side, reach, draw, s.place);
       }
@@ -508,7 +503,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       interrupted = Interruptions(k + 1, 0u, 0u);
     }
   }
-  if (kHard) end_runs(found, before, r, reach, slots, (1u << kSurfaces) - 1u, 1.0, draw.shift);
+  if (kHard) end_runs(found, before, r, reach, slots, (1u << kSurfaces) - 1u, draw.shift);
   if (kHard) found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
