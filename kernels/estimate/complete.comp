@@ -1,5 +1,4 @@
-// Completes the profiles of the lines of one direction: how far surfaces go on behind what is nearer, and beyond the
-// image's border.
+// Completes the profiles of the lines of one direction: how far surfaces go on behind what is nearer.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: the vertices of profile.comp.
@@ -13,11 +12,10 @@
 //   shows sky, or something farther, the surface ends.
 // - No stroke is longer than so many radii that a part of the frame need be read around no farther than what its
 //   receivers see; nearly all that matters is shorter.
-// - The image's border hides all that is beyond it, so there a surface goes on as far as that. Where the image is a
-//   part of the frame, no result lies within the radius of a border that is not the frame's: see core/run/tiles.h.
-// - Where hidden surfaces are known, those of each slot go on beyond the border. Behind what is nearer goes on
-//   the first surface of a pixel, if it is not known to go on there: where the frame tells all surfaces of a pixel up
-//   to so many, behind the last of others that have as many; else behind the first of others.
+// - What goes on behind the last surface before the image's border ends there.
+// - Where hidden surfaces are known, the first surface of a pixel goes on if it is not known to go on there: where the
+//   frame tells all surfaces of a pixel up to so many, behind the last of others that have as many; else behind the
+//   first of others.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/exact.h"
@@ -50,10 +48,6 @@ const float kMostDepths = 15.9;
 /// The normal's plane says nothing about a surface that is seen more nearly edge on than this: the dot product of the
 /// normal and the view ray, which is 1 long along the optical axis.
 const float kLeastFacingToGoOn = -0.02;
-
-/// A surface's last 4 pixels, and at least 3, tell how it goes on beyond the border.
-const int kStepsAtBorder = 3;
-const int kLeastStepsAtBorder = 2;
 
 /// Of a stroke, in radii: as core/run/tiles.cpp reads around a part. With 2 colonnade, whose walls go on far behind
 /// its columns, has an RMSE of .0639 instead of .0627, with 4 .0617.
@@ -203,24 +197,11 @@ void go_on(inout Open open, View view, LinePlane plane, Walk walk, Corner next, 
   }
 }
 
-/// Ends what still goes on at the walk's end: there, or where the last surface goes on beyond the border, where it
-/// would come before that.
-void go_beyond(inout Open open, View view, LinePlane plane, Open last, Walk walk, bool goes_beyond) {
-  const float steps = abs(float(walk.before.at) - open.from);
-  const float behind_last = walk.before.hides - open.nearness - open.slope * steps;
-  const float closing = open.slope - last.slope;
-  const float further = closing > 0.0 ? behind_last / max(closing, behind_last / kLongestStroke) : kLongestStroke;
-  IF_ANY (open.is_open) close(open, view, plane, walk.way, min(goes_beyond ? steps + further : steps, open.farthest));
-}
-
-/// Whether it is to be told behind what vertices a surface goes on: in a plane of several, only of the first.
-bool tells_behind() { return kSurfaces == 1u || params.behind != 0u; }
-
 /// The index at which the plane of the profile begins.
 int first_of_plane(View view) { return kSurfaces == 1u ? 0 : int(params.slot) * view.size.x * view.size.y; }
 
 /// Walks along the vertices of a line from `first` on; it has one at least.
-void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, int row, int first, int way) {
+void complete(View view, Lines lines, LinePlane plane, int line, int row, int first, int way) {
   Walk walk;
   walk.way = way;
   walk.begins = way > 0 ? kVertexBegins : kVertexEnds;
@@ -240,7 +221,7 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
     index += way;
     const Corner next = corner_at(view, lines, line, index);
     const bool begins_run = (next.marked & walk.begins) != 0u;
-    const bool is_interrupted = params.behind != 0 && begins_run && (walk.before.marked & both_ends) != both_ends &&
+    const bool is_interrupted = begins_run && (walk.before.marked & both_ends) != both_ends &&
                                 next.at == walk.before.at + way && next.hides > walk.before.nearness;
     goes = (next.marked & walk.is_last) == 0u;
     IF_ANY (is_interrupted) {
@@ -258,10 +239,8 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
     if (opens.c.is_open) column = uint(opens.c.index - row);
     if (opens.b.is_open) column = uint(opens.b.index - row);
     if (opens.a.is_open) column = uint(opens.a.index - row);
-    if (tells_behind()) {
-      const int at = index - first_of_plane(view);
-      behind[at] = way > 0 ? column | kNoVertex << 16 : behind[at] & kNoVertex | column << 16;
-    }
+    const int at = index - first_of_plane(view);
+    behind[at] = way > 0 ? column | kNoVertex << 16 : behind[at] & kNoVertex | column << 16;
     const bool is_long = abs(next.at - walk.before.at) > 1;
     const bool before_begins = (walk.before.marked & walk.begins) != 0u;
     walk.inner = is_long || before_begins ? walk.before : walk.prior;
@@ -269,25 +248,11 @@ void complete(View view, Lines lines, LinePlane plane, int line, ivec2 steps, in
     walk.prior = walk.before;
     walk.before = next;
   }
-  const bool at_border = walk.before.at + way < steps.x || walk.before.at + way >= steps.y;
-  Corner inner = walk.before;
-  int behind_end = index;
-  for (bool in_run = at_border; in_run;) {
-    in_run = abs(walk.before.at - inner.at) < kStepsAtBorder && (inner.marked & walk.begins) == 0u;
-    if (in_run) {
-      behind_end -= way;
-      inner = corner_at(view, lines, line, behind_end);
-    }
-  }
-  const bool goes_beyond = abs(walk.before.at - inner.at) >= kLeastStepsAtBorder;
-  Open last = none;
-  IF_ANY (goes_beyond) {
-    last = from_end(view, lines, plane, line, walk, inner, index);
-    close(last, view, plane, way, last.farthest);
-  }
-  go_beyond(opens.a, view, plane, last, walk, goes_beyond);
-  go_beyond(opens.b, view, plane, last, walk, goes_beyond);
-  go_beyond(opens.c, view, plane, last, walk, goes_beyond);
+  // What still goes on at the walk's end ends there.
+  const float end = float(walk.before.at);
+  IF_ANY (opens.a.is_open) close(opens.a, view, plane, way, min(abs(end - opens.a.from), opens.a.farthest));
+  IF_ANY (opens.b.is_open) close(opens.b, view, plane, way, min(abs(end - opens.b.from), opens.b.farthest));
+  IF_ANY (opens.c.is_open) close(opens.c, view, plane, way, min(abs(end - opens.c.from), opens.c.farthest));
 }
 
 void main() {
@@ -301,9 +266,9 @@ void main() {
   const LinePlane plane = plane_of(view, lines, line);
   const int row = first_of_plane(view) + row_of(lines, line, extent.y) * extent.x;
   if (mark[row + steps.x] == 0u) return;
-  if (tells_behind()) behind[row + steps.x - first_of_plane(view)] = kNoVertex | kNoVertex << 16;
-  complete(view, lines, plane, line, steps, row, row + steps.x, 1);
+  behind[row + steps.x - first_of_plane(view)] = kNoVertex | kNoVertex << 16;
+  complete(view, lines, plane, line, row, row + steps.x, 1);
   int last = row + steps.x;
   while ((mark[last] & kVertexLast) == 0u) last++;
-  complete(view, lines, plane, line, steps, row, last, -1);
+  complete(view, lines, plane, line, row, last, -1);
 }

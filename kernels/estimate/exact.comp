@@ -43,7 +43,7 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 // 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first, is_last
 layout(constant_id = 0) const uint kListed = 0;
-// 1: surfaces go on as complete has found; 2: and what they block is told apart
+// bits of kExact*: where surfaces go on, and whether what they block so is told apart
 layout(constant_id = 1) const uint kCompletes = 0;
 layout(constant_id = 2) const uint kBentId = 0;  // 1: bent normals too
 layout(constant_id = 3) const uint kSlots = 1;   // of the profile, 1 to 1 + kMostHidden
@@ -60,9 +60,9 @@ buffer Whole { float whole_arcs[]; };           // one float per pixel, sum of w
 buffer Ao { float ao[]; };
 readonly buffer List { uint list[]; };          // one uint per tile, from converge; only with kListed
 readonly buffer Counts { TileCounts counts; };  // only with kListed
-readonly buffer GoesOn { uint goes_on[]; };     // from complete; only with kCompletes
-readonly buffer Behind { uint behind[]; };      // from complete; only with kCompletes
-// one float per pixel, visibility that completed surfaces took; only where kCompletes is 2
+readonly buffer GoesOn { uint goes_on[]; };     // from complete; only with kExactBehind
+readonly buffer Behind { uint behind[]; };      // from complete; only with kExactBehind
+// one float per pixel, visibility that completed surfaces took; only with kExactApart
 buffer Completed { float completed[]; };
 // planes x, y, z of the sum of the bent_to() of what is blocked, in view space; after the last slice the mean open
 // direction b as 0.5 + 0.5 b. Only with kBentId.
@@ -71,8 +71,8 @@ readonly buffer Own { uint own[]; };  // from profile; only with several kSlots
 
 const bool kBent = kBentId != 0u;
 
-const uint kCompletesNothing = 0;
-const uint kCompletesApart = 2;
+const bool kGoesOn = (kCompletes & kExactBehind) != 0u;
+const bool kTellsApart = (kCompletes & kExactApart) != 0u;
 
 const float kNone = 1e30;
 
@@ -162,6 +162,8 @@ Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
 /// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
 const float kBesideReceiver = 1e-3;
 
+const float kReachBeyond = 1.2, kLeastFacingBeyond = 0.02;
+
 /// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
 /// away from it.
 Stroke with_unseen(Stroke stroke, bool begins, vec2 unseen) {
@@ -198,6 +200,9 @@ struct Search {
 /// One side of a receiver's line: what all steps of its search share.
 struct Context {
   View view;
+  Lines lines;
+  int line;
+  float z;          // the receiver's depth
   LinePlane plane;
   Point point;
   Side side;
@@ -253,7 +258,7 @@ Corner corner_at(Context c, int at, int step, float z, bool toward) {
   corner.least = c.search.least_height + scale * c.search.least_rise * float(abs(step - c.search.from));
   corner.place = from_receiver(c, place_at(c.view, c.plane, float(step), z));
   corner.unseen = corner.place;
-  if (kCompletes != kCompletesNothing) {
+  if (kGoesOn) {
     const uint further = goes_on[at];
     const float until = float(step) + float(toward ? -c.search.step : c.search.step) * steps_of_goes_on(further);
     corner.unseen = from_receiver(c, place_at(c.view, c.plane, until, z * depths_of_goes_on(further)));
@@ -280,7 +285,7 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
   // The largest and the smallest slope of what lies within the sphere.
   vec2 slopes = is_within ? vec2(max(near_slope, far_slope), min(near_slope, far_slope)) : vec2(-1, 1);
   float height = is_within ? max(dot(front.near, search.normal), dot(front.far, search.normal)) : -kNone;
-  const bool bends = kCompletes != kCompletesNothing && goes_on;
+  const bool bends = kGoesOn && goes_on;
   const float last = walk.thickness + walk.change;
   if (walk.is_own || walk.thickness >= kNone) {
     // What has no end blocks by its front within the sphere alone.
@@ -345,7 +350,7 @@ vec2 bent_of(Side side, Search search, Blocked blocked) {
 /// The blocked part of a side's integrals.
 struct BlockedArcs {
   float arc;
-  float unseen;  // of the arc: what only completed surfaces block; only where kCompletes is kCompletesApart
+  float unseen;  // of the arc: what only completed surfaces block; only with kExactApart
   vec2 bent;     // bent_to(), across the eye's ray and towards it; only with kBent
 };
 
@@ -432,18 +437,18 @@ bool ends_at(uint marked, Corner corner, Search search) {
 /// The directions that a side's strokes block.
 struct Found {
   Blocked all;
-  Blocked seen;  // without what completed surfaces block; only where kCompletes is kCompletesApart
+  Blocked seen;  // without what completed surfaces block; only with kExactApart
 };
 
 /// 5. to 7. Adds the stroke that ends at a vertex. goes_on: its surface goes on there unseen.
 void add_stroke(inout Found found, Walk walk, Context c, Stroke stroke, Corner corner, bool begins, bool goes_on) {
-  if (kCompletes == kCompletesApart)
+  if (kTellsApart)
     block(found.seen, walk, c, stroke, corner, false);
   // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
   // beyond the sphere, only the former matters.
   const bool is_first_beyond = both(walk.starts, dot(corner.place, corner.place) > c.radius_sq);
-  const bool draws_on = kCompletes != kCompletesNothing && goes_on && !is_first_beyond;
-  if (kCompletes != kCompletesNothing) {
+  const bool draws_on = kGoesOn && goes_on && !is_first_beyond;
+  if (kGoesOn) {
     const Stroke whole = with_unseen(stroke, begins, corner.unseen);
     stroke.from = draws_on ? whole.from : stroke.from;
     stroke.to = draws_on ? whole.to : stroke.to;
@@ -454,7 +459,7 @@ void add_stroke(inout Found found, Walk walk, Context c, Stroke stroke, Corner c
 /// 5. Adds the surface that goes on towards the receiver behind the end of a walk. last: the walk's last vertex; below
 /// 0: there is none.
 void add_beyond(inout Found found, Walk walk, Context c, int last) {
-  const bool looks_beyond = kCompletes != kCompletesNothing && (kSlots == 1u || kUnseen != 0u) && last >= 0;
+  const bool looks_beyond = kGoesOn && (kSlots == 1u || kUnseen != 0u) && last >= 0;
   const uint beyond = looks_beyond ? vertex_beyond(c, last) : kNoVertex;
   IF_ANY (beyond != kNoVertex) {
     const int at = (kWalks - 1) * c.view.size.x * c.view.size.y + c.row + int(beyond);
@@ -469,10 +474,68 @@ void add_beyond(inout Found found, Walk walk, Context c, int last) {
   }
 }
 
+/// Samples of a side beyond the border, as far as the sphere reaches at the receiver's depth.
+const int kStepsBeyond = 8;
+
+/// A surface goes on beyond the border no nearer to the eye and no farther from it than so many times its depth there.
+const float kMostChange = 2.0;
+
+/// The depth at a step of the line beyond the border: the plane of the border's nearest pixel goes on there. kSkyDepth:
+/// nothing does.
+float depth_beyond(Context c, float at) {
+  const ivec2 extent = extent_of(c.view, c.lines);
+  const int step = clamp(int(floor(at + 0.5)), 0, extent.x - 1);
+  const float across = float(c.line) + float(c.lines.slope) / float(kSlopeUnit) * (float(c.lines.origin.x) + at);
+  const int index = index_at(c.view, c.lines, step, clamp(int(floor(across + 0.5)), 0, extent.y - 1));
+  const ivec2 nearest = ivec2(step, clamp(int(floor(across + 0.5)), 0, extent.y - 1));
+  const float z = depth[index];
+  const vec3 n = unpack_normal(normal[index]);
+  const bool perspective = c.view.orthographic == 0;
+  const vec2 from = tangent_at(c.view, c.lines, nearest + c.lines.origin);
+  const vec2 to = c.plane.foot + (c.plane.start + (float(c.plane.origin) + at) * c.plane.step) * c.plane.along;
+  const float facing_from = (perspective ? dot(n.xy, from) : 0.0) - n.z;
+  const float facing_to = (perspective ? dot(n.xy, to) : 0.0) - n.z;
+  const float there = perspective ? z * facing_from / facing_to : z - dot(n.xy, to - from) / facing_to;
+  const bool exists = both(max(facing_from, facing_to) < -kLeastFacingBeyond,
+                           both(there > z / kMostChange, there < min(z * kMostChange, kSkyDepth)));
+  return exists ? there : kSkyDepth;
+}
+
+/// 5. Adds what goes on beyond the image's border.
+void add_border(inout Found found, Context c) {
+  const ivec2 steps = steps_of(c.lines, extent_of(c.view, c.lines), c.line);
+  const int border = c.search.step > 0 ? steps.y - 1 : steps.x;
+  const bool perspective = c.view.orthographic == 0;
+  const float whole = kReachBeyond * params.radius / (c.plane.step * (perspective ? c.z : 1.0));
+  const float rest = min(whole - float(abs(border - c.search.from)), float(max(c.view.size.x, c.view.size.y)));
+  const float thickness = params.thickness > 0.0 ? params.thickness : kCutThickness * params.radius;
+  const Walk walk = Walk(vec2(0), false, false, thickness, 0.0);
+  float last_z = kSkyDepth, last_at = 0.0;
+  vec2 last = vec2(0);
+  bool goes = rest > 0.0;
+  for (int i = 0; goes; i++) {
+    const float at = float(border) + float(c.search.step) * rest * (float(i) - 1.0 + c.search.shift) / float(kStepsBeyond);
+    const float beyond = i == 0 ? float(border) : at;
+    const float z = depth_beyond(c, beyond);
+    Corner corner;
+    corner.place = from_receiver(c, place_at(c.view, c.plane, beyond, z < kSkyDepth ? z : 1.0));
+    corner.unseen = corner.place;
+    corner.least = c.search.least_height + kLeastRisen * params.radius;
+    const float slope = kRunSlope * c.view.tangent_per_pixel.x * abs(beyond - last_at);
+    const bool joins = abs(z - last_z) < slope * (perspective ? min(z, last_z) : 1.0);
+    IF_ANY (z < kSkyDepth && corner.place.x > 0.0)
+      block(found.all, walk, c, Stroke(joins ? last : kShortStroke * corner.place, corner.place), corner, false);
+    last = corner.place;
+    last_z = z;
+    last_at = beyond;
+    goes = i < kStepsBeyond && dot(corner.place, c.search.leaving) < params.radius;
+  }
+}
+
 /// 8. The integrals over what is blocked.
 BlockedArcs arcs_of(Context c, Found found) {
   const float arc = arc_of(c.side, c.search, found.all);
-  return BlockedArcs(arc, kCompletes == kCompletesApart ? arc - arc_of(c.side, c.search, found.seen) : 0.0,
+  return BlockedArcs(arc, kTellsApart ? arc - arc_of(c.side, c.search, found.seen) : 0.0,
                      kBent ? bent_of(c.side, c.search, found.all) : vec2(0));
 }
 
@@ -480,16 +543,15 @@ BlockedArcs arcs_of(Context c, Found found) {
 BlockedArcs blocked_by_one(Context c) {
   const Search search = c.search;
   const uint first = first_column(search, c.row + search.from);
-  if (first == kNoVertex) return BlockedArcs(0.0, 0.0, vec2(0));
   const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
   Found found = Found(nothing, nothing);
   Walk walk = Walk(vec2(0), true, true, params.thickness, 0.0);
-  int at = c.row + int(first), last = at;
-  for (bool goes = true; goes; at += search.step) {
+  int at = c.row + int(first), last = -1;
+  for (bool goes = first != kNoVertex; goes; at += search.step) {
     last = at;
     const uint marked = mark[at];
     const int to = int(marked >> 16), steps = abs(to - search.from);
-    const float stored = vertex[at], z = kCompletes != kCompletesNothing ? abs(stored) : stored;
+    const float stored = vertex[at], z = kGoesOn ? abs(stored) : stored;
     const bool begins = (marked & search.begins) != 0u;
     const Corner corner = corner_at(c, at, to, z, begins);
     walk.is_own = begins ? false : walk.is_own;
@@ -501,6 +563,7 @@ BlockedArcs blocked_by_one(Context c) {
     walk.starts = false;
   }
   add_beyond(found, walk, c, last);
+  if ((kCompletes & kExactBorder) != 0u) add_border(found, c);
   return arcs_of(c, found);
 }
 
@@ -516,7 +579,6 @@ BlockedArcs blocked_by_several(Context c) {
     go_to(next, search, i, first + int(column), column == kNoVertex);
     goes = goes || column != kNoVertex;
   }
-  if (!goes) return BlockedArcs(0.0, 0.0, vec2(0));
   const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
   Found found = Found(nothing, nothing);
   Walk walk = Walk(vec2(0), true, true, params.thickness, 0.0);
@@ -529,7 +591,7 @@ BlockedArcs blocked_by_several(Context c) {
     const bool is_unseen = kUnseen != 0u && i == kWalks - 1;
     const uint marked = mark[at];
     const int to = int(marked >> 16), steps = abs(to - search.from);
-    const float stored = vertex[at], z = kCompletes != kCompletesNothing ? abs(stored) : stored;
+    const float stored = vertex[at], z = kGoesOn ? abs(stored) : stored;
     const bool begins = (marked & search.begins) != 0u;
     // The walk for what is unseen has the same vertex where the run begins or ends there too.
     const int unseen_at = next.at[kWalks - 1];
@@ -552,6 +614,7 @@ BlockedArcs blocked_by_several(Context c) {
     for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
   }
   add_beyond(found, walk, c, last);
+  if ((kCompletes & kExactBorder) != 0u) add_border(found, c);
   return arcs_of(c, found);
 }
 
@@ -629,7 +692,7 @@ void main() {
       search.last = sign > 0 ? kVertexLast : kVertexFirst;
       whole += share * weight * whole_arc(side);
       search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
-      const Context c = Context(view, plane, point, side, search, row, slot, radius * radius);
+      const Context c = Context(view, lines, line, z, plane, point, side, search, row, slot, radius * radius);
       const BlockedArcs arcs = kWalks == 1 ? blocked_by_one(c) : blocked_by_several(c);
       blocked += share * weight * arcs.arc;
       unseen += share * weight * arcs.unseen;
@@ -642,7 +705,7 @@ void main() {
     blocked += ao[ao_index];
   }
   whole_arcs[index] = whole;
-  if (kCompletes == kCompletesApart && whole > 0.0)
+  if (kTellsApart && whole > 0.0)
     completed[index] =
         clamp((last_whole > 0.0 ? completed[index] * last_whole : 0.0) + unseen, 0.0, max(blocked, 0.0)) / whole;
   if (kBent)

@@ -49,9 +49,12 @@ struct CompleteParams {
   int first;     // as the profile's
   uint count;    // lines
   float radius;  // scene units: of the sphere beyond which nothing blocks
-  uint behind;   // 0 or 1: surfaces go on behind what is nearer, beside beyond the border
   uint slot;     // planes of the profile before the one that is completed
 };
+
+ALCOVE_CONSTANT uint kExactBorder = 1;  // surfaces go on beyond the image's border
+ALCOVE_CONSTANT uint kExactBehind = 2;  // and as complete has found behind what is nearer
+ALCOVE_CONSTANT uint kExactApart = 4;   // what they block so is told apart
 
 struct ExactParams {
   View view;

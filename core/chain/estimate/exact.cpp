@@ -247,26 +247,22 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
 
 void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, const Reach& reach,
               const gpu::Buffer* groups) {
-  if (reach.complete == Completion::none) return;
+  if (!completes_behind(reach)) return;
   const std::size_t bytes = plane_bytes(gbuffer.view);
   profile.goes_on = &gpu.buffer("profile goes on", planes_of(profile) * bytes);
   profile.behind = &gpu.buffer("profile behind", bytes);
-  for (uint slot = 0; slot < planes_of(profile); slot++) {
-    // Of several slots, each goes on beyond the border, and only the last plane's surfaces behind others.
-    const bool behind = completes_behind(reach) && (profile.slots == 1 || slot == profile.slots);
-    const CompleteParams params{gbuffer.view, profile.lines,    profile.first, profile.count,
-                                reach.radius, behind ? 1u : 0u, slot};
-    gpu.dispatch("complete", params,
-                 {{"Normal", gbuffer.normal},
-                  {"Vertex", profile.vertex},
-                  {"Mark", profile.mark},
-                  {"GoesOn", profile.goes_on},
-                  {"Behind", profile.behind},
-                  {"Depth", occluder_depth_of(gbuffer)},
-                  {"Hidden", gpu::Optional(occluder_hidden_of(gbuffer))}},
-                 groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
-                 {profile.slots, gbuffer.hides_no_more ? 1u : 0u});
-  }
+  const uint slot = planes_of(profile) - 1;
+  gpu.dispatch("complete",
+               CompleteParams{gbuffer.view, profile.lines, profile.first, profile.count, reach.radius, slot},
+               {{"Normal", gbuffer.normal},
+                {"Vertex", profile.vertex},
+                {"Mark", profile.mark},
+                {"GoesOn", profile.goes_on},
+                {"Behind", profile.behind},
+                {"Depth", occluder_depth_of(gbuffer)},
+                {"Hidden", gpu::Optional(occluder_hidden_of(gbuffer))}},
+               groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
+               {profile.slots, gbuffer.hides_no_more ? 1u : 0u});
 }
 
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,
@@ -295,8 +291,8 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
   const auto columns = uint((size.x + params.stride - 1) / params.stride);
   const auto rows = uint((size.y + params.stride - 1) / params.stride);
   const gpu::Extent pixels = lines.steep ? gpu::Extent{rows, columns} : gpu::Extent{columns, rows};
-  uint completing = profile.goes_on ? 1 : 0;
-  if (profile.goes_on && out.completed) completing = 2;
+  const uint completing = (reach.complete != Completion::none ? kExactBorder : 0) |
+                          (profile.goes_on ? kExactBehind : 0) | (out.completed ? kExactApart : 0);
   gpu.dispatch("exact", params,
                {{"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},
