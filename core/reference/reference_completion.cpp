@@ -18,9 +18,10 @@ constexpr double kLeastHeight = 1e-3;
 /// The least facing for which the normal's plane counts: the dot product of the normal and the view ray, which is 1
 /// long along the optical axis. Surfaces seen more nearly edge on have no reliable plane.
 constexpr double kLeastFacing = -0.02;
-/// The last pixels through which a surface's line beyond the border runs, and the least number of them.
-constexpr int kPixelsOfBorder = 4;
-constexpr int kLeastPixelsOfBorder = 3;
+/// Beyond the border a surface goes on no nearer and no farther than so many times its depth there, and if it stands so
+/// many radii above the receiver's tangent plane: a floor stays open, whatever its normal map.
+constexpr double kMostChange = 2;
+constexpr double kLeastRisen = 0.1;
 
 /// The straight line along which a surface goes on from the end of its run.
 struct Course {
@@ -39,7 +40,6 @@ class Completer {
       : scene_(scene), receiver_(receiver), side_(side), line_(line), settings_(settings), steps_(line.steps()) {}
 
   std::vector<CompletedSegment> segments() {
-    if (line_.at_border) beyond_border_ = course_beyond_border((steps_ - 1) * line_.surfaces);
     if (completes_behind(settings_)) {
       for (int first = 0; first < int(line_.samples.size()); first++) {
         if (sample(first).depth == 0 || sample(first).nearer >= 0) continue;
@@ -52,7 +52,7 @@ class Completer {
         if (end + 1 < steps_ && is_seen(last) && hides(end + 1, last)) go_on_behind(last, 1);
       }
     }
-    if (beyond_border_) add_ray(*beyond_border_, 1);
+    if (line_.at_border) add_beyond_border();
     return std::move(segments_);
   }
 
@@ -125,37 +125,54 @@ class Completer {
     return (nearest > 0 || scene_.orthographic()) && nearness > nearness_at(nearest);
   }
 
-  std::optional<Course> course_beyond_border(int last) const {
-    if (sample(last).depth == 0) return std::nullopt;
-    int first = last;
-    int pixels = 1;
-    for (; pixels < kPixelsOfBorder && sample(first).nearer >= 0; pixels++) first = sample(first).nearer;
-    if (pixels < kLeastPixelsOfBorder) return std::nullopt;
-    return course_from(last, first);
-  }
-
   /// Continues the end of a run of several pixels: away from the receiver (way 1), or towards it (-1).
   void go_on_behind(int edge, int way) {
     if (!stands_above(edge)) return;
     const Course course = course_from(edge, way > 0 ? sample(edge).nearer : sample(edge).farther);
     for (int step = course.step + way;; step += way) {
       if (step == 0) return add(course, 1);
-      if (step == steps_) return add_beyond_border(course);
+      if (step == steps_) return add(course, step - way);
       const double nearness = course.at(step);
       if (hider(step).depth == 0 || nearness >= nearness_of(hider(step))) return add(course, step - way);
       if ((way > 0 && step > side_.reach + 1) || has_left(course, nearness, course.slope * way)) return add_ray(course, way);
     }
   }
 
-  /// Adds a surface that goes on behind the last one before the border: beyond the border it may come to lie in front
-  /// of it.
-  void add_beyond_border(const Course& course) {
-    const int last = steps_ - 1;
-    if (!beyond_border_) return add(course, last);
-    const double behind = beyond_border_->nearness - course.at(last);
-    const double closing = course.slope - beyond_border_->slope;
-    if (closing <= 0) return add_ray(course, 1);
-    add(course, last + std::max(0.0, behind / closing));
+  /// A step beyond the picture's border: the plane of the border's nearest pixel goes on there. None where that is seen
+  /// edge on, or comes much nearer to the eye or farther away.
+  std::optional<Vector> beyond_border(int step) const {
+    const auto [x, y] = pixel_at(receiver_, side_, step);
+    const int near_x = std::clamp(x, 0, scene_.width() - 1);
+    const int near_y = std::clamp(y, 0, scene_.height() - 1);
+    const double depth = scene_.depth(near_x, near_y);
+    if (depth == 0) return std::nullopt;
+    const Vector normal = scene_.normal(near_x, near_y, scene_.toward_eye(scene_.position(near_x, near_y, depth)));
+    const double facing = dot(normal, scene_.position(near_x, near_y, 1) - scene_.position(near_x, near_y, 0));
+    const double off_x = receiver_.x + side_.step_x * step - near_x;
+    const double off_y = receiver_.y + side_.step_y * step - near_y;
+    const double turn = dot(normal, scene_.across(off_x, off_y, 1));
+    const double there = scene_.orthographic() ? depth - turn / facing : depth * facing / (facing + turn);
+    const double facing_there = scene_.orthographic() ? facing : facing + turn;
+    if (std::max(facing, facing_there) > kLeastFacing || there < depth / kMostChange || there > depth * kMostChange)
+      return std::nullopt;
+    return point(step, nearness_at(there));
+  }
+
+  /// Adds what goes on beyond the picture's border, step by step, in planes: what is cut there is half a radius thick.
+  void add_beyond_border() {
+    const double thickness = settings_.thickness == ThicknessRule::width      ? kThicknessOfCut * settings_.radius
+                             : settings_.thickness == ThicknessRule::infinite ? INFINITY
+                                                                              : settings_.thickness_length;
+    std::optional<Vector> last;
+    const double farthest = std::min(side_.reach, double(steps_ + std::max(scene_.width(), scene_.height())));
+    for (int step = steps_ - 1; step <= farthest + 1; step++) {
+      std::optional<Vector> here = step == 0 ? std::nullopt : beyond_border(step);
+      if (here && dot(receiver_.normal, *here) < kLeastRisen * settings_.radius) here.reset();
+      const double pixel = here ? (scene_.orthographic() ? 1 : -(receiver_.position + *here).z) / scene_.fx() : 0;
+      const bool joins = here && last && std::abs(here->z - last->z) < kRunSlope * pixel;
+      if (here) segments_.push_back({joins ? *last : *here, *here, thickness});
+      last = here;
+    }
   }
 
   /// Adds the segment of a course up to `step` steps from the receiver.
@@ -216,7 +233,6 @@ class Completer {
   const ReferenceLine& line_;
   const ReferenceSettings& settings_;
   int steps_;  // of the line
-  std::optional<Course> beyond_border_;
   std::vector<CompletedSegment> segments_;
 };
 

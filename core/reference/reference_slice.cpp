@@ -9,9 +9,6 @@
 namespace alcove {
 namespace {
 
-/// The least thickness, in radii, of a run that the picture's border cuts: its width is unknown.
-constexpr double kCutThickness = 0.5;
-
 /// A run counts as so many radii wide at most.
 constexpr double kWidest = 2;
 
@@ -111,7 +108,7 @@ double thickness_of_run(const ReferenceScene& scene, const ReferenceLine& line, 
   const double most = kWidest * settings.radius;
   const double width = std::min(settings.width_share * chord + settings.width_pixels * pixel, most);
   const double thickness = width - width * width * width / (3 * most * most);
-  return cut && settings.complete != Completion::none ? std::max(thickness, kCutThickness * settings.radius)
+  return cut && settings.complete != Completion::none ? std::max(thickness, kThicknessOfCut * settings.radius)
                                                       : thickness;
 }
 

@@ -10,6 +10,9 @@
 
 namespace alcove {
 
+/// The least thickness, in radii, of a run that the picture's border cuts: its width is unknown.
+constexpr double kThicknessOfCut = 0.5;
+
 /// A surface of a pixel on a slice's image line.
 struct ReferenceSample {
   Vector position;

@@ -116,14 +116,15 @@ Strip strip(int rows, bool at_border) {
   return strip;
 }
 
-TEST(Thickness, is_a_share_of_the_width_and_some_pixels) {
+TEST(Thickness, levels_off_from_a_share_of_the_width_and_some_pixels) {
   for (const auto& [share, pixels] : {std::pair(1.0, 0.0), std::pair(0.5, 1.0), std::pair(0.7, 2.0)}) {
     Strip wide = strip(7, false);
     wide.settings.width_share = share;
     wide.settings.width_pixels = pixels;
     const std::vector<float> by_width = reference_ao(wide.frame, wide.settings);
     wide.settings.thickness = ThicknessRule::constant;
-    wide.settings.thickness_length = (share * 7 + pixels) * 0.02;
+    const double width = (share * 7 + pixels) * 0.02, most = 2 * wide.settings.radius;
+    wide.settings.thickness_length = width - width * width * width / (3 * most * most);
     const std::vector<float> by_length = reference_ao(wide.frame, wide.settings);
     for (std::size_t i = 0; i < by_width.size(); i++)
       // the strip's own depth is another matter: it is endless for itself
@@ -131,14 +132,24 @@ TEST(Thickness, is_a_share_of_the_width_and_some_pixels) {
   }
 }
 
-TEST(Thickness, has_no_end_where_the_border_cuts_the_run) {
+TEST(Thickness, of_a_long_run_grows_no_more) {
   Strip cut = strip(7, true);
   const std::vector<float> by_width = reference_ao(cut.frame, cut.settings);
+  cut.settings.thickness = ThicknessRule::constant;
+  cut.settings.thickness_length = 4.0 / 3 * cut.settings.radius;
+  const std::vector<float> by_length = reference_ao(cut.frame, cut.settings);
+  for (std::size_t i = 0; i < by_width.size(); i++)
+    if (cut.frame.depth[i] > 4.9) EXPECT_NEAR(by_width[i], by_length[i], 1e-6) << "pixel " << i;
+}
+
+TEST(Thickness, of_a_run_that_the_border_cuts_is_half_a_radius_at_least) {
+  Strip cut = strip(7, true);
   cut.settings.complete = Completion::border;
-  const std::vector<float> border = reference_ao(cut.frame, cut.settings);
-  cut.settings.thickness = ThicknessRule::infinite;
-  EXPECT_EQ(reference_ao(cut.frame, cut.settings), border);
-  EXPECT_NE(by_width, border);
+  cut.settings.width_share = 0.01;
+  const std::vector<float> by_width = reference_ao(cut.frame, cut.settings);
+  cut.settings.thickness = ThicknessRule::constant;
+  cut.settings.thickness_length = 0.5 * cut.settings.radius;
+  EXPECT_EQ(reference_ao(cut.frame, cut.settings), by_width);
 }
 
 TEST(Settings, of_the_estimators_become_the_references) {
