@@ -60,7 +60,6 @@ bool loader_hides_devices() {
 std::string missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan 1.2";
   if (!compute_family(device)) return "a compute queue";
-  if (!has_extension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) return VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
   VkPhysicalDeviceVulkan12Features features12{};
   features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
   VkPhysicalDeviceFeatures2 features{};
@@ -356,6 +355,8 @@ void Device::read_properties() {
   preserves_nan_ = properties12.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE && !is_lavapipe;
   nanoseconds_per_tick_ = properties.limits.timestampPeriod;
   most_allocations_ = properties.limits.maxMemoryAllocationCount;
+  most_blocks_ = std::min(properties.limits.maxPerStageDescriptorStorageBuffers, properties.limits.maxPerStageResources);
+  block_alignment_ = properties.limits.minStorageBufferOffsetAlignment;
   cache_owner_ = {properties.vendorID, properties.deviceID, std::to_array(properties.pipelineCacheUUID)};
 }
 
@@ -374,7 +375,7 @@ void Device::create_device() {
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
   features.pNext = &features12;
   features.features.robustBufferAccess = VK_TRUE;
-  std::vector<const char*> extensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  std::vector<const char*> extensions;
   if (has_extension(physical_, kPortabilitySubset)) extensions.push_back(kPortabilitySubset);
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
@@ -385,7 +386,6 @@ void Device::create_device() {
   info.ppEnabledExtensionNames = extensions.data();
   check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-  push_descriptors = PFN_vkCmdPushDescriptorSetKHR(vkGetDeviceProcAddr(device_, "vkCmdPushDescriptorSetKHR"));
 }
 
 void Device::load_pipeline_cache() {

@@ -136,7 +136,10 @@ class Device {
   std::uint32_t queue_family() const { return queue_family_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
-  PFN_vkCmdPushDescriptorSetKHR push_descriptors = nullptr;
+  /// The most storage buffers of a kernel.
+  std::uint32_t most_blocks() const { return most_blocks_; }
+  /// The bytes whose multiples are the places in a buffer that a kernel's block may begin at.
+  VkDeviceSize block_alignment() const { return block_alignment_; }
 
  private:
   friend void free_memory(Device* device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks);
@@ -159,7 +162,8 @@ class Device {
   std::uint32_t queue_family_ = 0, timestamp_bits_ = 0;
   double nanoseconds_per_tick_ = 1;
   bool preserves_nan_ = false;
-  std::uint32_t most_allocations_ = 0;
+  std::uint32_t most_allocations_ = 0, most_blocks_ = 0;
+  VkDeviceSize block_alignment_ = 1;
   std::atomic<std::uint32_t> allocations_ = 0;
   CacheOwner cache_owner_;
   DeviceHandle<VkPipelineCache, vkDestroyPipelineCache> pipeline_cache_;

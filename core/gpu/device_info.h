@@ -43,7 +43,7 @@ struct DeviceOptions {
   bool pipeline_cache = true;   // keep compiled pipelines in the XDG cache folder
   // false: always copy through staging buffers, as with a device whose memory the host cannot map
   bool map_memory = true;
-  // Guards for tests, a multiple of 256: so many bytes before and behind every buffer are NaN, and so are its own bytes
+  // Guards for tests: at least so many bytes before and behind every buffer are NaN, and so are its own bytes
   // until they are written. A run that writes into a guard fails.
   std::size_t guard_bytes = 0;
   double submission_ms = kSubmissionMs;  // see kSubmissionMs; a CPU device has no limit unless this is changed

@@ -135,7 +135,6 @@ VkResult vkEnumerateDeviceExtensionProperties(VkPhysicalDevice device, const cha
                                               VkExtensionProperties* extensions) {
   const uint32_t room = *count;
   const VkResult result = NEXT(vkEnumerateDeviceExtensionProperties)(device, layer, count, extensions);
-  if (lacks("VK_KHR_push_descriptor")) *count = 0;
   if (!number_in("ALCOVE_HEAP_USED") || result != VK_SUCCESS) return result;
   if (extensions && *count < room) std::strcpy(extensions[*count].extensionName, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
   ++*count;
