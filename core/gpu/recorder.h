@@ -67,6 +67,7 @@ concept KernelParams = std::is_trivially_copyable_v<T> && alignof(T) == 4 && siz
 class Recorder {
  public:
   explicit Recorder(Device& device);
+  ~Recorder();
   /// Makes a rehearsal, which needs no device and cannot run. rehearsed() gives the kernels of a frame, bytes() and
   /// largest_bytes() its buffers.
   Recorder() = default;

@@ -1,7 +1,7 @@
 // Preloaded before the Vulkan loader: a poor device.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// It lacks what ALCOVE_LACKS says. Its allocation of the number ALCOVE_ALLOCATION finds no memory, and neither do its
+// It lacks what ALCOVE_LACKS says; without right values, the last rows of workgroups are not computed. Its allocation of the number ALCOVE_ALLOCATION finds no memory, and neither do its
 // first ALCOVE_FIRST. Its first ALCOVE_TOGETHER allocations wait until each of so many threads has asked for one, and
 // find none together.
 // With ALCOVE_HEAP it is a discrete GPU with so many bytes of its own memory, which the host cannot map;
@@ -152,6 +152,12 @@ VkResult vkCreateDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* inf
   if (lacks("a driver that works")) return VK_ERROR_INITIALIZATION_FAILED;
   if (lacks("memory for a second device") && ++devices > 1) return VK_ERROR_OUT_OF_HOST_MEMORY;
   return NEXT(vkCreateDevice)(physical, info, callbacks, device);
+}
+
+void vkCmdDispatchBase(VkCommandBuffer commands, uint32_t x, uint32_t y, uint32_t z, uint32_t columns, uint32_t rows,
+                       uint32_t layers) {
+  if (lacks("right values") && rows > 1) rows--;
+  NEXT(vkCmdDispatchBase)(commands, x, y, z, columns, rows, layers);
 }
 
 VkResult vkCreateComputePipelines(VkDevice device, VkPipelineCache cache, uint32_t count,
