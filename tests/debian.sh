@@ -24,6 +24,7 @@ make_debian() {
   [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase "$suite" "$root" "$mirror" >"$root.log" 2>&1 || fail "debootstrap: $(tail "$root.log")"
   mount -t proc proc "$root/proc"
   mount -t tmpfs tmpfs "$root/dev/shm"
+  mount -t devpts devpts "$root/dev/pts"
   echo "$sources" >"$root/etc/apt/sources.list"
   # Proxies, and what this machine takes for valid; archives that have come stay, so that what is timed is no download.
   { apt-config dump | grep -E '^Acquire::(http|https|Check-)'; echo 'APT::Keep-Downloaded-Packages "true";'; } >"$root/etc/apt/apt.conf.d/99machine" || true

@@ -15,7 +15,7 @@ in_own_mounts "$@"
 
 root=$(mktemp -d)
 chmod 755 "$root"  # apt downloads as a user of its own
-trap 'umount -q "$root/proc" "$root/dev/shm" || true; rm -rf --one-file-system "$root" "$root.log"' EXIT
+trap 'umount -q "$root/proc" "$root/dev/shm" "$root/dev/pts" || true; rm -rf --one-file-system "$root" "$root.log"' EXIT
 begin=$(date +%s)
 step() { echo "$(date +%T) $*"; }
 # Who may write nowhere else, in a folder of their own.

@@ -17,7 +17,7 @@ root=${2:-$(mktemp -d)}
 mkdir -p "$root"
 root=$(realpath "$root")
 chmod 755 "$root"  # apt downloads as a user of its own
-[ -n "${2:-}" ] || trap 'umount -q "$root/proc" "$root/dev/shm" || true; rm -rf --one-file-system "$root" "$root.log"' EXIT
+[ -n "${2:-}" ] || trap 'umount -q "$root/proc" "$root/dev/shm" "$root/dev/pts" || true; rm -rf --one-file-system "$root" "$root.log"' EXIT
 
 make_debian "$suite"
 mkdir -p "$root/alcove"

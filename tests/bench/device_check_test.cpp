@@ -26,8 +26,7 @@ TEST(DeviceCheck, stores_what_the_presets_give) {
     stored += fmt::format("\"{}\",\n", stored_text(values));
     if (!std::getenv("ALCOVE_STORE_VALUES")) EXPECT_LE(deviation(preset, values), kMostDeviation) << preset;
   }
-  if (std::getenv("ALCOVE_STORE_VALUES"))
-    write_bytes(ALCOVE_SOURCE_DIR "/core/bench/device_check_values.inc", stored);
+  if (std::getenv("ALCOVE_STORE_VALUES")) write_bytes(ALCOVE_SOURCE_DIR "/core/bench/device_check_values.inc", stored);
 }
 
 TEST(DeviceCheck, sees_one_block_that_is_wrong) {
@@ -42,13 +41,14 @@ TEST(DeviceCheck, doctor_says_what_each_device_gives) {
   const Finished finished = run_program({"doctor", "--check-device", "--json"});
   EXPECT_EQ(finished.code, 0) << finished;
   for (const auto& device : json::parse(finished.out)["devices"])
-    EXPECT_THAT(device["checked"].get<std::string>(), AllOf(StartsWith("RMS draft 0.0000"), HasSubstr("reference 0.0000")));
+    EXPECT_THAT(device["checked"].get<std::string>(),
+                AllOf(StartsWith("RMS draft 0.0000"), HasSubstr("reference 0.0000")));
   EXPECT_THAT(run_well({"doctor"}).out, Not(HasSubstr("checked")));
 }
 
 TEST(DeviceCheck, doctor_ends_with_5_where_a_device_is_wrong) {
-  const Finished finished =
-      run_program({"doctor", "--check-device"}, {.environment = {{"ALCOVE_LACKS", "right values"}}, .preload = ALCOVE_POOR_DEVICE});
+  const Finished finished = run_program(
+      {"doctor", "--check-device"}, {.environment = {{"ALCOVE_LACKS", "right values"}}, .preload = ALCOVE_POOR_DEVICE});
   EXPECT_EQ(finished.code, 5) << finished;
   EXPECT_THAT(finished.out, AllOf(HasSubstr("problem "), HasSubstr("computes wrongly: the AO of preset draft")));
 }
