@@ -1,4 +1,4 @@
-// `alcove doctor [--check-device] [--json]`: what a report of a bug needs to say of the machine, and what is amiss with it; --version.
+// `alcove doctor`: what a report of a bug needs to say of the machine, and what is amiss with it; --version.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 

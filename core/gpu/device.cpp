@@ -474,7 +474,7 @@ void Device::wait_for(VkFence done, double expected_ms) {
     result = vkWaitForFences(device_, 1, &done, VK_TRUE, is_patient ? UINT64_MAX : kLookNs);
     if (seen != finished_) since = Clock::now();
     seen = finished_;
-    if (result != VK_TIMEOUT || Clock::now() - since <= most) continue;
+    if (result != VK_TIMEOUT || (!hangs_ && Clock::now() - since <= most)) continue;
     hangs_ = true;
     throw DeviceLost(ErrorKind::device, fmt::format("{} has finished nothing for {:.0f} s, and counts as lost",
                                                     info_.name, most.count() / 1000));

@@ -45,8 +45,8 @@ std::span<const std::uint32_t> kernel_code(std::string_view stem);
 
 class Kernel {
  public:
-  /// Fails with ErrorKind::device if there is no such kernel, if its specialization constants are not 0 .. n-1, or if it
-  /// has more storage buffers than the device takes.
+  /// Fails with ErrorKind::device if there is no such kernel, if its specialization constants are not 0 .. n-1, or if
+  /// it has more storage buffers than the device takes.
   Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization);
 
   const std::string& stem() const { return stem_; }

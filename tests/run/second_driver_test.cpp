@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // It takes half a minute for a kernel of horizon.comp, and seconds for others, so these stand for them where they can.
+#include "core/base/text.h"
 #include "tests/support/walked_shot.h"
 
 namespace alcove::second_driver_test {

@@ -1,8 +1,8 @@
 // Preloaded before the Vulkan loader: a poor device.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// It lacks what ALCOVE_LACKS says; without right values, the last rows of workgroups are not computed. Its allocation of the number ALCOVE_ALLOCATION finds no memory, and neither do its
-// first ALCOVE_FIRST. Its first ALCOVE_TOGETHER allocations wait until each of so many threads has asked for one, and
+// It lacks what ALCOVE_LACKS says; without right values, the last rows of workgroups are not computed. Its allocation
+// of the number ALCOVE_ALLOCATION finds no memory, and neither do its first ALCOVE_FIRST. Its first ALCOVE_TOGETHER allocations wait until each of so many threads has asked for one, and
 // find none together.
 // With ALCOVE_HEAP it is a discrete GPU with so many bytes of its own memory, which the host cannot map;
 // ALCOVE_HEAP_SAYS is what it says to have where that is another number, and ALCOVE_HEAP_USED is what it says that
@@ -98,6 +98,7 @@ VkResult vkEnumeratePhysicalDevices(VkInstance instance, uint32_t* count, VkPhys
 void vkGetPhysicalDeviceProperties2(VkPhysicalDevice device, VkPhysicalDeviceProperties2* properties) {
   NEXT(vkGetPhysicalDeviceProperties2)(device, properties);
   if (lacks("Vulkan 1.2")) properties->properties.apiVersion = VK_API_VERSION_1_1;
+  if (lacks("buffers")) properties->properties.limits.maxPerStageDescriptorStorageBuffers = 2;
   if (lacks("a known type")) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_OTHER;
   if (number_in("ALCOVE_HEAP")) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
 }
