@@ -26,7 +26,7 @@ class SecondDriver : public WalkedShot {
     ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1);
     write_shot(2, kWindow);
     FrameFile frame = with_board(2, kWindow);
-    write_plane(folder / "behind.exr", "Z", wall_frame(kWindow, kWindow).planes.at("ViewLayer.Depth.Z"));
+    write_plane(folder / "behind.exr", "Z", wall_frame(kWindow, kWindow).planes.at("ViewLayer.Depth.Z"), kWindow);
     add_beauty(frame);
     frame.write(input(2));
   }
