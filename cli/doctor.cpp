@@ -1,4 +1,4 @@
-// `alcove doctor [--json]`: what a report of a bug needs to say of the machine, and what is amiss with it; --version.
+// `alcove doctor`: what a report of a bug needs to say of the machine, and what is amiss with it; --version.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
@@ -14,9 +14,11 @@
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
+#include "core/bench/device_check.h"
 #include "core/formats/image_io.h"
 #include "core/gpu/device_info.h"
 #include "core/gpu/pipeline_cache.h"
+#include "core/options/options.h"
 
 namespace alcove {
 namespace {
@@ -26,6 +28,7 @@ namespace fs = std::filesystem;
 struct Facts {
   std::vector<std::pair<std::string, std::string>> lines;  // name and text
   std::vector<gpu::DeviceInfo> devices;
+  std::vector<std::string> checks;    // of each device; empty: not asked for
   std::vector<std::string> problems;  // sentences
 };
 
@@ -82,7 +85,34 @@ std::string environment_text() {
   return set.empty() ? "nothing of note" : fmt::format("{}", fmt::join(set, " "));
 }
 
-Facts gather() {
+EstimatorSettings settings_of(const std::string& preset) {
+  const auto known = std::ranges::find(preset_texts(), preset, &std::pair<std::string, std::string>::first);
+  return with_values({}, preset_values(preset, known->second)).estimator;
+}
+
+/// What a device makes of a small frame with each preset, and whether that is right; if it is not, a problem.
+std::string check_device(const gpu::DeviceInfo& device, Facts& facts) {
+  if (!device.unusable.empty()) return "not usable";
+  std::string text;
+  try {
+    for (const char* preset : kCheckedPresets) {
+      const double error =
+          deviation(preset, check_values({.choice = std::to_string(device.index)}, settings_of(preset)));
+      text += fmt::format("{}{} {:.6f}", text.empty() ? "RMS " : ", ", preset, error);
+      if (!(error <= kMostDeviation))
+        facts.problems.push_back(fmt::format(
+            "{} (index {}) computes wrongly: the AO of preset {} differs from what it must be by {:.6f} RMS, "
+            "and {} is allowed; update its driver, or compute on another --device",
+            device.name, device.index, preset, error, kMostDeviation));
+    }
+  } catch (const Error& error) {
+    facts.problems.push_back(fmt::format("{} (index {}) fails: {}", device.name, device.index, error.what()));
+    return text + (text.empty() ? "failed" : ", failed");
+  }
+  return text;
+}
+
+Facts gather(bool checks_devices) {
   Facts facts;
   const auto tell = [&](const char* name, const std::string& text) { facts.lines.emplace_back(name, text); };
   tell("version", kVersion);
@@ -107,12 +137,15 @@ Facts gather() {
     facts.problems.emplace_back(
         "no Vulkan device can compute; lavapipe does on the CPU (Debian: mesa-vulkan-drivers), and a GPU needs its "
         "maker's driver");
+  for (const auto& device : facts.devices)
+    if (checks_devices) facts.checks.push_back(check_device(device, facts));
   return facts;
 }
 
 void print_text(const Facts& facts) {
   for (const auto& [name, text] : facts.lines) fmt::print("{:<17} {}\n", name, printable(text));
   for (const auto& device : facts.devices) fmt::print("{:<17} {}\n", "device", text_of(device));
+  for (std::size_t i = 0; i < facts.checks.size(); i++) fmt::print("{:<17} {}  {}\n", "checked", i, facts.checks[i]);
   for (const auto& problem : facts.problems) fmt::print("{:<17} {}\n", "problem", printable(problem));
   if (facts.problems.empty()) fmt::print("{:<17} none\n", "problems");
 }
@@ -122,12 +155,13 @@ void print_json(const Facts& facts) {
   for (const auto& [name, text] : facts.lines) all[name] = text;
   all["devices"] = nlohmann::ordered_json::array();
   for (const auto& device : facts.devices) all["devices"].push_back(json_of(device));
+  for (std::size_t i = 0; i < facts.checks.size(); i++) all["devices"][i]["checked"] = facts.checks[i];
   all["problems"] = facts.problems;
   fmt::print("{}\n", json_text(all, 1));
 }
 
 struct DoctorArguments {
-  bool json = false;
+  bool json = false, check_device = false;
 };
 
 CommandOf<DoctorArguments> doctor_syntax() {
@@ -135,7 +169,10 @@ CommandOf<DoctorArguments> doctor_syntax() {
       "alcove doctor",
       "Says what a report of a bug needs: version, libraries, devices and drivers, memory and its limits, "
       "folders; and what is amiss, where nothing can be computed. Nothing is sent anywhere.\n"};
-  OptionGroup(command.rows, "Options", Effect::none).flag("--json", &DoctorArguments::json, "print JSON");
+  OptionGroup options(command.rows, "Options", Effect::none);
+  options.flag("--check-device", &DoctorArguments::check_device,
+               "compute a small frame with four presets on every device; one with wrong values is a problem");
+  options.flag("--json", &DoctorArguments::json, "print JSON");
   return command;
 }
 
@@ -148,7 +185,7 @@ Command describe_doctor() { return doctor_syntax().shown(); }
 int doctor_command(const std::vector<std::string>& arguments) {
   const auto parsed = doctor_syntax().parse(arguments);
   if (!parsed) return 0;
-  const Facts facts = gather();
+  const Facts facts = gather(parsed->check_device);
   parsed->json ? print_json(facts) : print_text(facts);
   return facts.problems.empty() ? 0 : int(ErrorKind::device);
 }

@@ -77,7 +77,9 @@ std::string title(const std::string& name, const std::string& sentence) {
 std::string heading_of(const OptionRow& row) {
   std::vector<std::string> names;
   for (const auto& name : names_of_row(row)) names.push_back("\\fB" + escaped(name) + "\\fR");
-  return fmt::format("{}{}", fmt::join(names, ", "), row.value.empty() ? "" : " \\fI" + escaped(row.value) + "\\fR");
+  std::string value;  // lines may break behind each word of a list
+  for (const char c : escaped(row.value)) value += c == '|' ? std::string("|\\:") : std::string(1, c);
+  return fmt::format("{}{}", fmt::join(names, ", "), value.empty() ? "" : " \\fI" + value + "\\fR");
 }
 
 /// What stands below a row's heading: its sentence, range and default.

@@ -10,19 +10,14 @@ fail() {
   echo "tests/package_bootstrap.sh: $*" >&2
   exit 1
 }
-[ "$(id -u)" = 0 ] || fail "only root can make a Debian in a folder"
-[ -x "$(command -v debootstrap)" ] || fail "there is no debootstrap (Debian package debootstrap)"
-# With mounts of its own, which end with it.
-if [ -z "${ALCOVE_BOOTSTRAP_MOUNTS:-}" ]; then
-  ALCOVE_BOOTSTRAP_MOUNTS=own exec unshare --mount --propagation private "$0" "$packages" "$build"
-fi
+. tests/debian.sh
+in_own_mounts "$@"
 
 root=$(mktemp -d)
 chmod 755 "$root"  # apt downloads as a user of its own
-trap 'umount -q "$root/proc" || true; rm -rf --one-file-system "$root"' EXIT
+trap 'umount -q "$root/proc" "$root/dev/shm" "$root/dev/pts" || true; rm -rf --one-file-system "$root" "$root.log"' EXIT
 begin=$(date +%s)
 step() { echo "$(date +%T) $*"; }
-inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
 # Who may write nowhere else, in a folder of their own.
 as_user() { chroot --userspec=1000:1000 "$root" env -i PATH=/usr/bin:/bin HOME=/home/stranger LC_ALL=C.UTF-8 sh -c "cd /home/stranger && $1"; }
 install() { inside apt-get install -y -qq "$@" >"$root/log" 2>&1 || fail "apt-get install $*: $(cat "$root/log")"; }
@@ -33,23 +28,11 @@ seconds() {  # how long a command takes
   awk -v start="$start" -v end="$EPOCHREALTIME" 'BEGIN { printf "%.1f s\n", end - start }'
 }
 
-sources=$(apt-get indextargets --format 'deb $(REPO_URI) $(CODENAME) $(COMPONENT)' 'Identifier: Packages' 'Origin: Debian')
-read -r _ mirror suite _ <<<"$(grep -v -e security -e updates <<<"$sources" | head -n 1)"
-[ -n "${suite:-}" ] || fail "apt knows no archive of Debian: run apt-get update"
-step "a fresh Debian ($suite)"
-debootstrap --variant=minbase "$suite" "$root" "$mirror" >"$packages/debootstrap.log" 2>&1 || fail "debootstrap: $(tail "$packages/debootstrap.log")"
-mount -t proc proc "$root/proc"
-echo "$sources" >"$root/etc/apt/sources.list"
-# Proxies, and what this machine takes for valid; archives that have come stay, so that what is timed is no download.
-{ apt-config dump | grep -E '^Acquire::(http|https|Check-)'; echo 'APT::Keep-Downloaded-Packages "true";'; } >"$root/etc/apt/apt.conf.d/99machine" || true
-cp /etc/resolv.conf /etc/hosts "$root/etc/"
-printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d"  # no services
-chmod +x "$root/usr/sbin/policy-rc.d"
+make_debian
 mkdir "$root/packages" "$root/home/stranger"
 chown 1000:1000 "$root/home/stranger"
 cp "$packages"/*.deb "$root/packages/"
 alcove=/packages/$(basename "$packages"/alcove_*.deb) pictures=/packages/$(basename "$packages"/alcove-pictures_*.deb)
-inside apt-get update -qq || fail "apt-get update failed in the fresh Debian"
 step "fresh: $(state)"
 ! inside sh -c 'command -v gcc c++ cmake' || fail "the fresh Debian has a compiler"
 all_files() { inside find / -xdev -not -path '/var/cache/*' -not -path '/var/lib/*' -not -path '/var/log/*' -iname '*alcove*' -not -path '/packages/*' -not -path '/home/*'; }

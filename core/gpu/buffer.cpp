@@ -64,12 +64,18 @@ constexpr std::size_t kSmallBytes = 1 << 20;
 /// While a frame is recorded, the host writes only a few numbers into buffers; it writes pixels before.
 constexpr std::size_t kRehearsedBytes = 1 << 16;
 
+/// The guard before and behind a buffer: the bytes of the options, and as many more as the device's alignment takes.
+std::size_t guard_on(const Device& device) {
+  const std::size_t step = std::size_t(device.block_alignment());
+  return (device.options().guard_bytes + step - 1) / step * step;
+}
+
 double mebibytes(std::size_t bytes) { return double(bytes) / (1 << 20); }
 
 }  // namespace
 
 Buffer::Buffer(Device& device, std::size_t bytes, Use use)
-    : bytes_(bytes), capacity_(bytes), guard_(device.options().guard_bytes), use_(use) {
+    : bytes_(bytes), capacity_(bytes), guard_(guard_on(device)), use_(use) {
   if (bytes > device.info().buffer_bytes)
     fail(ErrorKind::device,
          "a frame this large needs a buffer of {:.0f} MiB, and {} takes {:.0f} MiB; compute a smaller frame or use "

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <limits>
@@ -60,7 +61,6 @@ bool loader_hides_devices() {
 std::string missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan 1.2";
   if (!compute_family(device)) return "a compute queue";
-  if (!has_extension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) return VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
   VkPhysicalDeviceVulkan12Features features12{};
   features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
   VkPhysicalDeviceFeatures2 features{};
@@ -306,6 +306,10 @@ Device::Device(const DeviceOptions& options) : options_(options) {
 Device::~Device() { release(); }
 
 void Device::release() {
+  if (hangs_) {  // what waits for it, or takes away what it uses, hangs too
+    new auto(std::make_pair(std::move(kernels_), std::move(pipeline_cache_)));
+    return;
+  }
   if (device_) {
     vkDeviceWaitIdle(device_);
     save_pipeline_cache();
@@ -356,6 +360,9 @@ void Device::read_properties() {
   preserves_nan_ = properties12.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE && !is_lavapipe;
   nanoseconds_per_tick_ = properties.limits.timestampPeriod;
   most_allocations_ = properties.limits.maxMemoryAllocationCount;
+  most_blocks_ =
+      std::min(properties.limits.maxPerStageDescriptorStorageBuffers, properties.limits.maxPerStageResources);
+  block_alignment_ = properties.limits.minStorageBufferOffsetAlignment;
   cache_owner_ = {properties.vendorID, properties.deviceID, std::to_array(properties.pipelineCacheUUID)};
 }
 
@@ -374,7 +381,7 @@ void Device::create_device() {
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
   features.pNext = &features12;
   features.features.robustBufferAccess = VK_TRUE;
-  std::vector<const char*> extensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  std::vector<const char*> extensions;
   if (has_extension(physical_, kPortabilitySubset)) extensions.push_back(kPortabilitySubset);
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
@@ -385,7 +392,6 @@ void Device::create_device() {
   info.ppEnabledExtensionNames = extensions.data();
   check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-  push_descriptors = PFN_vkCmdPushDescriptorSetKHR(vkGetDeviceProcAddr(device_, "vkCmdPushDescriptorSetKHR"));
 }
 
 void Device::load_pipeline_cache() {
@@ -455,6 +461,26 @@ Memory Device::allocate(VkDeviceSize bytes, std::uint32_t type) {
 void free_memory(Device* device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks) {
   vkFreeMemory(device->device_, memory, callbacks);
   device->allocations_--;
+}
+
+void Device::wait_for(VkFence done, double expected_ms) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::uint64_t kLookNs = 100'000'000;
+  const bool is_patient = info_.type == DeviceType::cpu;
+  const std::chrono::duration<double, std::milli> most(std::max(options_.lost_ms, kPatience * expected_ms));
+  std::uint64_t seen = finished_;
+  VkResult result = VK_TIMEOUT;
+  for (auto since = Clock::now(); result == VK_TIMEOUT;) {
+    result = vkWaitForFences(device_, 1, &done, VK_TRUE, is_patient ? UINT64_MAX : kLookNs);
+    if (seen != finished_) since = Clock::now();
+    seen = finished_;
+    if (result != VK_TIMEOUT || (!hangs_ && Clock::now() - since <= most)) continue;
+    hangs_ = true;
+    throw DeviceLost(ErrorKind::device, fmt::format("{} has finished nothing for {:.0f} s, and counts as lost",
+                                                    info_.name, most.count() / 1000));
+  }
+  check(result, "vkWaitForFences");
+  finished_++;
 }
 
 void Device::submit(std::span<const VkCommandBuffer> submissions, std::span<const VkFence> fences) {

@@ -133,10 +133,18 @@ class Device {
   /// Hands submissions to the queue, one after the other; one fence per submission signals its end. If it fails, no
   /// submission is under way any more.
   void submit(std::span<const VkCommandBuffer> submissions, std::span<const VkFence> fences);
+  /// Waits for a submission of this expected time. If a GPU finishes nothing, whoever submitted it, for as long as
+  /// DeviceOptions::lost_ms says, it is lost; it may hang for ever, so nothing waits for it any more.
+  void wait_for(VkFence done, double expected_ms);
+  /// Whether it was lost so. What it may still use must never be given back.
+  bool hangs() const { return hangs_; }
   std::uint32_t queue_family() const { return queue_family_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
-  PFN_vkCmdPushDescriptorSetKHR push_descriptors = nullptr;
+  /// The most storage buffers of a kernel.
+  std::uint32_t most_blocks() const { return most_blocks_; }
+  /// The bytes whose multiples are the places in a buffer that a kernel's block may begin at.
+  VkDeviceSize block_alignment() const { return block_alignment_; }
 
  private:
   friend void free_memory(Device* device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks);
@@ -159,8 +167,11 @@ class Device {
   std::uint32_t queue_family_ = 0, timestamp_bits_ = 0;
   double nanoseconds_per_tick_ = 1;
   bool preserves_nan_ = false;
-  std::uint32_t most_allocations_ = 0;
+  std::uint32_t most_allocations_ = 0, most_blocks_ = 0;
+  VkDeviceSize block_alignment_ = 1;
   std::atomic<std::uint32_t> allocations_ = 0;
+  std::atomic<std::uint64_t> finished_ = 0;  // submissions
+  std::atomic<bool> hangs_ = false;
   CacheOwner cache_owner_;
   DeviceHandle<VkPipelineCache, vkDestroyPipelineCache> pipeline_cache_;
   std::size_t loaded_cache_bytes_ = 0;

@@ -36,6 +36,9 @@ std::vector<std::string> driver_variables();
 /// some 0.1 s on, and systems reset a device that does not answer for 2 s (Windows' default).
 constexpr double kSubmissionMs = 250;
 
+/// See DeviceOptions::lost_ms.
+constexpr double kPatience = 20;
+
 struct DeviceOptions {
   std::string choice = "auto";  // auto | cpu | an index | a name or a part of it | a UUID
   bool require_gpu = false;     // a CPU device is an error
@@ -43,9 +46,11 @@ struct DeviceOptions {
   bool pipeline_cache = true;   // keep compiled pipelines in the XDG cache folder
   // false: always copy through staging buffers, as with a device whose memory the host cannot map
   bool map_memory = true;
-  // Guards for tests, a multiple of 256: so many bytes before and behind every buffer are NaN, and so are its own bytes
+  // Guards for tests: at least so many bytes before and behind every buffer are NaN, and so are its own bytes
   // until they are written. A run that writes into a guard fails.
   std::size_t guard_bytes = 0;
+  // A submission that has taken so long, and kPatience times as long as expected, is lost; not on a CPU device.
+  double lost_ms = 30000;
   double submission_ms = kSubmissionMs;  // see kSubmissionMs; a CPU device has no limit unless this is changed
 };
 

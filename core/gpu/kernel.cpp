@@ -161,6 +161,9 @@ Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::u
       (!specialization.empty() && *reflection_.constant_ids.rbegin() != specialization.size() - 1))
     fail(ErrorKind::device, "kernel {} has specialization constants {{{}}}, and {} are given", stem,
          fmt::join(reflection_.constant_ids, ", "), specialization.size());
+  if (const std::uint32_t most = std::min(kMostBlocks, device.most_blocks()); reflection_.blocks.size() > most)
+    fail(ErrorKind::device, "kernel {} has {} storage buffers, and {} takes {}", stem, reflection_.blocks.size(),
+         device.info().name, most);
   create_layouts(device);
   if (device.preserves_nan())
     create_pipeline(device, with_preserved_nan(code), specialization);
@@ -174,7 +177,6 @@ void Kernel::create_layouts(Device& device) {
     bindings.push_back({block.binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
   VkDescriptorSetLayoutCreateInfo set_info{};
   set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  set_info.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
   set_info.bindingCount = std::uint32_t(bindings.size());
   set_info.pBindings = bindings.data();
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;

@@ -13,6 +13,10 @@
 
 namespace alcove::gpu {
 
+/// The most storage buffers of a kernel. Common GPUs take at least 16 per stage; a device that takes fewer is refused
+/// when a kernel with more is made.
+constexpr std::uint32_t kMostBlocks = 16;
+
 /// A storage buffer of a kernel, in descriptor set 0.
 struct Block {
   std::string name;  // in GLSL
@@ -41,13 +45,15 @@ std::span<const std::uint32_t> kernel_code(std::string_view stem);
 
 class Kernel {
  public:
-  /// Fails with ErrorKind::device if there is no such kernel, or if its specialization constants are not 0 .. n-1.
+  /// Fails with ErrorKind::device if there is no such kernel, if its specialization constants are not 0 .. n-1, or if
+  /// it has more storage buffers than the device takes.
   Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization);
 
   const std::string& stem() const { return stem_; }
   const Reflection& reflection() const { return reflection_; }
   VkPipeline pipeline() const { return pipeline_; }
   VkPipelineLayout layout() const { return layout_; }
+  VkDescriptorSetLayout set_layout() const { return set_layout_; }
 
  private:
   void create_layouts(Device& device);

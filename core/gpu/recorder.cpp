@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "core/base/error.h"
 
@@ -92,14 +93,29 @@ Recorder::Recorder(Device& device) : device_(&device) {
   pool_ = {device.handle(), pool};
 }
 
+Recorder::~Recorder() {
+  if (device_ && device_->hangs())  // see Device::hangs()
+    new auto(std::make_tuple(std::move(pool_), std::move(submissions_), std::move(buffers_), std::move(replaced_)));
+}
+
 Recorder::Submission Recorder::make_submission() {
+  const VkDescriptorPoolSize descriptors{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostDispatches * kMostBlocks};
+  VkDescriptorPoolCreateInfo sets_info{};
+  sets_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  sets_info.maxSets = kMostDispatches;
+  sets_info.poolSizeCount = 1;
+  sets_info.pPoolSizes = &descriptors;
+  VkDescriptorPool sets = VK_NULL_HANDLE;
+  check(vkCreateDescriptorPool(device_->handle(), &sets_info, nullptr, &sets), "vkCreateDescriptorPool");
+  Submission submission{VK_NULL_HANDLE, {device_->handle(), sets}, {}, {}};
+
   VkQueryPoolCreateInfo query_info{};
   query_info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
   query_info.queryType = VK_QUERY_TYPE_TIMESTAMP;
   query_info.queryCount = 2 * kMostDispatches;
   VkQueryPool queries = VK_NULL_HANDLE;
   check(vkCreateQueryPool(device_->handle(), &query_info, nullptr, &queries), "vkCreateQueryPool");
-  Submission submission{VK_NULL_HANDLE, {device_->handle(), queries}, {}};
+  submission.queries = {device_->handle(), queries};
 
   VkFenceCreateInfo fence_info{};
   fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
@@ -165,6 +181,7 @@ void Recorder::begin() {
 void Recorder::next_submission() {
   if (used_ == submissions_.size()) submissions_.push_back(make_submission());
   Submission& next = submissions_[used_];
+  check(vkResetDescriptorPool(device_->handle(), next.sets, 0), "vkResetDescriptorPool");
   next.timed.clear();
   next.ms = 0;
   VkCommandBufferBeginInfo info{};
@@ -303,10 +320,16 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
     }
 }
 
-template <class Dispatch>
-void Recorder::record_slice(const Kernel& kernel, std::span<const std::byte> params,
-                            std::span<const Buffer* const> buffers, const Dispatch& dispatch) {
-  if (!touched_.empty()) barrier();
+/// A descriptor set of the current submission that holds the buffers of the kernel's blocks.
+VkDescriptorSet Recorder::bind(const Kernel& kernel, std::span<const Buffer* const> buffers) {
+  const VkDescriptorSetLayout layout = kernel.set_layout();
+  VkDescriptorSetAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  info.descriptorPool = submissions_[used_ - 1].sets;
+  info.descriptorSetCount = 1;
+  info.pSetLayouts = &layout;
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  check(vkAllocateDescriptorSets(device_->handle(), &info, &set), "vkAllocateDescriptorSets");
   std::vector<VkDescriptorBufferInfo> infos;
   std::vector<VkWriteDescriptorSet> writes;
   infos.reserve(buffers.size());
@@ -314,13 +337,23 @@ void Recorder::record_slice(const Kernel& kernel, std::span<const std::byte> par
     infos.push_back(buffers[i]->bound());
     VkWriteDescriptorSet write{};
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = set;
     write.dstBinding = kernel.reflection().blocks[i].binding;
     write.descriptorCount = 1;
     write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     write.pBufferInfo = &infos.back();
     writes.push_back(write);
-    touched_.push_back(buffers[i]->handle());
   }
+  vkUpdateDescriptorSets(device_->handle(), std::uint32_t(writes.size()), writes.data(), 0, nullptr);
+  return set;
+}
+
+template <class Dispatch>
+void Recorder::record_slice(const Kernel& kernel, std::span<const std::byte> params,
+                            std::span<const Buffer* const> buffers, const Dispatch& dispatch) {
+  if (!touched_.empty()) barrier();
+  for (const Buffer* buffer : buffers) touched_.push_back(buffer->handle());
+  const VkDescriptorSet set = bind(kernel, buffers);
   Submission& submission = submissions_[used_ - 1];
   const auto query = std::uint32_t(2 * submission.timed.size());
   const auto stamp = [&](std::uint32_t number) {
@@ -329,8 +362,7 @@ void Recorder::record_slice(const Kernel& kernel, std::span<const std::byte> par
   };
   stamp(query);
   vkCmdBindPipeline(submission.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline());
-  device_->push_descriptors(submission.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0,
-                            std::uint32_t(writes.size()), writes.data());
+  vkCmdBindDescriptorSets(submission.commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout(), 0, 1, &set, 0, nullptr);
   vkCmdPushConstants(submission.commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, std::uint32_t(params.size()),
                      params.data());
   dispatch(submission.commands);
@@ -343,8 +375,7 @@ void Recorder::wait(const std::function<void(double)>& watch) const {
   std::size_t total = 0, done = 0;
   for (std::size_t i = 0; i < used_; i++) total += submissions_[i].timed.size();
   for (std::size_t i = 0; i < used_; i++) {
-    const VkFence fence = submissions_[i].done;
-    check(vkWaitForFences(device_->handle(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+    device_->wait_for(submissions_[i].done, submissions_[i].ms);
     done += submissions_[i].timed.size();
     if (watch && total > 0) watch(double(done) / double(total));
   }
@@ -391,7 +422,7 @@ void Recorder::abandon() {
 /// Reads the time of each pass, the sum over its slices. Work of other recorders between slices does not count.
 void Recorder::read_times() {
   for (std::size_t i = 0; i < used_; i++) {
-    const auto& [commands, queries, fence, timed, ms] = submissions_[i];
+    const auto& [commands, sets, queries, fence, timed, ms] = submissions_[i];
     if (timed.empty()) continue;
     std::vector<std::uint64_t> ticks(2 * timed.size());
     check(vkGetQueryPoolResults(device_->handle(), queries, 0, std::uint32_t(ticks.size()), ticks.size() * 8,

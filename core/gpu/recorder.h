@@ -67,6 +67,7 @@ concept KernelParams = std::is_trivially_copyable_v<T> && alignof(T) == 4 && siz
 class Recorder {
  public:
   explicit Recorder(Device& device);
+  ~Recorder();
   /// Makes a rehearsal, which needs no device and cannot run. rehearsed() gives the kernels of a frame, bytes() and
   /// largest_bytes() its buffers.
   Recorder() = default;
@@ -125,6 +126,7 @@ class Recorder {
   /// Commands that go to the queue at once.
   struct Submission {
     VkCommandBuffer commands;
+    DeviceHandle<VkDescriptorPool, vkDestroyDescriptorPool> sets;  // one set per dispatch
     DeviceHandle<VkQueryPool, vkDestroyQueryPool> queries;
     DeviceHandle<VkFence, vkDestroyFence> done;
     std::vector<std::size_t> timed = {};  // the pass of every two queries
@@ -146,6 +148,7 @@ class Recorder {
   void write_bytes(const Buffer& buffer, std::span<const std::byte> value);
   void dispatch_bytes(const std::string& stem, std::span<const std::byte> params, std::span<const Binding> bindings,
                       Extent extent, const std::vector<std::uint32_t>& specialization);
+  VkDescriptorSet bind(const Kernel& kernel, std::span<const Buffer* const> buffers);
   template <class Dispatch>
   void record_slice(const Kernel& kernel, std::span<const std::byte> params, std::span<const Buffer* const> buffers,
                     const Dispatch& dispatch);

@@ -22,6 +22,7 @@
 #include "kernels/base/normal.glsl"
 #include "kernels/base/noise.glsl"
 #include "kernels/base/tiles.glsl"
+#include "kernels/base/arcs.glsl"
 #include "kernels/base/clearance.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -41,7 +42,6 @@ readonly buffer Counts { TileCounts counts; };
 
 /// The least turn of a pixel's ray towards the tangent plane with which it meets the plane at a usable place.
 const float kLeastSlope = 1e-4;
-const float kTwoPi = 6.28318530717958648;
 
 /// The distance of sample i from the receiver, in radii, by a random number in [0, 1). Clustered samples spread with
 /// the square of their number from a tenth of the radius on, as engines usually scale them.
@@ -88,12 +88,14 @@ void main() {
   float valid = 0.0, blocked = 0.0;
   for (uint i = 0u; i < kSamples; i++) {
     const vec3 random = r3_point(first_point + i, params.noise_shift);
-    const float azimuth = kTwoPi * random.x;
+    // a full turn, the half of it by its sign
+    const float azimuth = kPi * fract(2.0 * random.x);
+    const vec2 turn = random.x < 0.5 ? direction_of(azimuth) : -direction_of(azimuth);
     const float up = random.y;
     const float across = sqrt(1.0 - up * up);
     const float reach = params.radius * reach_of(i, random.z);
     const float height = reach * up;  // above the tangent plane
-    const vec3 at = position + reach * (across * (cos(azimuth) * tangent + sin(azimuth) * bitangent) + up * n);
+    const vec3 at = position + reach * (across * (turn.x * tangent + turn.y * bitangent) + up * n);
     if (perspective && !(-at.z > 0.0)) continue;
     const ivec2 hit = pixel_of(params.view, at);
     if (!inside(params.view, hit)) continue;

@@ -121,7 +121,7 @@ void main() {
   for (uint s = 0u; s < kSlices; s++) {
     // 1. An even direction of the image, and the tangent of the view ray that is seen along it.
     const float angle = kPi * (float(s) + noise.x) / float(kSlices);
-    const vec3 direction = vec3(cos(angle), sin(angle), 0);
+    const vec3 direction = vec3(direction_of(angle), 0);
     // directions about the view ray for one of the image
     const float toward = dot(direction, eye), share = 1.0 / (1.0 - toward * toward);
     const vec3 t = (direction - toward * eye) * sqrt(share), b = cross(t, eye);

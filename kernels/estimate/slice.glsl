@@ -138,7 +138,8 @@ Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
   basis_of(r.eye, x, y);
   const float cos_tilt = dot(r.normal, r.eye);
   const float sin_tilt = sqrt(max(0.0, 1.0 - cos_tilt * cos_tilt));
-  const vec3 even = cos(azimuth) * x + sin(azimuth) * y;
+  const vec2 on_image = direction_of(azimuth);
+  const vec3 even = on_image.x * x + on_image.y * y;
   const vec3 across = (r.normal - cos_tilt * r.eye) / max(sin_tilt, kLeastTilt);
   const float pull =
       mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices * slices));

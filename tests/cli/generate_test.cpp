@@ -178,12 +178,13 @@ TEST_F(Generated, fish_completes) {
     return words;
   };
   EXPECT_THAT(completed("alcove "), IsSupersetOf(kCommands));
-  EXPECT_THAT(completed("alcove run --rad"), ElementsAre("--radius"));
-  EXPECT_THAT(completed("alcove frame.exr --rad"), ElementsAre("--radius"));
+  // Others follow that only have these letters, in that order, since fish 4.
+  EXPECT_EQ(completed("alcove run --rad").at(0), "--radius");
+  EXPECT_EQ(completed("alcove frame.exr --rad").at(0), "--radius");
   EXPECT_THAT(completed("alcove run --normal-space "), ElementsAre("auto", "view", "world"));
   EXPECT_THAT(completed("alcove run --preset produ"), ElementsAre("production"));
   EXPECT_THAT(completed("alcove help doc"), ElementsAre("doctor"));
-  EXPECT_THAT(completed("alcove compare --max-r"), ElementsAre("--max-rmse"));
+  EXPECT_EQ(completed("alcove compare --max-r").at(0), "--max-rmse");
 }
 
 TEST_F(Generated, other_words_are_refused) {

@@ -155,6 +155,17 @@ VkResult vkGetPipelineCacheData(VkDevice device, VkPipelineCache cache, size_t* 
   return VK_SUCCESS;
 }
 
+VkResult vkWaitForFences(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all, uint64_t nanoseconds) {
+  if (!fake().hangs) return NEXT(vkWaitForFences)(device, count, fences, all, nanoseconds);
+  NEXT(vkWaitForFences)(device, count, fences, all, std::numeric_limits<uint64_t>::max());  // lavapipe's do not hang
+  return nanoseconds == std::numeric_limits<uint64_t>::max() ? VK_SUCCESS : VK_TIMEOUT;
+}
+
+VkResult vkDeviceWaitIdle(VkDevice device) {
+  fake().idle_waits++;
+  return NEXT(vkDeviceWaitIdle)(device);
+}
+
 VkResult vkQueueSubmit(VkQueue queue, uint32_t count, const VkSubmitInfo* work, VkFence fence) {
   fake().submissions++;
   if (fake().failing_submission && --fake().failing_submission == 0) return VK_ERROR_OUT_OF_DEVICE_MEMORY;

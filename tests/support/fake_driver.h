@@ -17,6 +17,7 @@ struct FakeDriver {
   bool is_discrete = false;            // by its type and driver
   bool is_portable = false;            // has VK_KHR_portability_subset
   std::uint32_t most_allocations = 0;  // 0: as many as the driver says
+  bool hangs = false;                  // no submission ends
   int failing_submission = 0;          // from now on; 0: none
   bool lists_no_extensions = false;    // of its device: the call fails
   bool has_endless_cache = false;      // the size of its pipeline cache is beyond any memory
@@ -28,7 +29,7 @@ struct FakeDriver {
   std::vector<std::uint32_t> mapped_types = {};          // types of memory that were mapped
   std::vector<std::vector<std::uint32_t>> modules = {};  // SPIR-V
   std::vector<std::string> caches = {};                  // data of pipeline caches
-  int submissions = 0, allocations = 0, live_allocations = 0, live_instances = 0;
+  int idle_waits = 0, submissions = 0, allocations = 0, live_allocations = 0, live_instances = 0;
 };
 
 FakeDriver& fake_driver();

@@ -1,8 +1,8 @@
 // Preloaded before the Vulkan loader: a poor device.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// It lacks what ALCOVE_LACKS says. Its allocation of the number ALCOVE_ALLOCATION finds no memory, and neither do its
-// first ALCOVE_FIRST. Its first ALCOVE_TOGETHER allocations wait until each of so many threads has asked for one, and
+// It lacks what ALCOVE_LACKS says; without right values, the last rows of workgroups are not computed. Its allocation
+// of the number ALCOVE_ALLOCATION finds no memory, and neither do its first ALCOVE_FIRST. Its first ALCOVE_TOGETHER allocations wait until each of so many threads has asked for one, and
 // find none together.
 // With ALCOVE_HEAP it is a discrete GPU with so many bytes of its own memory, which the host cannot map;
 // ALCOVE_HEAP_SAYS is what it says to have where that is another number, and ALCOVE_HEAP_USED is what it says that
@@ -98,6 +98,7 @@ VkResult vkEnumeratePhysicalDevices(VkInstance instance, uint32_t* count, VkPhys
 void vkGetPhysicalDeviceProperties2(VkPhysicalDevice device, VkPhysicalDeviceProperties2* properties) {
   NEXT(vkGetPhysicalDeviceProperties2)(device, properties);
   if (lacks("Vulkan 1.2")) properties->properties.apiVersion = VK_API_VERSION_1_1;
+  if (lacks("buffers")) properties->properties.limits.maxPerStageDescriptorStorageBuffers = 2;
   if (lacks("a known type")) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_OTHER;
   if (number_in("ALCOVE_HEAP")) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
 }
@@ -135,7 +136,6 @@ VkResult vkEnumerateDeviceExtensionProperties(VkPhysicalDevice device, const cha
                                               VkExtensionProperties* extensions) {
   const uint32_t room = *count;
   const VkResult result = NEXT(vkEnumerateDeviceExtensionProperties)(device, layer, count, extensions);
-  if (lacks("VK_KHR_push_descriptor")) *count = 0;
   if (!number_in("ALCOVE_HEAP_USED") || result != VK_SUCCESS) return result;
   if (extensions && *count < room) std::strcpy(extensions[*count].extensionName, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
   ++*count;
@@ -153,6 +153,12 @@ VkResult vkCreateDevice(VkPhysicalDevice physical, const VkDeviceCreateInfo* inf
   if (lacks("a driver that works")) return VK_ERROR_INITIALIZATION_FAILED;
   if (lacks("memory for a second device") && ++devices > 1) return VK_ERROR_OUT_OF_HOST_MEMORY;
   return NEXT(vkCreateDevice)(physical, info, callbacks, device);
+}
+
+void vkCmdDispatchBase(VkCommandBuffer commands, uint32_t x, uint32_t y, uint32_t z, uint32_t columns, uint32_t rows,
+                       uint32_t layers) {
+  if (lacks("right values") && rows > 1) rows--;
+  NEXT(vkCmdDispatchBase)(commands, x, y, z, columns, rows, layers);
 }
 
 VkResult vkCreateComputePipelines(VkDevice device, VkPipelineCache cache, uint32_t count,

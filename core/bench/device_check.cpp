@@ -1,0 +1,91 @@
+// A room with a ball, 64 x 64 pixels, and what presets make of it.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/bench/device_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/chain/compute.h"
+#include "core/gpu/recorder.h"
+
+namespace alcove {
+namespace {
+
+constexpr int kSize = 64, kBlock = 8, kBlocks = kSize / kBlock;  // px, px, blocks
+constexpr double kStoredOne = 65535;                             // stands for 1
+
+/// For each of kCheckedPresets what stored_text() gave on lavapipe. device_check_test writes the file anew, see there.
+constexpr std::string_view kStored[] = {
+#include "core/bench/device_check_values.inc"
+};
+
+struct Hit {
+  double depth;  // along a ray whose z is -1, which makes it planar
+  std::array<double, 3> normal;
+};
+
+/// The nearest of three walls and a ball, in view space, on the ray (x, y, -1).
+Hit hit_of(double x, double y) {
+  Hit hit{4, {0, 0, 1}};
+  if (y < 0 && -0.8 / y < hit.depth) hit = {-0.8 / y, {0, 1, 0}};
+  if (x < 0 && -1.1 / x < hit.depth) hit = {-1.1 / x, {1, 0, 0}};
+  constexpr double kX = 0.3, kY = -0.35, kZ = -3, kRadius = 0.45;
+  const double a = x * x + y * y + 1, b = x * kX + y * kY - kZ;
+  const double inside = b * b - a * (kX * kX + kY * kY + kZ * kZ - kRadius * kRadius);
+  if (inside <= 0) return hit;
+  const double t = (b - std::sqrt(inside)) / a;
+  if (t < hit.depth) hit = {t, {(t * x - kX) / kRadius, (t * y - kY) / kRadius, (-t - kZ) / kRadius}};
+  return hit;
+}
+
+HostFrame room() {
+  constexpr std::size_t kPixels = kSize * kSize;
+  HostFrame frame;
+  frame.data = frame.display = {0, 0, kSize, kSize};
+  frame.camera.width = frame.camera.height = kSize;
+  frame.camera.fx = frame.camera.fy = kSize;
+  frame.camera.cx = frame.camera.cy = kSize / 2.;
+  frame.depth.resize(kPixels);
+  frame.normal.resize(3 * kPixels);
+  for (std::size_t i = 0; i < kPixels; i++) {
+    const double x = double(i % kSize) + 0.5, y = double(i / kSize) + 0.5;
+    const Hit hit = hit_of((x - frame.camera.cx) / kSize, (frame.camera.cy - y) / kSize);
+    frame.depth[i] = float(hit.depth);
+    for (std::size_t c = 0; c < 3; c++) frame.normal[i + c * kPixels] = float(hit.normal[c]);
+  }
+  return frame;
+}
+
+}  // namespace
+
+std::vector<double> check_values(const gpu::DeviceOptions& options, const EstimatorSettings& settings) {
+  gpu::Device device(options);
+  gpu::Recorder recorder(device);
+  EstimatorSettings with_radius = settings;
+  with_radius.radius = 0.8;
+  const std::vector<float> ao = compute_ao(recorder, room(), with_radius).ao;
+  std::vector<double> means(kBlocks * kBlocks);
+  for (std::size_t i = 0; i < ao.size(); i++)
+    means[i / kSize / kBlock * kBlocks + i % kSize / kBlock] += double(ao[i]) / (kBlock * kBlock);
+  return means;
+}
+
+std::string stored_text(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += fmt::format("{:04x}", std::lround(std::clamp(value, 0., 1.) * kStoredOne));
+  return text;
+}
+
+double deviation(const std::string& preset, const std::vector<double>& values) {
+  const auto known = std::ranges::find(kCheckedPresets, preset);
+  const std::string stored(kStored[known - std::begin(kCheckedPresets)]);
+  double squares = 0;
+  for (std::size_t i = 0; i < values.size(); i++)
+    squares += std::pow(values[i] - std::stoi(stored.substr(4 * i, 4), nullptr, 16) / kStoredOne, 2);
+  return std::sqrt(squares / double(values.size()));  // of NaN NaN, which is no small deviation
+}
+
+}  // namespace alcove

@@ -1,0 +1,30 @@
+// Whether a device computes what it must: a small frame through presets, against stored values.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/settings.h"
+#include "core/gpu/device_info.h"
+
+namespace alcove {
+
+/// The presets that have stored values.
+inline constexpr const char* kCheckedPresets[] = {"draft", "standard", "production", "reference"};
+
+/// The largest RMS of the difference to the stored values.
+inline constexpr double kMostDeviation = 1e-4;
+
+/// The AO of the frame with these settings, which may lack a radius, on a device: the means of its blocks of 8 x 8
+/// pixels, row by row. Fails with ErrorKind::device.
+std::vector<double> check_values(const gpu::DeviceOptions& device, const EstimatorSettings& settings);
+
+/// Values as the stored ones are written, four hexadecimal digits each.
+std::string stored_text(const std::vector<double>& values);
+
+/// The RMS of values less those that are stored for one of kCheckedPresets.
+double deviation(const std::string& preset, const std::vector<double>& values);
+
+}  // namespace alcove
