@@ -133,13 +133,14 @@ TEST(Thickness, levels_off_from_a_share_of_the_width_and_some_pixels) {
 }
 
 TEST(Thickness, of_a_long_run_grows_no_more) {
-  Strip cut = strip(7, true);
-  const std::vector<float> by_width = reference_ao(cut.frame, cut.settings);
-  cut.settings.thickness = ThicknessRule::constant;
-  cut.settings.thickness_length = 4.0 / 3 * cut.settings.radius;
-  const std::vector<float> by_length = reference_ao(cut.frame, cut.settings);
+  Strip wide = strip(7, false);
+  wide.settings.width_share = 100;
+  const std::vector<float> by_width = reference_ao(wide.frame, wide.settings);
+  wide.settings.thickness = ThicknessRule::constant;
+  wide.settings.thickness_length = 4.0 / 3 * wide.settings.radius;
+  const std::vector<float> by_length = reference_ao(wide.frame, wide.settings);
   for (std::size_t i = 0; i < by_width.size(); i++)
-    if (cut.frame.depth[i] > 4.9) EXPECT_NEAR(by_width[i], by_length[i], 1e-6) << "pixel " << i;
+    if (wide.frame.depth[i] > 4.9) EXPECT_NEAR(by_width[i], by_length[i], 1e-6) << "pixel " << i;
 }
 
 TEST(Thickness, of_a_run_that_the_border_cuts_is_half_a_radius_at_least) {
