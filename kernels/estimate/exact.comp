@@ -162,7 +162,6 @@ Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
 /// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
 const float kBesideReceiver = 1e-3;
 
-const float kReachBeyond = 1.2, kLeastFacingBeyond = 0.02;
 
 /// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
 /// away from it.
@@ -474,25 +473,29 @@ void add_beyond(inout Found found, Walk walk, Context c, int last) {
   }
 }
 
-/// Samples of a side beyond the border, as far as the sphere reaches at the receiver's depth.
+/// Samples of a side beyond the border, up to so many radii at the receiver's depth, and no more steps than that.
 const int kStepsBeyond = 8;
+const float kReachBeyond = 1.2, kMostBeyond = 2000.0;
+
+/// The plane of a pixel that is seen more nearly edge on than this does not go on: the dot product of the normal and the
+/// view ray, which is 1 long along the optical axis.
+const float kLeastFacingBeyond = 0.02;
 
 /// A surface goes on beyond the border no nearer to the eye and no farther from it than so many times its depth there.
 const float kMostChange = 2.0;
 
-/// The depth at a step of the line beyond the border: the plane of the border's nearest pixel goes on there. kSkyDepth:
-/// nothing does.
-float depth_beyond(Context c, float at) {
-  const ivec2 extent = extent_of(c.view, c.lines);
-  const int step = clamp(int(floor(at + 0.5)), 0, extent.x - 1);
-  const float across = float(c.line) + float(c.lines.slope) / float(kSlopeUnit) * (float(c.lines.origin.x) + at);
-  const int index = index_at(c.view, c.lines, step, clamp(int(floor(across + 0.5)), 0, extent.y - 1));
-  const ivec2 nearest = ivec2(step, clamp(int(floor(across + 0.5)), 0, extent.y - 1));
+/// The depth at a step of the line beyond the border, counted from the display window's corner: the plane of the border's
+/// nearest pixel goes on there. kSkyDepth: nothing does.
+float depth_beyond(Context c, LinePlane plane, float at) {
+  const ivec2 extent = extent_of(c.view, c.lines), origin = c.lines.origin;
+  const float across = float(c.line + origin.y) + float(c.lines.slope) / float(kSlopeUnit) * at;
+  const ivec2 nearest = clamp(ivec2(floor(vec2(at, across) + 0.5)) - origin, ivec2(0), extent - 1);
+  const int index = index_at(c.view, c.lines, nearest.x, nearest.y);
   const float z = depth[index];
   const vec3 n = unpack_normal(normal[index]);
   const bool perspective = c.view.orthographic == 0;
-  const vec2 from = tangent_at(c.view, c.lines, nearest + c.lines.origin);
-  const vec2 to = c.plane.foot + (c.plane.start + (float(c.plane.origin) + at) * c.plane.step) * c.plane.along;
+  const vec2 from = tangent_at(c.view, c.lines, nearest + origin);
+  const vec2 to = plane.foot + (plane.start + at * plane.step) * plane.along;
   const float facing_from = (perspective ? dot(n.xy, from) : 0.0) - n.z;
   const float facing_to = (perspective ? dot(n.xy, to) : 0.0) - n.z;
   const float there = perspective ? z * facing_from / facing_to : z - dot(n.xy, to - from) / facing_to;
@@ -506,28 +509,33 @@ void add_border(inout Found found, Context c) {
   const ivec2 steps = steps_of(c.lines, extent_of(c.view, c.lines), c.line);
   const int border = c.search.step > 0 ? steps.y - 1 : steps.x;
   const bool perspective = c.view.orthographic == 0;
-  const float whole = kReachBeyond * params.radius / (c.plane.step * (perspective ? c.z : 1.0));
-  const float rest = min(whole - float(abs(border - c.search.from)), float(max(c.view.size.x, c.view.size.y)));
+  // Steps are counted from the display window's corner, so that a part of the frame rounds as the whole does.
+  LinePlane plane = c.plane;
+  plane.origin = 0;
+  const float first = float(border + c.plane.origin);
+  const float whole = kReachBeyond * params.radius / (plane.step * (perspective ? c.z : 1.0));
+  const float rest = min(whole - float(abs(border - c.search.from)), kMostBeyond);
   const float thickness = params.thickness > 0.0 ? params.thickness : kCutThickness * params.radius;
   const Walk walk = Walk(vec2(0), false, false, thickness, 0.0);
-  float last_z = kSkyDepth, last_at = 0.0;
+  float last_z = kSkyDepth, last_at = first;
   vec2 last = vec2(0);
-  bool goes = rest > 0.0;
+  // Whether a step lies within the sphere's image is the same at any depth.
+  bool goes = rest > 0.0 && dot(from_receiver(c, place_at(c.view, plane, first, c.z)), c.search.leaving) < params.radius;
   for (int i = 0; goes; i++) {
-    const float at = float(border) + float(c.search.step) * rest * (float(i) - 1.0 + c.search.shift) / float(kStepsBeyond);
-    const float beyond = i == 0 ? float(border) : at;
-    const float z = depth_beyond(c, beyond);
+    const float part = max(float(i) - 1.0 + c.search.shift, 0.0) / float(kStepsBeyond);
+    const float at = i == 0 ? first : first + float(c.search.step) * (rest * part);
+    const float z = depth_beyond(c, plane, at);
     Corner corner;
-    corner.place = from_receiver(c, place_at(c.view, c.plane, beyond, z < kSkyDepth ? z : 1.0));
+    corner.place = from_receiver(c, place_at(c.view, plane, at, z < kSkyDepth ? z : 1.0));
     corner.unseen = corner.place;
     corner.least = c.search.least_height + kLeastRisen * params.radius;
-    const float slope = kRunSlope * c.view.tangent_per_pixel.x * abs(beyond - last_at);
+    const float slope = kRunSlope * c.view.tangent_per_pixel.x * abs(at - last_at);
     const bool joins = abs(z - last_z) < slope * (perspective ? min(z, last_z) : 1.0);
     IF_ANY (z < kSkyDepth && corner.place.x > 0.0)
       block(found.all, walk, c, Stroke(joins ? last : kShortStroke * corner.place, corner.place), corner, false);
     last = corner.place;
     last_z = z;
-    last_at = beyond;
+    last_at = at;
     goes = i < kStepsBeyond && dot(corner.place, c.search.leaving) < params.radius;
   }
 }
