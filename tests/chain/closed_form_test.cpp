@@ -477,7 +477,7 @@ double floor_under_blades(ThicknessKind thickness, double length = 0) {
 
 TEST(Thickness, thin_blades_block_as_thin_ones) {
   const double measured = floor_under_blades(ThicknessKind::automatic),
-               thin = floor_under_blades(ThicknessKind::constant, 0.03),
+               thin = floor_under_blades(ThicknessKind::constant, 1.25 * 0.03),
                endless = floor_under_blades(ThicknessKind::infinite);
   EXPECT_NEAR(measured, thin, 0.05);
   EXPECT_GE(measured, endless + 0.1);

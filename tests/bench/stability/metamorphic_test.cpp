@@ -80,7 +80,8 @@ TEST(Metamorphic, an_orthographic_eye_may_be_anywhere_on_its_ray) {
 // leaves the sphere between two samples is interpolated, so a pixel may be off by a little. Not of Crytek, whose
 // samples move as the radius grows. Nor of what goes on beyond the border: that must rise by a part of the radius and
 // begin within a multiple of it, so a larger one may leave it out. The worst that was measured of bitmask with endless
-// occluders is 3.4e-4, from the sector that the tangent plane cuts.
+// occluders is 3.4e-4, from the sector that the tangent plane cuts; of finite ones 0.0102, since of several runs before
+// the sphere only the thickest counts.
 TEST(Metamorphic, a_larger_radius_only_darkens) {
   const HostFrame frame = room(55, 1, 0, 48, 36).frame;
   auto all = solid_estimators();
@@ -89,7 +90,8 @@ TEST(Metamorphic, a_larger_radius_only_darkens) {
     if (variant.settings.estimator == Estimator::crytek) continue;
     std::vector<float> smaller(frame.data.pixels(), 1.0f);
     const float slack = searches_exactly(variant.settings)                       ? 0.01f
-                        : variant.settings.thickness == ThicknessKind::automatic ? 0.006f
+                        : variant.settings.thickness == ThicknessKind::automatic ? 0.012f
+                        : variant.settings.thickness == ThicknessKind::constant  ? 0.006f
                         : variant.settings.estimator == Estimator::bitmask       ? 5e-4f
                                                                                  : 1e-6f;
     for (const double radius : {1e-9, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 1e9}) {
@@ -180,8 +182,8 @@ bool is_cut_by_border(const HostFrame& frame) {
 }
 
 // What the picture shows whole is not completed: its faces are connected, and behind them is sky. Where the border cuts
-// it, it goes on along its last 4 pixels. Where they lie on both sides of an edge, their line rises above the outer
-// face. The worst that was measured is .2138, of one pixel beside the border.
+// it, the planes of the border's pixels go on, and may rise above what is rounded. The worst that was measured of
+// samples is .0197, of a ball no larger than the radius.
 TEST(Metamorphic, a_convex_body_alone_is_open) {
   const Sphere ball{.center = {6, 0.4, -0.3}, .radius = 1.5};
   const Plane plane{.point = {5, 0, 0}, .normal = unit({-1, 0.5, 0.7})};
@@ -209,11 +211,12 @@ TEST(Metamorphic, a_convex_body_alone_is_open) {
           for (const bool completes : {false, true}) {
             const double worst_edge = completes && is_cut ? 0.22 : 0.2;
             const Difference d = difference(completes ? completed : seen, [](std::size_t) { return 1.0; });
-            EXPECT_LE(d.max, !exact      ? 1e-4
+            const double rounded = completes && is_cut ? 0.025 : 0;
+            EXPECT_LE(d.max, !exact      ? std::max(rounded, 1e-4)
                              : has_edges ? worst_edge
-                                         : 0.01)
+                                         : std::max(rounded, 0.01))
                 << variant.name << " fov " << fov << " radius " << radius << " " << place(d, frame);
-            EXPECT_LE(d.rmse, exact ? 0.01 : 1e-5) << variant.name << " fov " << fov << " radius " << radius;
+            EXPECT_LE(d.rmse, exact ? 0.01 : completes && is_cut ? 1e-3 : 1e-5) << variant.name << " fov " << fov << " radius " << radius;
           }
         }
     }
