@@ -134,7 +134,8 @@ class Completer {
       if (step == steps_) return add(course, step - way);
       const double nearness = course.at(step);
       if (hider(step).depth == 0 || nearness >= nearness_of(hider(step))) return add(course, step - way);
-      if ((way > 0 && step > side_.reach + 1) || has_left(course, nearness, course.slope * way)) return add_ray(course, way);
+      if ((way > 0 && step > side_.reach + 1) || has_left(course, nearness, course.slope * way))
+        return add_ray(course, way);
     }
   }
 

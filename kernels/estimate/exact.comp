@@ -19,8 +19,10 @@
 //     there that passes behind the receiver is cut at the eye's ray. A vertex that knows how thick its surface's solid
 //     is has that thickness.
 //  5. Where surfaces are completed, a stroke is drawn on to where its surface goes on unseen (complete.comp). The
-//     surface that goes on towards the receiver behind the end of a walk is the last one.
-//  6. Every stroke is cut to the part within the sphere.
+//     surface that goes on towards the receiver behind the end of a walk is the last one. Beyond the border go on the
+//     planes of its pixels.
+//  6. Every stroke is cut to the part within the sphere. A stroke before the sphere blocks by the part of its solid
+//     within the sphere.
 //  7. A stroke blocks from its front to its back, which lies as far along the eye's ray as its run is wide ("width as
 //     thickness"). What goes on from the receiver is its own surface: it blocks all below its horizon.
 //  8. What is blocked is a union of intervals. It is exact for what joins the horizon; all others are counted in 24
@@ -126,7 +128,8 @@ vec2 depths_of(vec2 front, float eye_distance, float thickness, float radius_sq,
   const float enters = outside_sq > 0.0 ? -inside - middle : 0.0;
   const float leaves = min(thickness, inside - middle);
   back = front + thickness * direction;
-  const bool exists = both(both(front.x > 0.0, inside_sq > -kTouches * radius_sq), both(enters >= 0.0, enters <= leaves));
+  const bool exists =
+      both(both(front.x > 0.0, inside_sq > -kTouches * radius_sq), both(enters >= 0.0, enters <= leaves));
   return exists ? vec2(slope_of(front + enters * direction), slope_of(front + leaves * direction)) : vec2(-1, 1);
 }
 
@@ -161,7 +164,6 @@ Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
 
 /// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
 const float kBesideReceiver = 1e-3;
-
 
 /// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
 /// away from it.
@@ -201,7 +203,7 @@ struct Context {
   View view;
   Lines lines;
   int line;
-  float z;          // the receiver's depth
+  float z;  // the receiver's depth
   LinePlane plane;
   Point point;
   Side side;
@@ -441,8 +443,7 @@ struct Found {
 
 /// 5. to 7. Adds the stroke that ends at a vertex. goes_on: its surface goes on there unseen.
 void add_stroke(inout Found found, Walk walk, Context c, Stroke stroke, Corner corner, bool begins, bool goes_on) {
-  if (kTellsApart)
-    block(found.seen, walk, c, stroke, corner, false);
+  if (kTellsApart) block(found.seen, walk, c, stroke, corner, false);
   // What is seen from the receiver to the first vertex need not be straight with what goes on there: where that is
   // beyond the sphere, only the former matters.
   const bool is_first_beyond = both(walk.starts, dot(corner.place, corner.place) > c.radius_sq);
@@ -520,7 +521,8 @@ void add_border(inout Found found, Context c) {
   float last_z = kSkyDepth, last_at = first;
   vec2 last = vec2(0);
   // Whether a step lies within the sphere's image is the same at any depth.
-  bool goes = rest > 0.0 && dot(from_receiver(c, place_at(c.view, plane, first, c.z)), c.search.leaving) < params.radius;
+  bool goes =
+      rest > 0.0 && dot(from_receiver(c, place_at(c.view, plane, first, c.z)), c.search.leaving) < params.radius;
   for (int i = 0; goes; i++) {
     const float part = max(float(i) - 1.0 + c.search.shift, 0.0) / float(kStepsBeyond);
     const float at = i == 0 ? first : first + float(c.search.step) * (rest * part);

@@ -18,14 +18,15 @@
 //  5. Samples of a side form runs of one surface. The receiver's own surface is what goes on from the receiver, or from
 //     any place below its tangent plane. It blocks all below its horizon (line 24). A sample below the tangent plane
 //     says nothing else.
-//  6. Every other run blocks from its front to its back, and nothing beyond the radius. The back lies as much further
-//     along the eye's ray as the run is wide ("width as thickness": a blade of grass is as thin as it is narrow, a
-//     column as thick as it is broad), or as the user says. The paper lets the horizon sink instead (section 4.3).
+//  6. Every other run blocks from its front to its back, and nothing beyond the radius. The back lies further along the
+//     eye's ray by the run's width ("width as thickness": a blade of grass is as thin as it is narrow, a column as thick
+//     as it is broad), or by what the user says. A front before the sphere blocks by the part of its solid within the
+//     sphere. The paper lets the horizon sink instead (section 4.3).
 //     Runs are counted in 24 sectors, as in the mask of Therrien et al., "Screen Space Indirect Lighting with
 //     Visibility Bitmask", 2023; see sectors.glsl. With kInSectors, which is `--estimator bitmask`, so is the own
 //     surface; else its interval is exact.
 //  7. A run that something nearer interrupts goes on behind it, as far as it would not be seen. A run that the image's
-//     border cuts goes on beyond it. See pieces.glsl.
+//     border cuts goes on beyond it in its plane. See pieces.glsl.
 //  8. Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), which is exact
 //     for height fields.
 //  9. The arcs that are blocked are integrated in closed form (line 28): see arc_to().
@@ -250,14 +251,17 @@ void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw
   Sample last = border;
   vec2 last_slopes = slopes_at_border(r, reach, border);
   for (int k = 0; k < kStepsBeyond; k++) {
-    const Sample s = sample_beyond(r, side, reach, border.offset + rest * ((float(k) + draw.jitter) / float(kStepsBeyond)));
+    const Sample s =
+        sample_beyond(r, side, reach, border.offset + rest * ((float(k) + draw.jitter) / float(kStepsBeyond)));
     vec2 slopes = slopes_at_border(r, reach, s);
     const bool joins = both(both(s.above, last.above), same_surface(r, reach, s.z, last.z, s.offset - last.offset));
     const vec2 joined = vec2(max(slopes.x, last_slopes.x), min(slopes.y, last_slopes.y));
     // Where it crosses the sphere it blocks half way to the sample beyond.
     const bool crosses = both(joins, s.within != last.within);
     const float half_way = mix(s.slope, last.slope, 0.5);
-    const vec2 counted = joins ? vec2(crosses ? max(joined.x, half_way) : joined.x, crosses ? min(joined.y, half_way) : joined.y) : slopes;
+    const vec2 counted =
+        joins ? vec2(crosses ? max(joined.x, half_way) : joined.x, crosses ? min(joined.y, half_way) : joined.y)
+              : slopes;
     add_completed(found, side, reach, draw, counted, s.place);
     last = s;
     last_slopes = slopes;

@@ -252,17 +252,16 @@ void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, cons
   profile.goes_on = &gpu.buffer("profile goes on", planes_of(profile) * bytes);
   profile.behind = &gpu.buffer("profile behind", bytes);
   const uint slot = planes_of(profile) - 1;
-  gpu.dispatch("complete",
-               CompleteParams{gbuffer.view, profile.lines, profile.first, profile.count, reach.radius, slot},
-               {{"Normal", gbuffer.normal},
-                {"Vertex", profile.vertex},
-                {"Mark", profile.mark},
-                {"GoesOn", profile.goes_on},
-                {"Behind", profile.behind},
-                {"Depth", occluder_depth_of(gbuffer)},
-                {"Hidden", gpu::Optional(occluder_hidden_of(gbuffer))}},
-               groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
-               {profile.slots, gbuffer.hides_no_more ? 1u : 0u});
+  gpu.dispatch(
+      "complete", CompleteParams{gbuffer.view, profile.lines, profile.first, profile.count, reach.radius, slot},
+      {{"Normal", gbuffer.normal},
+       {"Vertex", profile.vertex},
+       {"Mark", profile.mark},
+       {"GoesOn", profile.goes_on},
+       {"Behind", profile.behind},
+       {"Depth", occluder_depth_of(gbuffer)},
+       {"Hidden", gpu::Optional(occluder_hidden_of(gbuffer))}},
+      groups ? gpu::Extent(*groups) : gpu::Extent(profile.count), {profile.slots, gbuffer.hides_no_more ? 1u : 0u});
 }
 
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,

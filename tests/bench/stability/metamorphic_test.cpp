@@ -216,7 +216,10 @@ TEST(Metamorphic, a_convex_body_alone_is_open) {
                              : has_edges ? worst_edge
                                          : std::max(rounded, 0.01))
                 << variant.name << " fov " << fov << " radius " << radius << " " << place(d, frame);
-            EXPECT_LE(d.rmse, exact ? 0.01 : completes && is_cut ? 1e-3 : 1e-5) << variant.name << " fov " << fov << " radius " << radius;
+            EXPECT_LE(d.rmse, exact                 ? 0.01
+                              : completes && is_cut ? 1e-3
+                                                    : 1e-5)
+                << variant.name << " fov " << fov << " radius " << radius;
           }
         }
     }
