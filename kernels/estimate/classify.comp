@@ -10,9 +10,9 @@
 //     and farthest depth.
 //  2. The box in space that holds the receivers, and the part of the image within their reach, follow from these.
 //  3. If another frame's estimates still lie there, and nothing within reach has changed, they stay.
-//  4. If nothing is hidden so near to the receivers that it may block, nor closes a solid whose front is there, an estimator
-//     finds what it finds where nothing is hidden at all, to the bit (surfaces.glsl). Such tiles are listed without
-//     kTileLayered. Distances are those of the boxes in space that hold receivers and hidden surfaces.
+//  4. If nothing is hidden so near to the receivers that it may block, nor closes a solid whose front is there, an
+//     estimator finds what it finds where nothing is hidden at all, to the bit (surfaces.glsl). Such tiles are listed
+//     without kTileLayered. Distances are those of the boxes in space that hold receivers and hidden surfaces.
 //  5. The tiles that are left are counted and listed; the others get what estimators write for sky.
 #version 450
 #extension GL_GOOGLE_include_directive : require

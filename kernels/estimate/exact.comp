@@ -105,8 +105,8 @@ struct Clipped {
   bool is_within;  // whether it holds anything
 };
 
-/// slope_of() the back of an occluder that is endless: where the eye's ray through its front (across, toward) leaves the
-/// sphere.
+/// slope_of() the back of an occluder that is endless: where the eye's ray through its front (across, toward) leaves
+/// the sphere.
 float back_of(vec2 front, float eye_distance, float radius_sq) {
   const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1);
   const vec2 direction = ray * inversesqrt(dot(ray, ray));
@@ -478,15 +478,15 @@ void add_beyond(inout Found found, Walk walk, Context c, int last) {
 const int kStepsBeyond = 8;
 const float kReachBeyond = 1.2, kMostBeyond = 2000.0;
 
-/// The plane of a pixel that is seen more nearly edge on than this does not go on: the dot product of the normal and the
-/// view ray, which is 1 long along the optical axis.
+/// The plane of a pixel that is seen more nearly edge on than this does not go on: the dot product of the normal and
+/// the view ray, which is 1 long along the optical axis.
 const float kLeastFacingBeyond = 0.02;
 
 /// A surface goes on beyond the border no nearer to the eye and no farther from it than so many times its depth there.
 const float kMostChange = 2.0;
 
-/// The depth at a step of the line beyond the border, counted from the display window's corner: the plane of the border's
-/// nearest pixel goes on there. kSkyDepth: nothing does.
+/// The depth at a step of the line beyond the border, counted from the display window's corner: the plane of the
+/// border's nearest pixel goes on there. kSkyDepth: nothing does.
 float depth_beyond(Context c, LinePlane plane, float at) {
   const ivec2 extent = extent_of(c.view, c.lines), origin = c.lines.origin;
   const float across = float(c.line + origin.y) + float(c.lines.slope) / float(kSlopeUnit) * at;

@@ -150,8 +150,8 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
 /// A surface goes on beyond the border no nearer to the eye and no farther from it than so many times its depth there.
 const float kMostChange = 2.0;
 
-/// The sample so many steps from the receiver beyond the image's border: the plane of the border's nearest pixel goes on
-/// there.
+/// The sample so many steps from the receiver beyond the image's border: the plane of the border's nearest pixel goes
+/// on there.
 Sample sample_beyond(Receiver r, Side side, Reach reach, float offset) {
   const vec2 beside = side.direction_px * offset;
   const ivec2 nearest = clamp(r.pixel + ivec2(round(beside)), ivec2(0), params.view.size - 1);

@@ -167,7 +167,8 @@ const float kEndless = 1e9;
 /// Steps of a side that lie within the sphere of the radius and on the image. pixels: of the side's image T, per unit
 /// of length at unit depth. eye_z, t_z: z of the direction to the eye and of T on that side. sin_reach: the sphere is
 /// seen under the angle of this sine; the ray that touches it leaves the image of the sphere at sin_reach * pixels /
-/// (eye_z cos_reach - t_z sin_reach) pixels from the receiver's. whole_reach: steps within the sphere, on the image or not.
+/// (eye_z cos_reach - t_z sin_reach) pixels from the receiver's. whole_reach: steps within the sphere, on the image or
+/// not.
 float reach_of_side(View view, ivec2 pixel, vec2 direction_px, float pixels, float eye_z, float t_z, float sin_reach,
                     float radius, out float whole_reach) {
   const float cos_reach = sqrt(max(0.0, 1.0 - sin_reach * sin_reach));
@@ -293,8 +294,8 @@ bool is_before_sphere(Receiver r, Reach reach, vec2 place) {
   return both(distance_sq > reach.radius_sq, r.perspective ? distance_sq < place.y * r.eye_distance : place.y > 0.0);
 }
 
-/// slope_of() where the eye's ray through a front enters what of a solid lies within the sphere of the radius, and where
-/// it leaves that; (-1, 1): nothing of it lies there. The solid is `thickness` deep.
+/// slope_of() where the eye's ray through a front enters what of a solid lies within the sphere of the radius, and
+/// where it leaves that; (-1, 1): nothing of it lies there. The solid is `thickness` deep.
 vec2 depths_of(Receiver r, vec2 front, float thickness, float radius_sq) {
   const vec2 away = away_from_eye(r, front);
   const float middle = -dot(front, away);

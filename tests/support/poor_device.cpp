@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // It lacks what ALCOVE_LACKS says; without right values, the last rows of workgroups are not computed. Its allocation
-// of the number ALCOVE_ALLOCATION finds no memory, and neither do its first ALCOVE_FIRST. Its first ALCOVE_TOGETHER allocations wait until each of so many threads has asked for one, and
-// find none together.
+// of the number ALCOVE_ALLOCATION finds no memory, and neither do its first ALCOVE_FIRST. Its first ALCOVE_TOGETHER
+// allocations wait until each of so many threads has asked for one, and find none together.
 // With ALCOVE_HEAP it is a discrete GPU with so many bytes of its own memory, which the host cannot map;
 // ALCOVE_HEAP_SAYS is what it says to have where that is another number, and ALCOVE_HEAP_USED is what it says that
 // other programs have taken.

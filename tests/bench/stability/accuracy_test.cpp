@@ -10,8 +10,9 @@
 // reference's own occlusion is none: an AO that is 1 everywhere would pass. Where depth is to show that it is precise
 // enough, such bounds are refused.
 //
-// All of it holds with and without completed surfaces. Only what goes on beyond the picture's border do kernels see by a
-// few samples, and the reference at every step. Where most of the sphere is beyond the border, a bound of its own says how far they may differ.
+// All of it holds with and without completed surfaces. Only what goes on beyond the picture's border do kernels see by
+// a few samples, and the reference at every step. Where most of the sphere is beyond the border, a bound of its own
+// says how far they may differ.
 
 #include "core/chain/compute.h"
 #include "core/chain/estimate/estimate.h"
