@@ -70,6 +70,8 @@ buffer Completed { float completed[]; };
 // direction b as 0.5 + 0.5 b. Only with kBentId.
 buffer Bent { float bent[]; };
 readonly buffer Own { uint own[]; };  // from profile; only with several kSlots
+// one float per pixel, depth of the first surfaces that may block; only with kExactBorder
+readonly buffer Occluders { float occluder_depth[]; };
 
 const bool kBent = kBentId != 0u;
 
@@ -492,7 +494,7 @@ float depth_beyond(Context c, LinePlane plane, float at) {
   const float across = float(c.line + origin.y) + float(c.lines.slope) / float(kSlopeUnit) * at;
   const ivec2 nearest = clamp(ivec2(floor(vec2(at, across) + 0.5)) - origin, ivec2(0), extent - 1);
   const int index = index_at(c.view, c.lines, nearest.x, nearest.y);
-  const float z = depth[index];
+  const float z = occluder_depth[index];
   const vec3 n = unpack_normal(normal[index]);
   const bool perspective = c.view.orthographic == 0;
   const vec2 from = tangent_at(c.view, c.lines, nearest + origin);

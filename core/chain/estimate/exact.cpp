@@ -306,7 +306,8 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {"Behind", gpu::Optional(profile.behind)},
                 {"Completed", gpu::Optional(out.completed)},
                 {"Bent", gpu::Optional(out.bent)},
-                {"Own", gpu::Optional(profile.own)}},
+                {"Own", gpu::Optional(profile.own)},
+                {"Occluders", occluder_depth_of(gbuffer)}},
                is_listed ? list_extent(out.listed) : pixels,
                {is_listed ? 1u : 0u, completing, out.bent ? 1u : 0u, profile.slots, profile.has_unseen ? 1u : 0u});
 }
