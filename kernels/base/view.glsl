@@ -41,3 +41,18 @@ float steps_to_border(View view, ivec2 pixel, vec2 direction) {
   const vec2 steps = room / max(abs(direction), 1e-6);
   return min(steps.x, steps.y);
 }
+
+/// A surface goes on where no pixel shows it no nearer to the eye and no farther from it than so many times its depth.
+const float kMostChange = 2.0;
+
+/// The depth at which the plane of a pixel's surface goes on at another image point; kSkyDepth: it does not. from, to:
+/// tangent_of() the pixel's centre and the point. z, n: the pixel's depth and unit normal. least_facing: of both; the
+/// dot product of the normal and the way to the eye, which is 1 long along the optical axis.
+float depth_on_plane(View view, vec2 from, float z, vec3 n, vec2 to, float least_facing) {
+  const bool perspective = view.orthographic == 0;
+  const float facing_from = n.z - (perspective ? dot(n.xy, from) : 0.0);
+  const float facing_to = n.z - (perspective ? dot(n.xy, to) : 0.0);
+  const float there = perspective ? z * facing_from / facing_to : z + dot(n.xy, to - from) / facing_to;
+  const bool faces = min(facing_from, facing_to) > least_facing;
+  return z < kSkyDepth && faces && there > z / kMostChange && there < z * kMostChange ? there : kSkyDepth;
+}

@@ -333,13 +333,14 @@ uint vertex_beyond(Context c, int at) {
   return c.search.step > 0 ? columns >> 16 : columns & kNoVertex;
 }
 
-/// The blocked part of a side's arc integral.
+/// The blocked part of a side's arc integral. Where the receiver's own surface blocks nothing, it adds exactly 0.
 float arc_of(Side side, Search search, Blocked blocked) {
-  return whole_arc(side) - arc_to(side, place_at(blocked.own)) +
+  const float own = whole_arc(side) - arc_to(side, place_at(blocked.own));
+  return (blocked.own > slope_of(side.ahead) ? own : 0.0) +
          arc_of(side, blocked.sectors & ~sectors_below(blocked.own, search.shift));
 }
 
-/// bent_to() over what is blocked. Where the receiver's own surface blocks nothing, it adds exactly 0.
+/// bent_to() over what is blocked; exactly 0 where the own surface blocks nothing, too.
 vec2 bent_of(Side side, Search search, Blocked blocked) {
   vec2 own = vec2(0);
   if (blocked.own > slope_of(side.ahead)) {
@@ -480,12 +481,8 @@ void add_beyond(inout Found found, Walk walk, Context c, int last) {
 const int kStepsBeyond = 8;
 const float kReachBeyond = 1.2, kMostBeyond = 2000.0;
 
-/// The plane of a pixel that is seen more nearly edge on than this does not go on: the dot product of the normal and
-/// the view ray, which is 1 long along the optical axis.
+/// The plane of a pixel that is seen more nearly edge on than this does not go on: see depth_on_plane().
 const float kLeastFacingBeyond = 0.02;
-
-/// A surface goes on beyond the border no nearer to the eye and no farther from it than so many times its depth there.
-const float kMostChange = 2.0;
 
 /// The depth at a step of the line beyond the border, counted from the display window's corner: the plane of the
 /// border's nearest pixel goes on there. kSkyDepth: nothing does.
@@ -494,17 +491,9 @@ float depth_beyond(Context c, LinePlane plane, float at) {
   const float across = float(c.line + origin.y) + float(c.lines.slope) / float(kSlopeUnit) * at;
   const ivec2 nearest = clamp(ivec2(floor(vec2(at, across) + 0.5)) - origin, ivec2(0), extent - 1);
   const int index = index_at(c.view, c.lines, nearest.x, nearest.y);
-  const float z = occluder_depth[index];
-  const vec3 n = unpack_normal(normal[index]);
-  const bool perspective = c.view.orthographic == 0;
   const vec2 from = tangent_at(c.view, c.lines, nearest + origin);
   const vec2 to = plane.foot + (plane.start + at * plane.step) * plane.along;
-  const float facing_from = (perspective ? dot(n.xy, from) : 0.0) - n.z;
-  const float facing_to = (perspective ? dot(n.xy, to) : 0.0) - n.z;
-  const float there = perspective ? z * facing_from / facing_to : z - dot(n.xy, to - from) / facing_to;
-  const bool exists = both(max(facing_from, facing_to) < -kLeastFacingBeyond,
-                           both(there > z / kMostChange, there < min(z * kMostChange, kSkyDepth)));
-  return exists ? there : kSkyDepth;
+  return depth_on_plane(c.view, from, occluder_depth[index], unpack_normal(normal[index]), to, kLeastFacingBeyond);
 }
 
 /// 5. Adds what goes on beyond the image's border.

@@ -147,27 +147,19 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
   return piece;
 }
 
-/// A surface goes on beyond the border no nearer to the eye and no farther from it than so many times its depth there.
-const float kMostChange = 2.0;
-
 /// The sample so many steps from the receiver beyond the image's border: the plane of the border's nearest pixel goes
 /// on there.
 Sample sample_beyond(Receiver r, Side side, Reach reach, float offset) {
   const vec2 beside = side.direction_px * offset;
   const ivec2 nearest = clamp(r.pixel + ivec2(round(beside)), ivec2(0), params.view.size - 1);
   const int index = nearest.y * reach.width + nearest.x;
-  const float z = occluder_depth[index];
   const vec3 n = octahedral_direction(unpackSnorm2x16(normal[index]));
   const vec2 from = tangent_of(params.view, vec2(nearest) + 0.5);
   const vec2 to = tangent_of(params.view, vec2(r.pixel) + 0.5 + beside);
-  const float facing_from = (r.perspective ? dot(n.xy, from) : 0.0) - n.z;
-  const float facing_to = (r.perspective ? dot(n.xy, to) : 0.0) - n.z;
-  const float there = r.perspective ? z * facing_from / facing_to : z - dot(n.xy, to - from) / facing_to;
-  const bool exists = both(max(facing_from, facing_to) < -kLeastFacingToGoOn,
-                           both(there > z / kMostChange, there < min(z * kMostChange, kSkyDepth)));
-  Sample s = sample_of(r, side, reach, offset, beside, exists ? there : kSkyDepth);
+  const float z = depth_on_plane(params.view, from, occluder_depth[index], n, to, kLeastFacingToGoOn);
+  Sample s = sample_of(r, side, reach, offset, beside, z);
   const float height = height_of(r, beside, s.z, s.scale);
-  s.above = both(exists, both(s.above, height > kLeastRisen * reach.radius + r.least_height));
+  s.above = both(z < kSkyDepth, both(s.above, height > kLeastRisen * reach.radius + r.least_height));
   return s;
 }
 

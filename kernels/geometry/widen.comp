@@ -22,19 +22,13 @@ readonly buffer Found { uint found[]; };              // one key per pixel of `w
 buffer WideDepth { float wide_depth[]; };             // one float per pixel of `wide`
 writeonly buffer WideNormal { uint wide_normal[]; };  // one uint per pixel of `wide`
 
-/// A surface goes on no nearer to the eye and no farther from it than so many times its depth.
-const float kMostChange = 2.0;
-
 /// The depth at an image point of the plane of the frame's pixel.
 float continued(ivec2 pixel, ivec2 nearest) {
   const int index = index_of(params.view, nearest);
   const float z = depth[index];
   if (z >= kSkyDepth || normal[index] == kNoNormal) return z;
-  const vec3 n = unpack_normal(normal[index]);
-  const float height = dot(n, position_of(params.view, vec2(nearest) + 0.5, z));
-  const vec2 t = tangent_of(params.view, vec2(pixel) + 0.5);
-  const float there = params.view.orthographic != 0 ? (dot(n.xy, t) - height) / n.z : height / (dot(n.xy, t) - n.z);
-  return there > z / kMostChange && there < z * kMostChange ? there : kSkyDepth;
+  return depth_on_plane(params.view, tangent_of(params.view, vec2(nearest) + 0.5), z, unpack_normal(normal[index]),
+                        tangent_of(params.view, vec2(pixel) + 0.5), 0.0);
 }
 
 void main() {
