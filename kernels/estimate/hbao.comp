@@ -141,9 +141,8 @@ void main() {
       side.normal = vec2(float(sign) * n_t, n_v);
       side.direction_px = float(sign) / pixels * image_t;
       side.least_height = clearance;
-      float whole_reach;
-      side.reach = reach_of_side(params.view, pixel, side.direction_px, pixels, eye.z, float(sign) * t.z, sin_reach,
-                                 params.radius, whole_reach);
+      side.reach = min(steps_to_border(params.view, pixel, side.direction_px),
+                       steps_in_sphere(params.view, pixels, eye.z, float(sign) * t.z, sin_reach, params.radius));
       blocked += share * occlusion(side, pixel, position, fract(noise.y + kGolden * float(2u * s + uint(sign > 0))));
     }
   }

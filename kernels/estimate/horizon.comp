@@ -100,7 +100,6 @@ const float kSameSurface = 1.44;
 /// blocks.
 struct Run {
   vec2 start, end;  // its outer samples
-  float share;      // of its width that it is thick
   float near, far;  // largest and smallest of the samples that block
 };
 
@@ -139,11 +138,11 @@ vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
   return own + arcs_of(side, others);
 }
 
-/// How thick a run is, in scene units. z: depth of its last sample.
-float thickness_of(Receiver r, Reach reach, Run run, float z) {
+/// How thick a run is, in scene units. z: depth of its last sample. per_width: so many times as wide, with `auto`.
+float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width) {
   if (kThickness != kThicknessWidth) return reach.thickness;
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
-  return levelled(run.share * (length(run.end - run.start) + pixel), kWidestRun * reach.radius);
+  return levelled(per_width * (length(run.end - run.start) + pixel), kWidestRun * reach.radius);
 }
 
 /// 6. The sectors that a run blocks whose front lies within the sphere. is_open: it has samples without a known back.
@@ -245,23 +244,21 @@ const int kStepsBeyond = 6;
 /// Adds what the image's border cuts, and what goes on of it beyond the border.
 void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
   const Sample border = sample_at(r, side, reach, floor(side.reach));
-  block(found.blocked, slopes_at_border(r, reach, border), draw.shift);
-  if (!kHard) add_faded(found, side, reach, draw, border.place);
-  const float rest = min(side.whole_reach, side.reach + float(reach.width)) - border.offset;
   Sample last = border;
   vec2 last_slopes = slopes_at_border(r, reach, border);
+  block(found.blocked, last_slopes, draw.shift);
+  if (!kHard) add_faded(found, side, reach, draw, border.place);
+  const float rest = min(side.whole_reach, side.reach + float(reach.width)) - border.offset;
   for (int k = 0; k < kStepsBeyond; k++) {
     const Sample s =
         sample_beyond(r, side, reach, border.offset + rest * ((float(k) + draw.jitter) / float(kStepsBeyond)));
-    vec2 slopes = slopes_at_border(r, reach, s);
+    const vec2 slopes = slopes_at_border(r, reach, s);
     const bool joins = both(both(s.above, last.above), same_surface(r, reach, s.z, last.z, s.offset - last.offset));
-    const vec2 joined = vec2(max(slopes.x, last_slopes.x), min(slopes.y, last_slopes.y));
     // Where it crosses the sphere it blocks half way to the sample beyond.
     const bool crosses = both(joins, s.within != last.within);
     const float half_way = mix(s.slope, last.slope, 0.5);
-    const vec2 counted =
-        joins ? vec2(crosses ? max(joined.x, half_way) : joined.x, crosses ? min(joined.y, half_way) : joined.y)
-              : slopes;
+    vec2 counted = joins ? vec2(max(slopes.x, last_slopes.x), min(slopes.y, last_slopes.y)) : slopes;
+    counted = crosses ? vec2(max(counted.x, half_way), min(counted.y, half_way)) : counted;
     add_completed(found, side, reach, draw, counted, s.place);
     last = s;
     last_slopes = slopes;
@@ -335,7 +332,7 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
 void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   bool own = true;
   Sample last = receiver_sample(r);
-  Run run = Run(vec2(0), vec2(0), kThicknessPerWidth, -1.0, 1.0);
+  Run run = Run(vec2(0), vec2(0), -1.0, 1.0);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0);
   bool is_before = false;  // the run has samples before the sphere
@@ -350,12 +347,12 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     if (connected) run.end = s.place;
     if (!connected || !s.above) {
       if (kHard) {
-        const float thickness = thickness_of(r, reach, run, last.z);
+        const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth);
         found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
         take_before(before, run, is_before, thickness);
       }
       is_before = false;
-      run = Run(s.place, s.place, kThicknessPerWidth, -1.0, 1.0);
+      run = Run(s.place, s.place, -1.0, 1.0);
       own = !s.above;
     }
     if (own) {
@@ -366,7 +363,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       is_before = s.above && is_before_sphere(r, reach, s.place) ? true : is_before;
     }
     if (!kHard) {
-      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness_of(r, reach, run, s.z), draw.shift);
+      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness_of(r, reach, run, s.z, kThicknessPerWidth), draw.shift);
       add_faded(found, side, reach, draw, s.place);
     }
     last = s;
@@ -376,7 +373,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     }
   }
   if (kHard) {
-    const float thickness = thickness_of(r, reach, run, last.z);
+    const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
     take_before(before, run, is_before, thickness);
     found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
@@ -394,7 +391,7 @@ const uint kSlotOpen = 8u;  // samples of the run that block have no known back
 const uint kSlotKnows = 16u;
 const uint kSlotBefore = 32u;  // samples of the run without a known back are before the sphere
 
-/// A surface of the last sample, and the run that it belongs to. Of the run `share` is told by kSlotKnows.
+/// A surface of the last sample, and the run that it belongs to.
 struct Slot {
   float z;  // kNoLastSurface: there is none
   float slope;
@@ -409,16 +406,14 @@ Slot chosen(Slot a, Slot b, bool second) {
   s.bits = second ? b.bits : a.bits;
   s.run.start = second ? b.run.start : a.run.start;
   s.run.end = second ? b.run.end : a.run.end;
-  s.run.share = kThicknessPerWidth;
   s.run.near = second ? b.run.near : a.run.near;
   s.run.far = second ? b.run.far : a.run.far;
   return s;
 }
 
 float thickness_of(Receiver r, Reach reach, Slot slot) {
-  Run run = slot.run;
-  run.share = (slot.bits & kSlotKnows) != 0u ? kKnownThicknessPerWidth : kThicknessPerWidth;
-  return thickness_of(r, reach, run, slot.z);
+  const float per_width = (slot.bits & kSlotKnows) != 0u ? kKnownThicknessPerWidth : kThicknessPerWidth;
+  return thickness_of(r, reach, slot.run, slot.z, per_width);
 }
 
 /// Ends the runs of those slots whose bits are set; most of the time it is none or one.
@@ -437,7 +432,7 @@ void end_runs(inout Found found, inout Before before, Receiver r, Reach reach, S
 void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
-  const Run nothing = Run(vec2(0), vec2(0), kThicknessPerWidth, -1.0, 1.0);
+  const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0);
   Slot slots[kMostSurfaces];
   for (int i = 0; i < kSurfaces; i++)
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);

@@ -164,19 +164,15 @@ Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
 /// More steps than any image has.
 const float kEndless = 1e9;
 
-/// Steps of a side that lie within the sphere of the radius and on the image. pixels: of the side's image T, per unit
-/// of length at unit depth. eye_z, t_z: z of the direction to the eye and of T on that side. sin_reach: the sphere is
-/// seen under the angle of this sine; the ray that touches it leaves the image of the sphere at sin_reach * pixels /
-/// (eye_z cos_reach - t_z sin_reach) pixels from the receiver's. whole_reach: steps within the sphere, on the image or
-/// not.
-float reach_of_side(View view, ivec2 pixel, vec2 direction_px, float pixels, float eye_z, float t_z, float sin_reach,
-                    float radius, out float whole_reach) {
+/// Steps of a side that lie within the sphere of the radius, on the image or not; kEndless: any number. pixels: of the
+/// side's image T, per unit of length at unit depth. eye_z, t_z: z of the direction to the eye and of T on that side.
+/// sin_reach: the sphere is seen under the angle of this sine; the ray that touches it leaves the image of the sphere at
+/// sin_reach * pixels / (eye_z cos_reach - t_z sin_reach) pixels from the receiver's.
+float steps_in_sphere(View view, float pixels, float eye_z, float t_z, float sin_reach, float radius) {
   const float cos_reach = sqrt(max(0.0, 1.0 - sin_reach * sin_reach));
   const float forward = eye_z * cos_reach - t_z * sin_reach;
   const float steps = view.orthographic == 0 ? sin_reach * pixels / forward : radius * pixels;
-  const float border = steps_to_border(view, pixel, direction_px);
-  whole_reach = sin_reach < 1.0 && forward > 0.0 ? steps : kEndless;
-  return min(border, whole_reach);
+  return sin_reach < 1.0 && forward > 0.0 ? steps : kEndless;
 }
 
 /// The side of a slice towards sign * T.
@@ -192,8 +188,8 @@ Side side_of(View view, Receiver r, Slice s, float sign, Reach reach) {
   side.plane_cot = -side.sin_gamma / s.cos_gamma;
   side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
   side.t = sign * s.t;
-  side.reach = reach_of_side(view, r.pixel, side.direction_px, pixels, r.eye.z, sign * s.t.z, r.sin_reach, reach.radius,
-                             side.whole_reach);
+  side.whole_reach = steps_in_sphere(view, pixels, r.eye.z, sign * s.t.z, r.sin_reach, reach.radius);
+  side.reach = min(steps_to_border(view, r.pixel, side.direction_px), side.whole_reach);
   return side;
 }
 
