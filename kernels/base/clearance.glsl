@@ -12,8 +12,8 @@
 const float kLeastRise = 4e-3;
 const float kLeastElevation = 1e-3;  // sine
 
-/// Beyond the border an end goes on if it stands so high above the tangent plane, in radii, where it leaves the sphere:
-/// a floor that the border cuts stays open, whatever its normal map.
+/// What goes on beyond the border counts where it stands so high above the tangent plane, in radii: a floor that the
+/// border cuts stays open, whatever its normal map.
 const float kLeastRisen = 0.1;
 
 /// The height above a tangent plane that the errors of two depths near z can feign. depth_height: how much height a

@@ -63,8 +63,8 @@ ALCOVE_CONSTANT float kSkyDepth = 1e30;
 // width is not known. Endless it would be as near to ray tracing in one picture, but flicker in a moving one.
 ALCOVE_CONSTANT float kCutThickness = 0.5;
 
-// An end of a surface goes on behind something, or beyond the border, if it is no farther from the receiver than this,
-// in radii: what is farther seldom comes back within reach.
+// An end of a surface goes on behind something if it is no farther from the receiver than this, in radii: what is
+// farther seldom comes back within reach.
 ALCOVE_CONSTANT float kFarEnd = 1.2;
 // Of the thickness that a run has by its width: the most radii that count, which is also what it levels off at. A wall
 // is not as thick as it is long.

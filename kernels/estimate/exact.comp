@@ -75,6 +75,7 @@ readonly buffer Occluders { float occluder_depth[]; };
 
 const bool kBent = kBentId != 0u;
 
+const bool kGoesBeyond = (kCompletes & kExactBorder) != 0u;
 const bool kGoesOn = (kCompletes & kExactBehind) != 0u;
 const bool kTellsApart = (kCompletes & kExactApart) != 0u;
 
@@ -114,8 +115,7 @@ float back_of(vec2 front, float eye_distance, float radius_sq) {
   const vec2 direction = ray * inversesqrt(dot(ray, ray));
   const float middle = dot(front, direction);
   const float leaves = sqrt(max(0.0, middle * middle - dot(front, front) + radius_sq)) - middle;
-  const vec2 back = front + min(kNone, leaves) * direction;
-  return slope_of(back);
+  return slope_of(front + leaves * direction);
 }
 
 /// slope_of() where the eye's ray through a front (across, toward) enters what of a solid lies within the sphere, and
@@ -205,6 +205,7 @@ struct Context {
   View view;
   Lines lines;
   int line;
+  ivec2 steps;  // of the line on the image; only with kExactBorder
   float z;  // the receiver's depth
   LinePlane plane;
   Point point;
@@ -498,8 +499,7 @@ float depth_beyond(Context c, LinePlane plane, float at) {
 
 /// 5. Adds what goes on beyond the image's border.
 void add_border(inout Found found, Context c) {
-  const ivec2 steps = steps_of(c.lines, extent_of(c.view, c.lines), c.line);
-  const int border = c.search.step > 0 ? steps.y - 1 : steps.x;
+  const int border = c.search.step > 0 ? c.steps.y - 1 : c.steps.x;
   const bool perspective = c.view.orthographic == 0;
   // Steps are counted from the display window's corner, so that a part of the frame rounds as the whole does.
   LinePlane plane = c.plane;
@@ -564,7 +564,7 @@ BlockedArcs blocked_by_one(Context c) {
     walk.starts = false;
   }
   add_beyond(found, walk, c, last);
-  if ((kCompletes & kExactBorder) != 0u) add_border(found, c);
+  if (kGoesBeyond) add_border(found, c);
   return arcs_of(c, found);
 }
 
@@ -615,7 +615,7 @@ BlockedArcs blocked_by_several(Context c) {
     for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
   }
   add_beyond(found, walk, c, last);
-  if ((kCompletes & kExactBorder) != 0u) add_border(found, c);
+  if (kGoesBeyond) add_border(found, c);
   return arcs_of(c, found);
 }
 
@@ -656,6 +656,7 @@ void main() {
   }
   const int line = at.y - shift_at(lines, at.x), row = row_of(lines, line, extent.y) * extent.x;
   const LinePlane plane = plane_of(view, lines, line);
+  const ivec2 on_image = kGoesBeyond ? steps_of(lines, extent, line) : ivec2(0);
   const vec3 n = unpack_normal(normal[index]);
   const vec2 tangent = tangent_at(view, lines, at + lines.origin);
   const Point point = point_of(view, plane, tangent, z, n);  // 2.
@@ -693,7 +694,7 @@ void main() {
       search.last = sign > 0 ? kVertexLast : kVertexFirst;
       whole += share * weight * whole_arc(side);
       search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
-      const Context c = Context(view, lines, line, z, plane, point, side, search, row, slot, radius * radius);
+      const Context c = Context(view, lines, line, on_image, z, plane, point, side, search, row, slot, radius * radius);
       const BlockedArcs arcs = kWalks == 1 ? blocked_by_one(c) : blocked_by_several(c);
       blocked += share * weight * arcs.arc;
       unseen += share * weight * arcs.unseen;
