@@ -95,9 +95,10 @@ std::string check_device(const gpu::DeviceInfo& device, Facts& facts) {
   if (!device.unusable.empty()) return "not usable";
   std::string text;
   try {
+    gpu::Device opened({.choice = std::to_string(device.index)});
+    gpu::Recorder recorder(opened);
     for (const char* preset : kCheckedPresets) {
-      const double error =
-          deviation(preset, check_values({.choice = std::to_string(device.index)}, settings_of(preset)));
+      const double error = deviation(preset, check_values(recorder, settings_of(preset)));
       text += fmt::format("{}{} {:.6f}", text.empty() ? "RMS " : ", ", preset, error);
       if (!(error <= kMostDeviation))
         facts.problems.push_back(fmt::format(

@@ -9,7 +9,6 @@
 
 #include "core/base/error.h"
 #include "core/chain/compute.h"
-#include "core/gpu/recorder.h"
 
 namespace alcove {
 namespace {
@@ -61,12 +60,10 @@ HostFrame room() {
 
 }  // namespace
 
-std::vector<double> check_values(const gpu::DeviceOptions& options, const EstimatorSettings& settings) {
-  gpu::Device device(options);
-  gpu::Recorder recorder(device);
+std::vector<double> check_values(gpu::Recorder& gpu, const EstimatorSettings& settings) {
   EstimatorSettings with_radius = settings;
   with_radius.radius = 0.8;
-  const std::vector<float> ao = compute_ao(recorder, room(), with_radius).ao;
+  const std::vector<float> ao = compute_ao(gpu, room(), with_radius).ao;
   std::vector<double> means(kBlocks * kBlocks);
   for (std::size_t i = 0; i < ao.size(); i++)
     means[i / kSize / kBlock * kBlocks + i % kSize / kBlock] += double(ao[i]) / (kBlock * kBlock);

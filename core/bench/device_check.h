@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/gpu/device_info.h"
+#include "core/gpu/recorder.h"
 
 namespace alcove {
 
@@ -17,9 +17,9 @@ inline constexpr const char* kCheckedPresets[] = {"draft", "standard", "producti
 /// The largest RMS of the difference to the stored values.
 inline constexpr double kMostDeviation = 1e-4;
 
-/// The AO of the frame with these settings, which may lack a radius, on a device: the means of its blocks of 8 x 8
-/// pixels, row by row. Fails with ErrorKind::device.
-std::vector<double> check_values(const gpu::DeviceOptions& device, const EstimatorSettings& settings);
+/// The AO of the frame with these settings, which may lack a radius: the means of its blocks of 8 x 8 pixels, row by
+/// row. Fails with ErrorKind::device.
+std::vector<double> check_values(gpu::Recorder& gpu, const EstimatorSettings& settings);
 
 /// Values as the stored ones are written, four hexadecimal digits each.
 std::string stored_text(const std::vector<double>& values);
