@@ -158,21 +158,24 @@ uint sectors_of(Receiver r, Reach reach, Run run, bool is_open, float thickness,
 /// A run that begins or ends before the sphere; the solid behind it may reach into the sphere.
 struct Before {
   vec2 start, end;
-  float thickness;  // 0: there is none
+  float thickness;
+  float within;  // about how deep it reaches into the sphere, less the radius; -radius and less: it does not
 };
 
-/// Of such runs the thickest of a side counts.
+/// Of such runs the one of a side counts that reaches deepest into the sphere.
 void take_before(inout Before before, Run run, bool is_before, float thickness) {
-  const bool taken = both(is_before, thickness > before.thickness);
+  const float within = thickness - sqrt(min(dot(run.start, run.start), dot(run.end, run.end)));
+  const bool taken = both(is_before, within > before.within);
   before.start = taken ? run.start : before.start;
   before.end = taken ? run.end : before.end;
   before.thickness = taken ? thickness : before.thickness;
+  before.within = taken ? within : before.within;
 }
 
 /// The sectors that it blocks.
 uint sectors_of(Receiver r, Reach reach, Before before, float shift) {
   uint sectors = 0u;
-  IF_ANY (before.thickness > 0.0) {
+  IF_ANY (before.within > -reach.radius) {
     const vec2 first = depths_of(r, before.start, before.thickness, reach.radius_sq);
     const vec2 last = depths_of(r, before.end, before.thickness, reach.radius_sq);
     sectors = sectors_between(vec2(max(first.x, last.x), min(first.y, last.y)), shift);
@@ -334,7 +337,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   Sample last = receiver_sample(r);
   Run run = Run(vec2(0), vec2(0), -1.0, 1.0);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
-  Before before = Before(vec2(0), vec2(0), 0.0);
+  Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = false;  // the run has samples before the sphere
   for (int k = 0; k < count; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
@@ -437,7 +440,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   for (int i = 0; i < kSurfaces; i++)
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
-  Before before = Before(vec2(0), vec2(0), 0.0);
+  Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
     const Surfaces here = surfaces_at(r, side, reach, offset, plane);
