@@ -19,8 +19,9 @@ namespace alcove {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// The parts of a completed segment: each blocks what is behind its ends, and in between.
-constexpr int kPartsOfSegment = 32;
+/// A completed segment blocks in parts, so many if it is as long as the sphere is wide: each blocks what is behind its
+/// ends, and in between.
+constexpr int kPartsOfDiameter = 32;
 
 using Scene = ReferenceScene;
 using Sample = ReferenceSample;
@@ -211,8 +212,11 @@ class Blocking {
   Vector by_segment(const CompletedSegment& segment) {
     Vector sum;
     Vector from = segment.nearer;
-    for (int i = 1; i <= kPartsOfSegment; i++) {
-      const Vector to = segment.nearer + (double(i) / kPartsOfSegment) * (segment.farther - segment.nearer);
+    const Vector along = segment.farther - segment.nearer;
+    const int parts = int(std::ceil(std::clamp(kPartsOfDiameter * length(along) / (2 * settings_.radius), 1.0,
+                                               double(kPartsOfDiameter))));
+    for (int i = 1; i <= parts; i++) {
+      const Vector to = segment.nearer + (double(i) / parts) * along;
       sum = sum + by_part(from, to, segment.thickness);
       from = to;
     }

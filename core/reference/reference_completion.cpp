@@ -21,6 +21,8 @@ constexpr double kLeastFacing = -0.02;
 /// Beyond the border a surface goes on no nearer and no farther than so many times its depth there, and if it stands so
 /// many radii above the receiver's tangent plane: a floor stays open, whatever its normal map.
 constexpr double kMostChange = 2;
+/// The sine of the angle below a border pixel's tangent plane from which on what is seen is another surface.
+constexpr double kMostBend = 0.55;
 constexpr double kLeastRisen = 0.1;
 
 /// The straight line along which a surface goes on from the end of its run.
@@ -139,8 +141,20 @@ class Completer {
     }
   }
 
+  /// Whether a surface of the border is seen to end inside: the pixel mirrored at the border's shows what lies behind its
+  /// tangent plane.
+  bool is_seen_to_end(int x, int y, int near_x, int near_y, double depth, Vector normal) const {
+    const int mirrored_x = std::clamp(2 * near_x - x, 0, scene_.width() - 1);
+    const int mirrored_y = std::clamp(2 * near_y - y, 0, scene_.height() - 1);
+    const double mirrored = scene_.depth(mirrored_x, mirrored_y);
+    if (mirrored == 0) return true;
+    const Vector inward =
+        scene_.position(mirrored_x, mirrored_y, mirrored) - scene_.position(near_x, near_y, depth);
+    return dot(normal, inward) < -kMostBend * length(inward);
+  }
+
   /// A step beyond the picture's border: the plane of the border's nearest pixel goes on there. None where that is seen
-  /// edge on, or comes much nearer to the eye or farther away.
+  /// edge on, comes much nearer to the eye or farther away, or where its surface has ended.
   std::optional<Vector> beyond_border(int step) const {
     const auto [x, y] = pixel_at(receiver_, side_, step);
     const int near_x = std::clamp(x, 0, scene_.width() - 1);
@@ -148,6 +162,7 @@ class Completer {
     const double depth = scene_.depth(near_x, near_y);
     if (depth == 0) return std::nullopt;
     const Vector normal = scene_.normal(near_x, near_y, scene_.toward_eye(scene_.position(near_x, near_y, depth)));
+    if (is_seen_to_end(x, y, near_x, near_y, depth, normal)) return std::nullopt;
     const double facing = dot(normal, scene_.position(near_x, near_y, 1) - scene_.position(near_x, near_y, 0));
     const double off_x = receiver_.x + side_.step_x * step - near_x;
     const double off_y = receiver_.y + side_.step_y * step - near_y;
@@ -159,21 +174,26 @@ class Completer {
     return point(step, nearness_at(there));
   }
 
-  /// Adds what goes on beyond the picture's border, step by step, in planes: what is cut there is half a radius thick.
+  /// Adds what goes on beyond the picture's border, step by step, in planes. With `width` it is as thick as it is wide
+  /// there so far, and half a radius at most.
   void add_beyond_border() {
-    const double thickness = settings_.thickness == ThicknessRule::width      ? kThicknessOfCut * settings_.radius
-                             : settings_.thickness == ThicknessRule::infinite ? INFINITY
-                                                                              : settings_.thickness_length;
-    std::optional<Vector> last;
+    std::optional<Vector> last, start;
     const double farthest = std::min(side_.reach, double(steps_ + std::max(scene_.width(), scene_.height())));
     for (int step = steps_ - 1; step <= farthest + 1; step++) {
       std::optional<Vector> here = step == 0 ? std::nullopt : beyond_border(step);
       if (here && dot(receiver_.normal, *here) < kLeastRisen * settings_.radius) here.reset();
       const double pixel = here ? (scene_.orthographic() ? 1 : -(receiver_.position + *here).z) / scene_.fx() : 0;
       const bool joins = here && last && std::abs(here->z - last->z) < kRunSlope * pixel;
-      if (here) segments_.push_back({joins ? *last : *here, *here, thickness});
+      if (!joins) start = here;
+      if (here) segments_.push_back({joins ? *last : *here, *here, thickness_beyond(length(*here - *start) + pixel)});
       last = here;
     }
+  }
+
+  double thickness_beyond(double width) const {
+    if (settings_.thickness == ThicknessRule::infinite) return INFINITY;
+    if (settings_.thickness == ThicknessRule::constant) return settings_.thickness_length;
+    return std::min(width, kThicknessOfCut * settings_.radius);
   }
 
   /// Adds the segment of a course up to `step` steps from the receiver.

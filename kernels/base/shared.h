@@ -59,8 +59,9 @@ ALCOVE_CONSTANT uint kGroupY = 8;
 ALCOVE_CONSTANT uint kListedRow = 0xffff;
 // What `prepare` writes for sky. Its squared distance overflows to infinity, so no radius reaches it.
 ALCOVE_CONSTANT float kSkyDepth = 1e30;
-// Where surfaces go on beyond the image's border, what it cuts is taken to be at least so thick, in radii, since its
-// width is not known. Endless it would be as near to ray tracing in one picture, but flicker in a moving one.
+// In the exact search a run that the image's border cuts is taken to be at least so thick, in radii, since its width is
+// not known, and what goes on beyond the border at most. Endless it would be as near to ray tracing in one picture, but
+// flicker in a moving one.
 ALCOVE_CONSTANT float kCutThickness = 0.5;
 
 // An end of a surface goes on behind something if it is no farther from the receiver than this, in radii: what is

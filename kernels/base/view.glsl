@@ -45,14 +45,24 @@ float steps_to_border(View view, ivec2 pixel, vec2 direction) {
 /// A surface goes on where no pixel shows it no nearer to the eye and no farther from it than so many times its depth.
 const float kMostChange = 2.0;
 
-/// The depth at which the plane of a pixel's surface goes on at another image point; kSkyDepth: it does not. from, to:
-/// tangent_of() the pixel's centre and the point. z, n: the pixel's depth and unit normal. least_facing: of both; the
-/// dot product of the normal and the way to the eye, which is 1 long along the optical axis.
-float depth_on_plane(View view, vec2 from, float z, vec3 n, vec2 to, float least_facing) {
+/// The sine of the angle below a border pixel's tangent plane from which on what is seen is another surface: a smooth
+/// one bends less, and a normal map leans less.
+const float kMostBend = 0.55;
+
+/// The depth at which the plane of a border pixel's surface goes on at an image point beyond the border; kSkyDepth: it
+/// does not. It goes on no farther than it is seen inside: where the pixel as far inside, the mirrored one, shows what
+/// lies behind the plane, the surface has ended. from, mirrored, to: tangent_of() the centres of the two pixels and the
+/// point. z, n: depth and unit normal of the border's pixel; mirrored_z: depth of the mirrored one. least_facing: of the
+/// plane at the pixel and at the point; the dot product of the normal and the way to the eye, which is 1 long along the
+/// optical axis.
+float depth_beyond(View view, vec2 from, float z, vec3 n, vec2 mirrored, float mirrored_z, vec2 to,
+                   float least_facing) {
   const bool perspective = view.orthographic == 0;
   const float facing_from = n.z - (perspective ? dot(n.xy, from) : 0.0);
   const float facing_to = n.z - (perspective ? dot(n.xy, to) : 0.0);
   const float there = perspective ? z * facing_from / facing_to : z + dot(n.xy, to - from) / facing_to;
   const bool faces = min(facing_from, facing_to) > least_facing;
-  return z < kSkyDepth && faces && there > z / kMostChange && there < z * kMostChange ? there : kSkyDepth;
+  const vec3 inward = vec3(perspective ? mirrored_z * mirrored - z * from : mirrored - from, z - mirrored_z);
+  const bool goes_on = mirrored_z < kSkyDepth && dot(n, inward) >= -kMostBend * length(inward);
+  return z < kSkyDepth && faces && goes_on && there > z / kMostChange && there < z * kMostChange ? there : kSkyDepth;
 }

@@ -487,17 +487,21 @@ const float kLeastFacingBeyond = 0.02;
 
 /// The depth at a step of the line beyond the border, counted from the display window's corner: the plane of the
 /// border's nearest pixel goes on there. kSkyDepth: nothing does.
-float depth_beyond(Context c, LinePlane plane, float at) {
+float depth_at_step(Context c, LinePlane plane, float at) {
   const ivec2 extent = extent_of(c.view, c.lines), origin = c.lines.origin;
   const float across = float(c.line + origin.y) + float(c.lines.slope) / float(kSlopeUnit) * at;
-  const ivec2 nearest = clamp(ivec2(floor(vec2(at, across) + 0.5)) - origin, ivec2(0), extent - 1);
+  const ivec2 pixel = ivec2(floor(vec2(at, across) + 0.5)) - origin;
+  const ivec2 nearest = clamp(pixel, ivec2(0), extent - 1), mirrored = clamp(2 * nearest - pixel, ivec2(0), extent - 1);
   const int index = index_at(c.view, c.lines, nearest.x, nearest.y);
   const vec2 from = tangent_at(c.view, c.lines, nearest + origin);
   const vec2 to = plane.foot + (plane.start + at * plane.step) * plane.along;
-  return depth_on_plane(c.view, from, occluder_depth[index], unpack_normal(normal[index]), to, kLeastFacingBeyond);
+  const float mirrored_z = occluder_depth[index_at(c.view, c.lines, mirrored.x, mirrored.y)];
+  return depth_beyond(c.view, from, occluder_depth[index], unpack_normal(normal[index]),
+                      tangent_at(c.view, c.lines, mirrored + origin), mirrored_z, to, kLeastFacingBeyond);
 }
 
-/// 5. Adds what goes on beyond the image's border.
+/// 5. Adds what goes on beyond the image's border. With `auto` it is as thick as it is wide there so far, and
+/// kCutThickness radii at most.
 void add_border(inout Found found, Context c) {
   const int border = c.search.step > 0 ? c.steps.y - 1 : c.steps.x;
   const bool perspective = c.view.orthographic == 0;
@@ -507,23 +511,26 @@ void add_border(inout Found found, Context c) {
   const float first = float(border + c.plane.origin);
   const float whole = kReachBeyond * params.radius / (plane.step * (perspective ? c.z : 1.0));
   const float rest = min(whole - float(abs(border - c.search.from)), kMostBeyond);
-  const float thickness = params.thickness > 0.0 ? params.thickness : kCutThickness * params.radius;
-  const Walk walk = Walk(vec2(0), false, false, thickness, 0.0);
+  Walk walk = Walk(vec2(0), false, false, 0.0, 0.0);
   float last_z = kSkyDepth, last_at = first;
-  vec2 last = vec2(0);
+  vec2 last = vec2(0), start = vec2(0);
   // Whether a step lies within the sphere's image is the same at any depth.
   bool goes =
       rest > 0.0 && dot(from_receiver(c, place_at(c.view, plane, first, c.z)), c.search.leaving) < params.radius;
   for (int i = 0; goes; i++) {
     const float part = max(float(i) - 1.0 + c.search.shift, 0.0) / float(kStepsBeyond);
     const float at = i == 0 ? first : first + float(c.search.step) * (rest * part);
-    const float z = depth_beyond(c, plane, at);
+    const float z = depth_at_step(c, plane, at);
     Corner corner;
     corner.place = from_receiver(c, place_at(c.view, plane, at, z < kSkyDepth ? z : 1.0));
     corner.unseen = corner.place;
     corner.least = c.search.least_height + kLeastRisen * params.radius;
     const float slope = kRunSlope * c.view.tangent_per_pixel.x * abs(at - last_at);
     const bool joins = abs(z - last_z) < slope * (perspective ? min(z, last_z) : 1.0);
+    start = joins ? start : corner.place;
+    const float gap = rest / float(kStepsBeyond) * plane.step * (perspective ? z : 1.0);
+    const float width = length(corner.place - start) + gap;
+    walk.thickness = params.thickness > 0.0 ? params.thickness : min(width, kCutThickness * params.radius);
     IF_ANY (z < kSkyDepth && corner.place.x > 0.0)
       block(found.all, walk, c, Stroke(joins ? last : kShortStroke * corner.place, corner.place), corner, false);
     last = corner.place;

@@ -25,8 +25,8 @@
 //     Runs are counted in 24 sectors, as in the mask of Therrien et al., "Screen Space Indirect Lighting with
 //     Visibility Bitmask", 2023; see sectors.glsl. With kInSectors, which is `--estimator bitmask`, so is the own
 //     surface; else its interval is exact.
-//  7. A run that something nearer interrupts goes on behind it, as far as it would not be seen. A run that the image's
-//     border cuts goes on beyond it in its plane. See pieces.glsl.
+//  7. A run that something nearer interrupts goes on behind it, as far as it would not be seen. What the image's border
+//     cuts goes on beyond it in its plane. See pieces.glsl.
 //  8. Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), which is exact
 //     for height fields.
 //  9. The arcs that are blocked are integrated in closed form (line 28): see arc_to().
@@ -138,11 +138,12 @@ vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
   return own + arcs_of(side, others);
 }
 
-/// How thick a run is, in scene units. z: depth of its last sample. per_width: so many times as wide, with `auto`.
-float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width) {
+/// How thick a run is, in scene units. z: depth of its last sample. With `auto` it is per_width times as wide, and it is
+/// so many pixels wider than its outer samples are apart.
+float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width, float wider) {
   if (kThickness != kThicknessWidth) return reach.thickness;
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
-  return levelled(per_width * (length(run.end - run.start) + pixel), kWidestRun * reach.radius);
+  return levelled(per_width * (length(run.end - run.start) + wider * pixel), kWidestRun * reach.radius);
 }
 
 /// 6. The sectors that a run blocks whose front lies within the sphere. is_open: it has samples without a known back.
@@ -244,28 +245,63 @@ void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw
 /// Samples of a side beyond the border.
 const int kStepsBeyond = 6;
 
-/// Adds what the image's border cuts, and what goes on of it beyond the border.
+/// Adds what goes on beyond the border where occluders are endless.
+void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border,
+                             float gap) {
+  Sample last = border;
+  for (int k = 0; k < kStepsBeyond; k++) {
+    const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
+    const bool joins = both(both(s.above, last.above), same_surface(r, reach, s.z, last.z, s.offset - last.offset));
+    const vec2 slopes = slopes_of(s, both(joins, s.within != last.within), mix(s.slope, last.slope, 0.5));
+    const float back = slope_of(back_of(r, s.place, kNone, reach.radius));
+    add_completed(found, side, reach, draw, vec2(slopes.x, both(s.above, s.within) ? min(slopes.y, back) : slopes.y),
+                  s.place);
+    last = s;
+  }
+}
+
+/// Adds the runs that go on beyond the border. Their samples are far apart, and on average a gap between two of them is
+/// a part of a run.
+void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, float gap) {
+  Sample last = border;
+  const vec2 at_border = slopes_of(border, false, 0.0);
+  Run run = Run(border.place, border.place, at_border.x, at_border.y);
+  Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
+  bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
+  for (int k = 0; k <= kStepsBeyond; k++) {  // the last one ends the last run
+    const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
+    const bool joins = both(both(k < kStepsBeyond, both(s.above, last.above)),
+                            same_surface(r, reach, s.z, last.z, s.offset - last.offset));
+    IF_ANY (kHard && !joins) {
+      const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
+      found.completed.sectors |= joins ? 0u : sectors_of(r, reach, run, true, thickness, draw.shift);
+      take_before(before, run, both(!joins, is_before), thickness);
+    }
+    is_before = joins ? is_before : false;
+    run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0);
+    const vec2 slopes = slopes_of(s, kHard && both(joins, s.within != last.within), mix(s.slope, last.slope, 0.5));
+    run.near = max(run.near, slopes.x);
+    run.far = min(run.far, slopes.y);
+    is_before = kHard && s.above && is_before_sphere(r, reach, s.place) ? true : is_before;
+    if (!kHard) {
+      const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, gap);
+      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
+      found.completed_sum += add_faded(found, side, reach, draw, s.place);
+    }
+    last = s;
+  }
+  found.completed.sectors |= sectors_of(r, reach, before, draw.shift);
+}
+
+/// Adds what goes on beyond the image's border.
 void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
   const Sample border = sample_at(r, side, reach, floor(side.reach));
-  Sample last = border;
-  vec2 last_slopes = slopes_at_border(r, reach, border);
-  block(found.blocked, last_slopes, draw.shift);
-  if (!kHard) add_faded(found, side, reach, draw, border.place);
-  const float rest = min(side.whole_reach, side.reach + float(reach.width)) - border.offset;
-  for (int k = 0; k < kStepsBeyond; k++) {
-    const Sample s =
-        sample_beyond(r, side, reach, border.offset + rest * ((float(k) + draw.jitter) / float(kStepsBeyond)));
-    const vec2 slopes = slopes_at_border(r, reach, s);
-    const bool joins = both(both(s.above, last.above), same_surface(r, reach, s.z, last.z, s.offset - last.offset));
-    // Where it crosses the sphere it blocks half way to the sample beyond.
-    const bool crosses = both(joins, s.within != last.within);
-    const float half_way = mix(s.slope, last.slope, 0.5);
-    vec2 counted = joins ? vec2(max(slopes.x, last_slopes.x), min(slopes.y, last_slopes.y)) : slopes;
-    counted = crosses ? vec2(max(counted.x, half_way), min(counted.y, half_way)) : counted;
-    add_completed(found, side, reach, draw, counted, s.place);
-    last = s;
-    last_slopes = slopes;
-  }
+  const float most = min(side.whole_reach, side.reach + float(reach.width));
+  const float gap = (most - border.offset) / float(kStepsBeyond);
+  if (kThickness == kThicknessEndless)
+    complete_endless_beyond(found, r, side, reach, draw, border, gap);
+  else
+    complete_runs_beyond(found, r, side, reach, draw, border, gap);
 }
 
 /// The solids at the last sample, where occluders are endless otherwise.
@@ -350,7 +386,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     if (connected) run.end = s.place;
     if (!connected || !s.above) {
       if (kHard) {
-        const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth);
+        const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 1.0);
         found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
         take_before(before, run, is_before, thickness);
       }
@@ -366,7 +402,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       is_before = s.above && is_before_sphere(r, reach, s.place) ? true : is_before;
     }
     if (!kHard) {
-      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness_of(r, reach, run, s.z, kThicknessPerWidth), draw.shift);
+      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness_of(r, reach, run, s.z, kThicknessPerWidth, 1.0), draw.shift);
       add_faded(found, side, reach, draw, s.place);
     }
     last = s;
@@ -376,7 +412,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     }
   }
   if (kHard) {
-    const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth);
+    const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 1.0);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
     take_before(before, run, is_before, thickness);
     found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
@@ -416,7 +452,7 @@ Slot chosen(Slot a, Slot b, bool second) {
 
 float thickness_of(Receiver r, Reach reach, Slot slot) {
   const float per_width = (slot.bits & kSlotKnows) != 0u ? kKnownThicknessPerWidth : kThicknessPerWidth;
-  return thickness_of(r, reach, slot.run, slot.z, per_width);
+  return thickness_of(r, reach, slot.run, slot.z, per_width, 1.0);
 }
 
 /// Ends the runs of those slots whose bits are set; most of the time it is none or one.

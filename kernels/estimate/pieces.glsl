@@ -6,8 +6,8 @@
 // samples far apart it says better how a surface goes on than the line through two of them. A piece ends where it would
 // be seen, and where it leaves the sphere of the radius.
 //
-// Beyond the image's border the surfaces that it cuts go on in their planes. There samples are taken, each of the plane
-// of the border's nearest pixel.
+// Beyond the image's border the surfaces that it cuts go on in their planes, as far as they are seen inside. There
+// samples are taken, each of the plane of the border's nearest pixel.
 //
 // Only what stands above the receiver's tangent plane goes on behind something. There, a deeper point of a ray never
 // stands higher above that plane than what is seen on the ray, measured by depth.
@@ -151,23 +151,16 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
 /// on there.
 Sample sample_beyond(Receiver r, Side side, Reach reach, float offset) {
   const vec2 beside = side.direction_px * offset;
-  const ivec2 nearest = clamp(r.pixel + ivec2(round(beside)), ivec2(0), params.view.size - 1);
+  const ivec2 pixel = r.pixel + ivec2(round(beside)), most = params.view.size - 1;
+  const ivec2 nearest = clamp(pixel, ivec2(0), most), mirrored = clamp(2 * nearest - pixel, ivec2(0), most);
   const int index = nearest.y * reach.width + nearest.x;
   const vec3 n = octahedral_direction(unpackSnorm2x16(normal[index]));
   const vec2 from = tangent_of(params.view, vec2(nearest) + 0.5);
   const vec2 to = tangent_of(params.view, vec2(r.pixel) + 0.5 + beside);
-  const float z = depth_on_plane(params.view, from, occluder_depth[index], n, to, kLeastFacingToGoOn);
+  const float z = depth_beyond(params.view, from, occluder_depth[index], n, tangent_of(params.view, vec2(mirrored) + 0.5),
+                               occluder_depth[mirrored.y * reach.width + mirrored.x], to, kLeastFacingToGoOn);
   Sample s = sample_of(r, side, reach, offset, beside, z);
   const float height = height_of(r, beside, s.z, s.scale);
   s.above = both(z < kSkyDepth, both(s.above, height > kLeastRisen * reach.radius + r.least_height));
   return s;
-}
-
-/// The slopes that a sample at the border or beyond it blocks from its front to its back, the largest and the smallest.
-/// As its width is not known, it is kCutThickness radii thick, or as the user says.
-vec2 slopes_at_border(Receiver r, Reach reach, Sample s) {
-  const float thickness = reach.thickness > 0.0 ? reach.thickness : kCutThickness * reach.radius;
-  if (kThickness != kThicknessEndless) return s.above ? depths_of(r, s.place, thickness, reach.radius_sq) : vec2(-1, 1);
-  const float back = slope_of(back_of(r, s.place, kNone, reach.radius));
-  return both(s.above, s.within) ? vec2(s.slope, min(s.slope, back)) : vec2(-1, 1);
 }

@@ -27,8 +27,10 @@ float continued(ivec2 pixel, ivec2 nearest) {
   const int index = index_of(params.view, nearest);
   const float z = depth[index];
   if (z >= kSkyDepth || normal[index] == kNoNormal) return z;
-  return depth_on_plane(params.view, tangent_of(params.view, vec2(nearest) + 0.5), z, unpack_normal(normal[index]),
-                        tangent_of(params.view, vec2(pixel) + 0.5), 0.0);
+  const ivec2 mirrored = clamp(2 * nearest - pixel, ivec2(0), params.view.size - 1);
+  return depth_beyond(params.view, tangent_of(params.view, vec2(nearest) + 0.5), z, unpack_normal(normal[index]),
+                      tangent_of(params.view, vec2(mirrored) + 0.5), depth[index_of(params.view, mirrored)],
+                      tangent_of(params.view, vec2(pixel) + 0.5), 0.0);
 }
 
 void main() {
