@@ -141,8 +141,8 @@ class Completer {
     }
   }
 
-  /// Whether a surface of the border is seen to end inside: the pixel mirrored at the border's shows what lies behind its
-  /// tangent plane.
+  /// Whether a surface of the border is seen to end inside: the pixel mirrored at the border's shows something behind
+  /// its tangent plane.
   bool is_seen_to_end(int x, int y, int near_x, int near_y, double depth, Vector normal) const {
     const int mirrored_x = std::clamp(2 * near_x - x, 0, scene_.width() - 1);
     const int mirrored_y = std::clamp(2 * near_y - y, 0, scene_.height() - 1);

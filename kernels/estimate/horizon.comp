@@ -138,8 +138,8 @@ vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
   return own + arcs_of(side, others);
 }
 
-/// How thick a run is, in scene units. z: depth of its last sample. With `auto` it is per_width times as wide, and it is
-/// so many pixels wider than its outer samples are apart.
+/// How thick a run is, in scene units: with `auto` per_width times as wide. It is `wider` pixels wider than its outer
+/// samples are apart. z: depth of its last sample.
 float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width, float wider) {
   if (kThickness != kThicknessWidth) return reach.thickness;
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
@@ -242,14 +242,14 @@ void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw
   }
 }
 
-/// Samples of a side beyond the border.
-const int kStepsBeyond = 6;
+/// Samples of a side beyond the border, where all of its reach lies there.
+const int kStepsBeyond = 5;
 
 /// Adds what goes on beyond the border where occluders are endless.
 void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border,
-                             float gap) {
+                             int count, float gap) {
   Sample last = border;
-  for (int k = 0; k < kStepsBeyond; k++) {
+  for (int k = 0; k < count; k++) {
     const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
     const bool joins = both(both(s.above, last.above), same_surface(r, reach, s.z, last.z, s.offset - last.offset));
     const vec2 slopes = slopes_of(s, both(joins, s.within != last.within), mix(s.slope, last.slope, 0.5));
@@ -262,15 +262,16 @@ void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach rea
 
 /// Adds the runs that go on beyond the border. Their samples are far apart, and on average a gap between two of them is
 /// a part of a run.
-void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, float gap) {
+void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border,
+                          int count, float gap) {
   Sample last = border;
   const vec2 at_border = slopes_of(border, false, 0.0);
   Run run = Run(border.place, border.place, at_border.x, at_border.y);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
-  for (int k = 0; k <= kStepsBeyond; k++) {  // the last one ends the last run
+  for (int k = 0; k <= count; k++) {  // the last one ends the last run
     const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
-    const bool joins = both(both(k < kStepsBeyond, both(s.above, last.above)),
+    const bool joins = both(both(k < count, both(s.above, last.above)),
                             same_surface(r, reach, s.z, last.z, s.offset - last.offset));
     IF_ANY (kHard && !joins) {
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
@@ -296,12 +297,13 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
 /// Adds what goes on beyond the image's border.
 void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
   const Sample border = sample_at(r, side, reach, floor(side.reach));
-  const float most = min(side.whole_reach, side.reach + float(reach.width));
-  const float gap = (most - border.offset) / float(kStepsBeyond);
+  const float most = min(side.whole_reach, side.reach + float(reach.width)), rest = most - border.offset;
+  const int count = int(ceil(float(kStepsBeyond) * rest / most));
+  const float gap = rest / float(count);
   if (kThickness == kThicknessEndless)
-    complete_endless_beyond(found, r, side, reach, draw, border, gap);
+    complete_endless_beyond(found, r, side, reach, draw, border, count, gap);
   else
-    complete_runs_beyond(found, r, side, reach, draw, border, gap);
+    complete_runs_beyond(found, r, side, reach, draw, border, count, gap);
 }
 
 /// The solids at the last sample, where occluders are endless otherwise.
@@ -402,7 +404,8 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       is_before = s.above && is_before_sphere(r, reach, s.place) ? true : is_before;
     }
     if (!kHard) {
-      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness_of(r, reach, run, s.z, kThicknessPerWidth, 1.0), draw.shift);
+      const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 1.0);
+      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
       add_faded(found, side, reach, draw, s.place);
     }
     last = s;

@@ -166,8 +166,8 @@ const float kEndless = 1e9;
 
 /// Steps of a side that lie within the sphere of the radius, on the image or not; kEndless: any number. pixels: of the
 /// side's image T, per unit of length at unit depth. eye_z, t_z: z of the direction to the eye and of T on that side.
-/// sin_reach: the sphere is seen under the angle of this sine; the ray that touches it leaves the image of the sphere at
-/// sin_reach * pixels / (eye_z cos_reach - t_z sin_reach) pixels from the receiver's.
+/// sin_reach: the sphere is seen under the angle of this sine. The ray that touches it leaves the image of the sphere
+/// at sin_reach * pixels / (eye_z cos_reach - t_z sin_reach) pixels from the receiver's.
 float steps_in_sphere(View view, float pixels, float eye_z, float t_z, float sin_reach, float radius) {
   const float cos_reach = sqrt(max(0.0, 1.0 - sin_reach * sin_reach));
   const float forward = eye_z * cos_reach - t_z * sin_reach;
