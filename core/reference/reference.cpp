@@ -213,8 +213,8 @@ class Blocking {
     Vector sum;
     Vector from = segment.nearer;
     const Vector along = segment.farther - segment.nearer;
-    const int parts = int(std::ceil(std::clamp(kPartsOfDiameter * length(along) / (2 * settings_.radius), 1.0,
-                                               double(kPartsOfDiameter))));
+    const int parts = int(std::ceil(
+        std::clamp(kPartsOfDiameter * length(along) / (2 * settings_.radius), 1.0, double(kPartsOfDiameter))));
     for (int i = 1; i <= parts; i++) {
       const Vector to = segment.nearer + (double(i) / parts) * along;
       sum = sum + by_part(from, to, segment.thickness);

@@ -148,8 +148,7 @@ class Completer {
     const int mirrored_y = std::clamp(2 * near_y - y, 0, scene_.height() - 1);
     const double mirrored = scene_.depth(mirrored_x, mirrored_y);
     if (mirrored == 0) return true;
-    const Vector inward =
-        scene_.position(mirrored_x, mirrored_y, mirrored) - scene_.position(near_x, near_y, depth);
+    const Vector inward = scene_.position(mirrored_x, mirrored_y, mirrored) - scene_.position(near_x, near_y, depth);
     return dot(normal, inward) < -kMostBend * length(inward);
   }
 

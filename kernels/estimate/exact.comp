@@ -206,7 +206,7 @@ struct Context {
   Lines lines;
   int line;
   ivec2 steps;  // of the line on the image; only with kExactBorder
-  float z;  // the receiver's depth
+  float z;      // the receiver's depth
   LinePlane plane;
   Point point;
   Side side;

@@ -157,9 +157,9 @@ Sample sample_beyond(Receiver r, Side side, Reach reach, float offset) {
   const vec3 n = octahedral_direction(unpackSnorm2x16(normal[index]));
   const vec2 from = tangent_of(params.view, vec2(nearest) + 0.5);
   const vec2 to = tangent_of(params.view, vec2(r.pixel) + 0.5 + beside);
-  const float z = depth_beyond(params.view, from, occluder_depth[index], n,
-                               tangent_of(params.view, vec2(mirrored) + 0.5),
-                               occluder_depth[mirrored.y * reach.width + mirrored.x], to, kLeastFacingToGoOn);
+  const float z =
+      depth_beyond(params.view, from, occluder_depth[index], n, tangent_of(params.view, vec2(mirrored) + 0.5),
+                   occluder_depth[mirrored.y * reach.width + mirrored.x], to, kLeastFacingToGoOn);
   Sample s = sample_of(r, side, reach, offset, beside, z);
   const float height = height_of(r, beside, s.z, s.scale);
   s.above = both(z < kSkyDepth, both(s.above, height > kLeastRisen * reach.radius + r.least_height));
