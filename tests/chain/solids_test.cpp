@@ -220,6 +220,25 @@ TEST(Solids, what_is_left_out_before_the_sphere_has_the_bits_of_what_is_computed
     }
 }
 
+TEST(Solids, a_wide_plate_far_before_the_sphere_hides_no_board_that_reaches_into_it) {
+  Scene scene{{kWallX, parallelogram({1.05, 0.3, -3}, {0, 0.15, 0}, {0, 0, 6})}};
+  const Shot shot = Shot::orthographic({9, 0, 0}, {0, 0, 0}, 4.8, 96, 96);
+  const Rendering alone = render(scene, shot);
+  scene.primitives.emplace_back(parallelogram({4, 0.45, -3}, {0, 2, 0}, {0, 0, 6}));
+  const Rendering beside = render(scene, shot);
+  const std::vector<std::size_t> pixels = receivers(beside, 1, 1, [](const Hit& hit) {
+    return hit.primitive == 0 && hit.position.y > 0 && std::abs(hit.position.z) < 0.5;
+  });
+  ASSERT_GT(pixels.size(), 60u);
+  for (const Search search : kSearches) {
+    EstimatorSettings settings = settings_of(search);
+    settings.complete = Completion::none;
+    const auto expected = ao_at(search, alone.frame, settings, pixels);
+    EXPECT_LT(*std::ranges::min_element(expected), 0.95f) << kNames[int(search)] << ": the board blocks";
+    EXPECT_LE(difference(ao_at(search, beside.frame, settings, pixels), expected).max, 1e-6) << kNames[int(search)];
+  }
+}
+
 /// The pixels of a frame that are so near to its left or right border, or from that far on.
 std::vector<std::size_t> columns(const HostFrame& frame, int from, int to) {
   std::vector<std::size_t> pixels;
@@ -253,6 +272,26 @@ TEST(Border, a_crease_keeps_its_ao_where_it_leaves_the_picture) {
       EXPECT_LE(with.mean, 0.01) << kNames[int(search)] << ", without " << without.mean;
       EXPECT_GE(without.mean, 4 * with.mean) << kNames[int(search)];
     }
+  }
+}
+
+TEST(Border, a_wire_along_it_becomes_no_wall) {
+  const Scene scene{{kWallX, parallelogram({0.6, -5, 0.6}, {0, 10, 0}, {0, 0, 0.05})}};
+  const Shot shot = Shot::orthographic({3, 0, 0}, {0, 0, 0}, 3, 60, 120);
+  const Rendering whole = render(scene, shot);
+  const HostFrame cut = crop_of(whole.frame, {0, 47, 60, 73});  // its first row shows the wire
+  std::vector<std::size_t> pixels, pixels_of_whole;
+  for (std::size_t i = 3 * 60; i < 8 * 60; i++) {
+    pixels.push_back(i);
+    pixels_of_whole.push_back(i + 47 * 60);
+  }
+  ASSERT_EQ(whole.hits[47 * 60].primitive, 1);
+  ASSERT_EQ(whole.hits[pixels_of_whole.front()].primitive, 0);
+  for (const Search search : kSearches) {
+    EstimatorSettings settings = settings_of(search, ThicknessKind::constant);
+    settings.thickness_length = 0.4;
+    const auto expected = ao_at(search, whole.frame, settings, pixels_of_whole);
+    EXPECT_LE(difference(ao_at(search, cut, settings, pixels), expected).mean, 0.01) << kNames[int(search)];
   }
 }
 
