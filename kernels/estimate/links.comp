@@ -1,4 +1,5 @@
-// Says of every pixel whether it and its neighbours are one surface, and makes the surfaces on a lattice sites.
+// Says of every pixel whether it and its neighbours are one surface, and makes the surfaces on a lattice and on the
+// image's border sites.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals.
@@ -65,6 +66,15 @@ float bend(Tap a, Tap b, int axis) {
   return max(a.z, b.z) < kSkyDepth ? max(above_a / a.pixel[axis], above_b / b.pixel[axis]) : 1.0;
 }
 
+/// The sites of a row of a tile on the image's border, as bits: every second pixel of it. Beyond the last row or column
+/// of the lattice pixels would else have sites on one side only, and the border would be a dotted line.
+uint border_sites(ivec2 first) {
+  const ivec2 last = params.view.size - 1 - first, from_corner = first + params.origin;
+  const uint row = first.y == 0 || last.y == 0 ? lattice_row(ivec2(from_corner.x, 0), 8) : 0u;
+  const uint ends = (first.x == 0 ? 1u : 0u) | (last.x < kTile ? 1u << uint(last.x) : 0u);
+  return (row | ((from_corner.y & 1) == 0 ? ends : 0u)) & (1u << uint(kTile)) - 1u;
+}
+
 void main() {
   const View view = params.view;
   const ivec2 tile = ivec2(gl_GlobalInvocationID.xy), tiles = tiles_of(view.size);
@@ -89,7 +99,8 @@ void main() {
     }
     if (y > 0) rows[words + y - 1] = word | below << kBelowByte;
     if (y > 0 && kAdaptive != 0u) flat_rows[words + y - 1] = flat_word | flat_below << kBelowByte;
-    const uint site = surface & lattice_row(first + ivec2(0, y) + params.origin, kSpacing);
+    const uint lattice = lattice_row(first + ivec2(0, y) + params.origin, kSpacing);
+    const uint site = surface & (lattice | border_sites(first + ivec2(0, y)));
     word = right | surface << kSurfaceByte | site << kSiteByte;
     flat_word = flat_right;
   }
