@@ -11,6 +11,7 @@
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/formats/sequence.h"
 
 namespace alcove {
 namespace {
@@ -52,7 +53,8 @@ std::vector<OptionValue> values_of_sets(const Words& sets) {
   return values;
 }
 
-/// The values of presets and then of the command line.
+}  // namespace
+
 std::vector<OptionValue> all_values(const TypedOptions& typed) {
   std::vector<OptionValue> values;
   for (const auto& preset : presets_of(words_for(typed, "--preset")))
@@ -68,6 +70,15 @@ std::vector<OptionValue> all_values(const TypedOptions& typed) {
   }
   return values;
 }
+
+std::string usual_output(const std::string& input, const std::string& stem, const std::string& ending) {
+  const auto pattern = frame_pattern(input);
+  if (!pattern) return stem + ending;
+  const std::size_t token = pattern->before.size();
+  return stem + "." + input.substr(token, input.size() - token - pattern->after.size()) + ending;
+}
+
+namespace {
 
 constexpr const char* kRun =
     "Computes ambient occlusion from the depth and normals of a rendered frame.\n\n"
@@ -88,7 +99,8 @@ constexpr const char* kInspect =
     "  alcove inspect frame.exr --camera camera.json --preview sheet.png\n"
     "  alcove inspect frame.%04d.exr --json\n";
 
-/// INPUT first, and then the table.
+}  // namespace
+
 Command run_syntax() {
   Command command{"alcove run", kRun, {}};
   command.rows.push_back(
@@ -96,6 +108,8 @@ Command run_syntax() {
   std::ranges::copy_if(option_table(), std::back_inserter(command.rows), std::not_fn(&OptionRow::is_only_key));
   return command;
 }
+
+namespace {
 
 /// Whether inspect looks at an option of run.
 bool is_inspected(const OptionRow& row) {
