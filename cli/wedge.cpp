@@ -24,7 +24,8 @@ constexpr std::size_t kMostPictures = 64;
 constexpr const char* kWedge =
     "Shows a frame in many looks: one for each radius, and for each value of every other list. The page has all looks "
     "to\nwipe and flip between, and the command that makes each. The radius that inspect proposes is one of them. Of a "
-    "sequence\nit shows the middle frame, or --frames; a sequence with one look is shown whole. Input options are those "
+    "sequence\nit shows the middle frame, or --frames; a sequence with one look is shown whole. Input options are "
+    "those "
     "of alcove run.\n\n"
     "Examples:\n"
     "  alcove wedge frame.exr --camera camera.json -o looks.html\n"
@@ -89,8 +90,8 @@ Choice choice_of_set(const Command& command, const std::string& set) {
   const std::size_t equals = std::min(set.find('='), set.size());
   if (equals == 0 || equals == set.size()) return {"--set", {set}};
   const SettingRow& row = row_of_key(lower_case(set.substr(0, equals)));
-  const bool is_taken = row.is_only_key() || std::ranges::find(command.rows, row.name, &OptionRow::name) !=
-                                                 command.rows.end();
+  const bool is_taken =
+      row.is_only_key() || std::ranges::find(command.rows, row.name, &OptionRow::name) != command.rows.end();
   if (!is_taken || row.key() == "output" || row.key() == "radius" || row.key() == "frames")
     fail(ErrorKind::usage, "--set {}: alcove wedge takes no {} as a setting", set, row.key());
   Choice choice{"--set", values_in(&row, "--set " + row.key(), set.substr(equals + 1))};
@@ -187,12 +188,18 @@ class LookFinder {
     std::size_t count = frames_;
     for (const auto& choice : choices_) count *= choice.words.size();
     if (count > kMostPictures && (has_page_ || count > frames_))
-      fail(ErrorKind::usage, "there are {} looks in {} frames, and a wedge has at most {} pictures: {}", count / frames_,
-           frames_, kMostPictures, frames_ > 1 ? "name fewer frames with --frames" : "give shorter lists");
+      fail(ErrorKind::usage, "there are {} looks in {} frames, and a wedge has at most {} pictures: {}",
+           count / frames_, frames_, kMostPictures,
+           frames_ > 1 ? "name fewer frames with --frames" : "give shorter lists");
     add_looks({}, 0, "");
     std::set<std::string> names;
-    for (const auto& look : found_.looks)
+    for (const auto& look : found_.looks) {
       if (!names.insert(look.name).second) fail(ErrorKind::usage, "the look {} is there twice", look.name);
+      for (const auto& row : option_table())
+        if (row.group == "Input" && row.words(look.settings) != row.words(found_.looks.front().settings))
+          fail(ErrorKind::usage, "the looks {} and {} have another {} each: a wedge reads its frame once",
+               found_.looks.front().name, look.name, row.long_name());
+    }
     const std::size_t radii = choices_.back().words.size();
     if (found_.looks.size() > radii && radii > 1) found_.columns = radii;
     return std::move(found_);
@@ -208,8 +215,8 @@ class LookFinder {
     FirstLook look(make_(first, "").settings);
     frames_ = look.plan().frames().size();
     const bool is_one_look = radii.words.size() == 1 && std::ranges::all_of(choices_, [](const Choice& choice) {
-      return choice.words.size() == 1;
-    });
+                               return choice.words.size() == 1;
+                             });
     const bool names_frames = std::ranges::find(choices_, "--frames", &Choice::option) != choices_.end();
     const bool is_whole = is_one_look && frames_ > 1 && !names_frames;
     if (!is_whole || radii.words[0] == "auto") find_proposal(look, !radii.words.empty());

@@ -11,8 +11,8 @@ namespace alcove {
 namespace {
 
 constexpr int kMostWidth = 3840, kLeastCell = 120, kGap = 8;  // px
-constexpr int kLetterWidth = 6, kLetterHeight = 8;           // px, with the gap to the next one
-constexpr int kLabelHeight = 2 * kLetterHeight + kGap;       // px: letters may have twice their size
+constexpr int kLetterWidth = 6, kLetterHeight = 8;            // px, with the gap to the next one
+constexpr int kLabelHeight = 2 * kLetterHeight + kGap;        // px: letters may have twice their size
 constexpr float kPaper = 0.11f, kInk = 0.9f;
 
 /// The letters from the blank to ~: each has eight rows from the top, a digit of base 32 for the five pixels of each.
@@ -28,8 +28,8 @@ constexpr char kLetters[] =
 /// Whether a letter has ink at (x, y).
 bool has_ink(char letter, int x, int y) {
   if (x >= kLetterWidth - 1) return false;
-  const char digit = kLetters[std::size_t(letter < ' ' || letter > '~' ? '?' - ' ' : letter - ' ') * kLetterHeight +
-                              std::size_t(y)];
+  const char digit =
+      kLetters[std::size_t(letter < ' ' || letter > '~' ? '?' - ' ' : letter - ' ') * kLetterHeight + std::size_t(y)];
   return ((digit <= '9' ? digit - '0' : digit - 'a' + 10) >> (kLetterWidth - 2 - x)) & 1;
 }
 

@@ -36,7 +36,7 @@ class Sheet {
   float* at(int x, int y) { return pixels_.data() + 3 * (std::size_t(y) * std::size_t(width_) + std::size_t(x)); }
 
   const std::size_t cells_, columns_;
-  std::mutex mutex_;                   // of all below
+  std::mutex mutex_;  // of all below
   std::map<std::size_t, std::string> labels_;
   int cell_width_, cell_height_ = 0;  // px, without the gaps between; height 0: no cell is filled yet
   int width_ = 0, height_ = 0;

@@ -111,9 +111,9 @@ class WedgeMaker {
   const FramePlan& plan() { return prepared_.front().plan(); }
 
   void make_frame(int frame) {
-    const std::string name =
-        plan().is_sequence() ? std::to_string(frame)
-                             : std::filesystem::path(main_input(looks_.front().settings.input)).filename().string();
+    const std::string name = plan().is_sequence()
+                                 ? std::to_string(frame)
+                                 : std::filesystem::path(main_input(looks_.front().settings.input)).filename().string();
     planes_ = {};
     frames_.push_back({{"name", name}, {"yardstick_ms", nullptr}, {"scale", nullptr}});
     auto first = prepared_.begin();
@@ -153,9 +153,11 @@ class WedgeMaker {
     WedgeTime& time = times_[i];
     time.ms += report.compute_ms;
     add_new(time.notes, report.notes);
-    if (report.error) time.error = Error(report.error->kind(), fmt::format("look {}: {}", time.look, report.error->what()));
+    if (report.error)
+      time.error = Error(report.error->kind(), fmt::format("look {}: {}", time.look, report.error->what()));
     const std::string end = report.error ? "failed" : fmt::format("{:.0f} ms", report.compute_ms);
-    if (sheet_) sheet_->put((frames_.size() - 1) * looks_.size() + i, fmt::format("{}{}  {}", in_frame, time.look, end), shown);
+    if (sheet_)
+      sheet_->put((frames_.size() - 1) * looks_.size() + i, fmt::format("{}{}  {}", in_frame, time.look, end), shown);
     if (report.error) return;
     rows_.push_back({{"frame", name}, {"candidate", time.look}, {"ms", report.compute_ms}});
     images_.push_back({{"frame", name},
