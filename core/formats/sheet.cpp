@@ -49,7 +49,7 @@ void Sheet::put(std::size_t cell, const std::string& label, std::span<const Show
   if (cell_height_ == 0) {
     const int shrunk = shrinkage(pictures[0]);
     cell_height_ = kLabelHeight + int(pictures.size()) * (pictures[0].height / shrunk + kGap);
-    cell_width_ = pictures[0].width / shrunk;
+    cell_width_ = (pictures[0].width + shrunk - 1) / shrunk;  // in which it is shrunk by as much
     width_ = int(columns_) * (cell_width_ + kGap) + kGap;
     height_ = int((cells_ + columns_ - 1) / columns_) * cell_height_ + kGap;
     pixels_.assign(3 * std::size_t(width_) * std::size_t(height_), kPaper);
@@ -74,7 +74,7 @@ void Sheet::draw(int left, int top, const std::string& label) {
 
 void Sheet::draw(int left, int top, int room, const ShownPicture& picture) {
   const int shrunk = shrinkage(picture);
-  for (int y = top; y < top + std::min(picture.height / shrunk, room); y++)
+  for (int y = top; y < top + std::min(picture.height / shrunk, room - kGap); y++)
     for (int x = left; x < left + picture.width / shrunk; x++)
       for (int c = 0; c < 3; c++) {
         float sum = 0;

@@ -12,6 +12,7 @@
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
+#include "core/chain/warm_up.h"
 #include "core/formats/sheet.h"
 #include "core/frame/raw_plane.h"
 #include "core/measure/report.h"
@@ -134,6 +135,10 @@ class WedgeMaker {
     InputIdentities identities(frames);
     RunContext run{first, frames, identities, like, nullptr, shot ? &*shot : nullptr, takes_means, {}};
     run.planes = &planes_;
+    // The driver compiles a kernel at its first use, which is no part of the look's time.
+    gpu::Recorder small(lanes_.device());
+    record_small_frame(small, frames.settings().estimator, frames.settings().output);
+    small.run();
     std::vector<ShownPicture> shown;
     run.take_results = [&](FrameSource& source, const Window& window, const FrameOutputs& outputs) {
       shown.push_back(shown_plane(source, window, *outputs.ao));

@@ -16,8 +16,9 @@ using Names = std::vector<std::string>;
 json report_in(const std::string& page) {
   const std::string text = read_bytes(page), begin = "<script id=\"report\" type=\"application/json\">";
   const std::size_t from = text.find(begin);
-  return from == text.npos ? json()
-                           : json::parse(text.substr(from + begin.size(), text.find("</script>", from) - from - begin.size()));
+  return from == text.npos
+             ? json()
+             : json::parse(text.substr(from + begin.size(), text.find("</script>", from) - from - begin.size()));
 }
 
 class Wedge : public SequenceFolder {
@@ -54,7 +55,9 @@ class Wedge : public SequenceFolder {
     EXPECT_EQ(finished.code, 0) << finished;
     if (finished.code) return "";
     const Image ao = read_exr_image(folder / "ao.exr");
-    return grey_picture(ao.data.width, ao.data.height, std::span(ao.pixels).first(ao.data.pixels()));
+    std::vector<float> pixels(kWallWindow.pixels());  // of the display window, 0 outside of a region
+    copy_common(ao.pixels.data(), ao.data, pixels.data(), kWallWindow);
+    return grey_picture(kWallWindow.width, kWallWindow.height, pixels);
   }
   void expect_bits_of_commands(const json& report) const {
     ASSERT_GE(report["images"].size(), 1);
@@ -74,7 +77,7 @@ TEST_F(Wedge, shows_the_bits_of_its_commands) {
 // What a frame is read by goes into the commands, be it a guess's option, a name with blanks or a flag.
 TEST_F(Wedge, reads_the_frame_as_run_does) {
   FrameFile other = wall_frame();
-  other.rename("Depth.Z", "far away");
+  other.rename("ViewLayer.Depth.Z", "far away");
   other.change("far away", [](float z) { return 2 * z; });
   other.write(folder / "other.exr");
   const json report = shown({folder / "other.exr", "--camera", camera, "--depth-channel", "far away", "--depth-scale",
@@ -84,7 +87,8 @@ TEST_F(Wedge, reads_the_frame_as_run_does) {
   const Finished plain = run_program({"run", frame, "--camera", camera, "--radius", "1", "-o", folder / "ao.exr"});
   const Image ao = read_exr_image(folder / "ao.exr");
   EXPECT_EQ(plain.code, 0);
-  const auto one = std::ranges::find(report["images"], "radius 1", [](const json& image) { return image["candidate"]; });
+  const auto one =
+      std::ranges::find(report["images"], "radius 1", [](const json& image) { return image["candidate"]; });
   ASSERT_NE(one, report["images"].end());
   EXPECT_TRUE((*one)["result"] == grey_picture(ao.data.width, ao.data.height, ao.pixels));
 }
@@ -109,7 +113,8 @@ TEST_F(Wedge, of_a_beauty_shows_composites_and_makes_them) {
   add_beauty(with_beauty);
   with_beauty.write(frame);
   const json report = shown(of_frame("--radius 1 --set gain=1,1.5"));
-  for (const auto& image : report["images"]) EXPECT_THAT(image["composite"].get<std::string>(), HasSubstr("data:image"));
+  for (const auto& image : report["images"])
+    EXPECT_THAT(image["composite"].get<std::string>(), HasSubstr("data:image"));
   EXPECT_THAT(report["candidates"][0]["settings"], HasSubstr("-o ao.exr --composite composite.exr"));
   expect_bits_of_commands(report);
   EXPECT_TRUE(fs::exists(folder / "composite.exr"));
