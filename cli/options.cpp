@@ -138,7 +138,8 @@ Command inspect_syntax() {
   return command;
 }
 
-/// Refuses a key that is typed as an option, and says what to type.
+}  // namespace
+
 void refuse_keys(const std::vector<std::string>& arguments) {
   for (std::size_t i = 0; i < arguments.size(); i++) {
     const std::string& argument = arguments[i];
@@ -155,6 +156,8 @@ void refuse_keys(const std::vector<std::string>& arguments) {
     fail(ErrorKind::usage, "--{} is a setting: write --set {}", row->name, for_shell(row->name + "=" + value));
   }
 }
+
+namespace {
 
 /// Reads the command line; nothing where it asks for what is only printed.
 std::optional<TypedOptions> read_arguments(const Command& command, const std::vector<std::string>& arguments,

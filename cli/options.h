@@ -26,6 +26,9 @@ Command run_syntax();
 /// The values of presets and then of the command line. Fails with ErrorKind::usage.
 std::vector<OptionValue> all_values(const std::vector<TypedOption>& typed);
 
+/// Refuses a key that is typed as an option, and says what to type. Fails with ErrorKind::usage.
+void refuse_keys(const std::vector<std::string>& arguments);
+
 /// The usual name of an output, by the name of its input: ao.####.exr for shot.####.exr.
 std::string usual_output(const std::string& input, const std::string& stem, const std::string& ending);
 

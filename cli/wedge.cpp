@@ -282,7 +282,8 @@ int tell(const std::vector<WedgeLook>& looks, const std::vector<WedgeTime>& time
       if (const std::string line = fmt::format("{}: {}\n", level_of(note), printable(line_of(note, "")));
           told.insert(line).second)
         print_error("{}", line);
-    if (times[i].error) print_error("alcove: error: {}\n", printable(times[i].error->what()));
+    if (times[i].error)
+      print_error("alcove: error: look {}: {}\n", printable(looks[i].name), printable(times[i].error->what()));
     has_failed = has_failed || times[i].error;
     if (!times[i].error)
       fmt::print("{:<32} {:>7.0f} ms\n  {}\n", printable(looks[i].name), times[i].ms, printable(looks[i].command));
@@ -295,6 +296,7 @@ int tell(const std::vector<WedgeLook>& looks, const std::vector<WedgeTime>& time
 Command describe_wedge() { return wedge_syntax(); }
 
 int wedge_command(const std::vector<std::string>& arguments) {
+  refuse_keys(arguments);
   const Command command = wedge_syntax();
   const auto typed = typed_options(command, arguments);
   if (!typed) return 0;

@@ -158,8 +158,7 @@ class WedgeMaker {
     WedgeTime& time = times_[i];
     time.ms += report.compute_ms;
     add_new(time.notes, report.notes);
-    if (report.error)
-      time.error = Error(report.error->kind(), fmt::format("look {}: {}", time.look, report.error->what()));
+    if (report.error) time.error = report.error;
     const std::string end = report.error ? "failed" : fmt::format("{:.0f} ms", report.compute_ms);
     if (sheet_)
       sheet_->put((frames_.size() - 1) * looks_.size() + i, fmt::format("{}{}  {}", in_frame, time.look, end), shown);

@@ -27,8 +27,8 @@ struct WedgeTime {
 };
 
 /// Computes all looks and writes the page and the sheet; "" stands for none. Each frame is read once. `columns` are
-/// those of the sheet, 0: any. A look that fails is left out, and its error names it. Fails with the first of these
-/// errors where all looks fail, and with ErrorKind::output.
+/// those of the sheet, 0: any. A look that fails is left out. Fails with the first error where all looks fail, and with
+/// ErrorKind::output.
 std::vector<WedgeTime> make_wedge(std::span<const WedgeLook> looks, const std::string& page, const std::string& sheet,
                                   std::size_t columns);
 

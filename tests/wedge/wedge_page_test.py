@@ -96,6 +96,7 @@ def check_command(browser, program, report, folder):
 
 
 def main(program, project):
+    program = pathlib.Path(program).resolve()
     with tempfile.TemporaryDirectory() as folder:
         page, examples = pathlib.Path(folder, "looks.html"), pathlib.Path(project, "examples")
         subprocess.run([program, "wedge", examples / "interior.gbuffer.exr", "--camera", examples / "interior.camera.json", "--beauty",
