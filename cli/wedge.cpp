@@ -43,6 +43,7 @@ Command wedge_syntax() {
            std::ranges::find(kOthers, row.name) == kOthers.end();
   });
   for (auto& row : command.rows) {
+    if (row.name == "--frames") row.sentence = "such as 1001,1050; else the middle one of INPUT on the disk";
     if (row.name == "--preset") row.sentence = "settings from presets, a look for each of a list";
     if (row.name == "--set") row.value = "KEY=VALUE[,VALUE...]";
     if (row.name == "--radius")
