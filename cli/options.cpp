@@ -53,8 +53,7 @@ std::vector<OptionValue> values_of_sets(const Words& sets) {
   return values;
 }
 
-}  // namespace
-
+/// The values of presets and then of the command line.
 std::vector<OptionValue> all_values(const TypedOptions& typed) {
   std::vector<OptionValue> values;
   for (const auto& preset : presets_of(words_for(typed, "--preset")))
@@ -70,6 +69,8 @@ std::vector<OptionValue> all_values(const TypedOptions& typed) {
   }
   return values;
 }
+
+}  // namespace
 
 std::string usual_output(const std::string& input, const std::string& stem, const std::string& ending) {
   const auto pattern = frame_pattern(input);

@@ -23,8 +23,6 @@ bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& op
 
 /// The options of `alcove run`: INPUT first, and then the table.
 Command run_syntax();
-/// The values of presets and then of the command line. Fails with ErrorKind::usage.
-std::vector<OptionValue> all_values(const std::vector<TypedOption>& typed);
 
 /// Refuses a key that is typed as an option, and says what to type. Fails with ErrorKind::usage.
 void refuse_keys(const std::vector<std::string>& arguments);

@@ -24,9 +24,7 @@ constexpr std::size_t kMostPictures = 64;
 constexpr const char* kWedge =
     "Shows a frame in many looks: one for each radius, and for each value of every other list. The page has all looks "
     "to\nwipe and flip between, and the command that makes each. The radius that inspect proposes is one of them. Of a "
-    "sequence\nit shows the middle frame, or --frames; a sequence with one look is shown whole. Input options are "
-    "those "
-    "of alcove run.\n\n"
+    "sequence\nit shows the middle frame, or --frames; with one look all frames. Input options are those of run.\n\n"
     "Examples:\n"
     "  alcove wedge frame.exr --camera camera.json -o looks.html\n"
     "  alcove wedge frame.exr --camera camera.json --radius .1,.2,.5,1 --preset draft,production --sheet looks.png\n"
@@ -59,12 +57,12 @@ Command wedge_syntax() {
 
 // Looks: one value of each list.
 
-/// A word of an option as it was typed, with the words of which each makes a look.
-struct Choice {
-  std::string option;  // the name of its row
-  Words words;
+/// What was typed for run: arguments, and of a list all its values; and the wedge's own options.
+struct Typed {
+  std::vector<Words> arguments;
+  std::string input, page, sheet;
+  bool has_composite = true;
 };
-using Choices = std::vector<Choice>;
 
 bool takes_whole(const SettingRow& row, const std::string& value) {
   try {
@@ -76,220 +74,159 @@ bool takes_whole(const SettingRow& row, const std::string& value) {
   }
 }
 
-/// The values of a list; what the setting takes as one value is one.
-Words values_in(const SettingRow* row, const std::string& option, const std::string& text) {
-  if (row && takes_whole(*row, text)) return {text};
+/// The values of a list. What the setting takes as one value is one, but for radii, of which run takes the mean.
+Words values_in(const SettingRow& row, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (row.name == "--set" && (equals == 0 || equals == text.npos)) return {text};
+  if (row.name == "--set") {
+    Words values = values_in(row_of_key(lower_case(text.substr(0, equals))), text.substr(equals + 1));
+    for (auto& value : values) value = text.substr(0, equals + 1) + value;
+    return values;
+  }
+  if (row.is_key() && row.name != "--radius" && takes_whole(row, text)) return {text};
   Words values = split(text);
   if (std::ranges::find(values, "") != values.end())
-    fail(ErrorKind::usage, "{} {}: a value of the list is empty", option, visible(text));
-  if (row && values.size() > 1 && row->group == "Input")
-    fail(ErrorKind::usage, "{} {}: a wedge reads its frame once: give one value", option, text);
+    fail(ErrorKind::usage, "{} {}: a value of the list is empty", row.long_name(), visible(text));
   return values;
 }
 
-Choice choice_of_set(const Command& command, const std::string& set) {
-  const std::size_t equals = std::min(set.find('='), set.size());
-  if (equals == 0 || equals == set.size()) return {"--set", {set}};
-  const SettingRow& row = row_of_key(lower_case(set.substr(0, equals)));
-  const bool is_taken =
-      row.is_only_key() || std::ranges::find(command.rows, row.name, &OptionRow::name) != command.rows.end();
-  if (!is_taken || row.key() == "output" || row.key() == "radius" || row.key() == "frames")
-    fail(ErrorKind::usage, "--set {}: alcove wedge takes no {} as a setting", set, row.key());
-  Choice choice{"--set", values_in(&row, "--set " + row.key(), set.substr(equals + 1))};
-  for (auto& word : choice.words) word = set.substr(0, equals + 1) + word;
-  return choice;
-}
-
-/// All words that were typed, but those of the wedge's own options.
-Choices choices_of(const Command& command, const std::vector<TypedOption>& typed) {
-  Choices choices;
+std::vector<Words> arguments_in(const std::vector<TypedOption>& typed) {
+  std::vector<Words> arguments;
   for (const auto& [name, words] : typed) {
-    if (name == "-o,--output" || name == "--sheet") continue;
-    if (name == "--radius" && words.size() > 1)
-      fail(ErrorKind::usage, "--radius is given more than once: its looks are one list, as .1,.2,.5");
+    const auto row = std::ranges::find(option_table(), name, &SettingRow::name);
     for (const auto& word : words) {
-      const auto row = std::ranges::find(option_table(), name, &SettingRow::name);
-      const bool is_list = row == option_table().end() || !row->is_key() || name == "--radius";
-      if (name == "INPUT" || name == "--frames")
-        choices.push_back({name, {word}});
-      else if (name == "--set")
-        choices.push_back(choice_of_set(command, word));
+      if (row == option_table().end())
+        arguments.push_back({word});
+      else if (row->is_flag() || word.starts_with('-'))
+        arguments.push_back({name + "=" + word});
       else
-        choices.push_back({name, values_in(is_list ? nullptr : &*row, name, word)});
+        arguments.insert(arguments.end(), {{name}, values_in(*row, word)});
     }
   }
-  return choices;
+  return arguments;
 }
 
-Choice& choice_of(Choices& choices, const std::string& option) {
-  const auto found = std::ranges::find(choices, option, &Choice::option);
-  return found == choices.end() ? choices.emplace_back(Choice{option, {}}) : *found;
+std::size_t count_of(const std::vector<Words>& arguments) {
+  std::size_t count = 1;
+  for (const auto& values : arguments) count *= values.size();
+  return count;
 }
 
-/// Makes looks of choices of which each has one word left.
-class LookMaker {
- public:
-  explicit LookMaker(bool has_composite) : has_composite_(has_composite) {}
-
-  WedgeLook operator()(const Choices& choices, const std::string& name) const {
-    WedgeLook look{name, "alcove run", {}};
-    std::vector<TypedOption> typed;
-    for (const auto& [option, words] : choices) {
-      if (typed.empty() || typed.back().name != option) typed.push_back({option, {}});
-      typed.back().words.push_back(words.front());
-    }
-    const auto input = std::ranges::find_if(choices, [](const Choice& choice) {
-      return choice.option == "INPUT" || choice.option == "--depth" || choice.option == "--position";
-    });
-    if (input == choices.end()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
-    for (const auto& [option, stem, ending] : {std::array{"-o,--output", "ao", ".exr"},
-                                               {"--composite", "composite", ".exr"},
-                                               {"--preview", "preview", ".png"}})
-      if (has_composite_ || option != std::string_view("--composite"))
-        typed.push_back({option, {usual_output(input->words.front(), stem, ending)}});
-    for (const auto& [option, words] : typed)
-      for (const auto& word : words) look.command += in_command(option, word);
-    if (input->option == "INPUT") look.settings.input.input = input->words.front();
-    look.settings = with_values(look.settings, all_values(typed));
-    return look;
+/// The look of that number: the values of the last list change fastest. The last argument is the radius.
+WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::size_t number) {
+  Words chosen, parts;
+  std::size_t rest = count_of(arguments);
+  for (std::size_t i = 0; i < arguments.size(); i++) {
+    rest /= arguments[i].size();
+    chosen.push_back(arguments[i][number / rest % arguments[i].size()]);
+    const std::string option = i > 0 ? arguments[i - 1].front() : "";
+    const std::string name =
+        option == "--preset" || option == "--set" ? "" : option.substr(std::min<std::size_t>(2, option.size())) + " ";
+    if (arguments[i].size() > 1 || (parts.empty() && i + 1 == arguments.size())) parts.push_back(name + chosen.back());
   }
-
- private:
-  static std::string in_command(const std::string& option, const std::string& word) {
-    const auto row = std::ranges::find(option_table(), option, &SettingRow::name);
-    if (row == option_table().end()) return " " + for_shell(word);  // INPUT
-    if (row->is_flag()) return " " + row->long_name() + (word == "true" ? "" : "=" + word);
-    return " " + option.substr(0, option.find(',')) + (word.starts_with('-') ? "=" : " ") + for_shell(word);
-  }
-
-  const bool has_composite_;
-};
-
-std::string text_of(double number) { return fmt::format("{}", number); }
-
-/// What a look is called by a choice of which there are several.
-std::string name_of(const Choice& choice, const std::string& word) {
-  if (choice.option == "--preset" || choice.option == "--set") return word;
-  return choice.option.substr(2) + " " + word;
+  chosen.insert(chosen.end(), {"-o", usual_output(typed.input, "ao", ".exr")});
+  if (typed.has_composite) chosen.insert(chosen.end(), {"--composite", usual_output(typed.input, "composite", ".exr")});
+  chosen.insert(chosen.end(), {"--preview", usual_output(typed.input, "preview", ".png")});
+  RunOptions options;
+  (void)parse_run_options(chosen, options);
+  for (auto& word : chosen) word = for_shell(word);
+  return {fmt::format("{}", fmt::join(parts, ", ")), fmt::format("alcove run {}", fmt::join(chosen, " ")),
+          options.settings};
 }
 
-struct Looks {
+/// The radii that were typed, or half and twice the proposed one; and that.
+std::set<double> radii_of(const Words& typed, std::optional<double> proposed, bool adds_proposed) {
+  std::set<double> radii;
+  if (proposed && adds_proposed) radii.insert(*proposed);
+  if (typed.empty()) radii.insert({0.5 * *proposed, 2 * *proposed});
+  for (const auto& word : typed) {
+    const auto number = lower_case(word) == "auto" ? proposed : number_of(word);
+    if (!number) fail(ErrorKind::usage, "--radius: {} is neither auto nor a number", word);
+    radii.insert(*number);
+  }
+  return radii;
+}
+
+/// Fails where looks are not of one reading of a frame, or one is there twice.
+void check_looks(const std::vector<WedgeLook>& looks) {
+  std::set<std::string> names;
+  for (const auto& look : looks) {
+    if (!names.insert(look.name).second) fail(ErrorKind::usage, "the look {} is there twice", look.name);
+    for (const auto& row : option_table())
+      if ((row.group == "Input" || row.group == "Hidden surfaces") &&
+          row.words(look.settings) != row.words(looks.front().settings))
+        fail(ErrorKind::usage, "{} differs between the looks {} and {}: a wedge reads its frame once", row.long_name(),
+             looks.front().name, look.name);
+  }
+}
+
+/// All combinations of what was typed, with the proposed radius among the radii; and the columns of the sheet.
+std::pair<std::vector<WedgeLook>, std::size_t> looks_of(const Typed& typed) {
+  std::vector<Words> arguments = typed.arguments;
+  Words given;
+  if (std::ranges::count(arguments, Words{"--radius"}) > 1)
+    fail(ErrorKind::usage, "--radius is given more than once: its looks are one list, as .1,.2,.5");
+  if (const auto at = std::ranges::find(arguments, Words{"--radius"}); at != arguments.end()) {
+    given = at[1];
+    arguments.erase(at, at + 2);
+  }
+  const auto with_radii = [&](const Words& radii) {
+    auto all = arguments;
+    all.insert(all.end(), {{"--radius"}, radii});
+    return all;
+  };
+  FirstLook first(look_of(typed, with_radii({"auto"}), 0).settings);
+  std::size_t frames = first.plan().frames().size();
+  const bool names_frames = std::ranges::find(arguments, Words{"--frames"}) != arguments.end();
+  const bool is_contact_sheet = frames > 1 && !names_frames && given.size() == 1 && count_of(arguments) == 1;
+  std::optional<double> proposed;
+  try {
+    first.prepare();
+    proposed = first.plan().settings().estimator.radius;
+  } catch (const Error& error) {  // where radii are given, a frame without a surface is no mistake
+    if (given.empty() || error.kind() != ErrorKind::input) throw;
+  }
+  if (frames > 1 && !names_frames && !is_contact_sheet) {
+    arguments.insert(arguments.end(), {{"--frames"}, {std::to_string(first.plan().frames()[frames / 2])}});
+    frames = 1;
+  }
+  Words radii;
+  for (const double radius : radii_of(given, proposed, !is_contact_sheet)) radii.push_back(fmt::format("{}", radius));
+  const auto all = with_radii(radii);
+  const std::size_t count = count_of(all);
+  if (count * frames > kMostPictures && !(count == 1 && typed.page.empty()))
+    fail(ErrorKind::usage, "there are {} looks of {} frames, and a wedge has at most {} pictures: give {}", count,
+         frames, kMostPictures, count == 1 ? "--sheet alone, or --frames" : "fewer values or --frames");
   std::vector<WedgeLook> looks;
-  std::size_t columns = 0;  // of the sheet; 0: any
-};
-
-/// The looks of a wedge: all combinations of what was chosen, with the proposed radius among the radii.
-class LookFinder {
- public:
-  LookFinder(Choices choices, bool has_composite, bool has_page)
-      : choices_(std::move(choices)), make_(has_composite), has_page_(has_page) {}
-
-  Looks find() {
-    find_frames_and_radii();
-    std::size_t count = frames_;
-    for (const auto& choice : choices_) count *= choice.words.size();
-    if (count > kMostPictures && (has_page_ || count > frames_))
-      fail(ErrorKind::usage, "there are {} looks in {} frames, and a wedge has at most {} pictures: {}",
-           count / frames_, frames_, kMostPictures,
-           frames_ > 1 ? "name fewer frames with --frames" : "give shorter lists");
-    add_looks({}, 0, "");
-    std::set<std::string> names;
-    for (const auto& look : found_.looks) {
-      if (!names.insert(look.name).second) fail(ErrorKind::usage, "the look {} is there twice", look.name);
-      for (const auto& row : option_table())
-        if (row.group == "Input" && row.words(look.settings) != row.words(found_.looks.front().settings))
-          fail(ErrorKind::usage, "the looks {} and {} have another {} each: a wedge reads its frame once",
-               found_.looks.front().name, look.name, row.long_name());
-    }
-    const std::size_t radii = choices_.back().words.size();
-    if (found_.looks.size() > radii && radii > 1) found_.columns = radii;
-    return std::move(found_);
+  for (std::size_t i = 0; i < count; i++) {
+    looks.push_back(look_of(typed, all, i));
+    if (proposed && looks.back().settings.estimator.radius == proposed) looks.back().name += " (proposed)";
   }
+  check_looks(looks);
+  return {looks, count > radii.size() ? radii.size() : 0};
+}
 
- private:
-  /// The radius becomes the last of the choices.
-  void find_frames_and_radii() {
-    Choice radii = choice_of(choices_, "--radius");
-    std::erase_if(choices_, [](const Choice& choice) { return choice.option == "--radius"; });
-    Choices first = choices_;
-    first.push_back({"--radius", {"auto"}});
-    FirstLook look(make_(first, "").settings);
-    frames_ = look.plan().frames().size();
-    const bool is_one_look = radii.words.size() == 1 && std::ranges::all_of(choices_, [](const Choice& choice) {
-                               return choice.words.size() == 1;
-                             });
-    const bool names_frames = std::ranges::find(choices_, "--frames", &Choice::option) != choices_.end();
-    const bool is_whole = is_one_look && frames_ > 1 && !names_frames;
-    if (!is_whole || radii.words[0] == "auto") find_proposal(look, !radii.words.empty());
-    if (frames_ > 1 && !names_frames && !is_whole) {
-      choices_.push_back({"--frames", {std::to_string(look.plan().frames()[frames_ / 2])}});
-      frames_ = 1;
-    }
-    std::set<double> numbers;
-    if (proposed_ && !is_whole) numbers.insert(*proposed_);
-    if (radii.words.empty()) numbers.insert({0.5 * *proposed_, 2 * *proposed_});
-    for (const auto& word : radii.words) {
-      const auto number = lower_case(word) == "auto" ? proposed_ : number_of(word);
-      if (!number) fail(ErrorKind::usage, "--radius: {} is neither auto nor a number", word);
-      numbers.insert(*number);
-    }
-    radii.words.clear();
-    for (const double number : numbers) radii.words.push_back(text_of(number));
-    choices_.push_back(radii);
+/// Makes the wedge, and says what became of each look. Gives the exit code.
+int make(const Typed& typed) {
+  auto [looks, columns] = looks_of(typed);
+  for (const auto& [path, option] : {std::pair(typed.page, "--output"), {typed.sheet, "--sheet"}}) {
+    require_no_input(path, option, input_files(looks.front().settings.input));
+    if (!path.empty()) require_writable(path, option);
   }
-
-  /// Where radii are given, a frame without a surface is no mistake; a fault of it fails each look.
-  void find_proposal(FirstLook& look, bool has_radii) {
-    try {
-      look.prepare();
-      proposed_ = look.plan().settings().estimator.radius;
-    } catch (const Error& error) {
-      if (!has_radii || error.kind() != ErrorKind::input) throw;
-    }
-  }
-
-  /// Adds the looks of the choices from the i-th on.
-  void add_looks(Choices chosen, std::size_t i, const std::string& name) {
-    if (i == choices_.size()) {
-      found_.looks.push_back(make_(chosen, name));
-      return;
-    }
-    const bool is_radius = i + 1 == choices_.size();
-    for (const auto& word : choices_[i].words) {
-      std::string more = name;
-      if (choices_[i].words.size() > 1 || (is_radius && name.empty()))
-        more += (name.empty() ? "" : ", ") + name_of(choices_[i], word);
-      if (is_radius && proposed_ && word == text_of(*proposed_)) more += " (proposed)";
-      Choices with = chosen;
-      with.push_back({choices_[i].option, {word}});
-      add_looks(with, i + 1, more);
-    }
-  }
-
-  Choices choices_;
-  const LookMaker make_;
-  const bool has_page_;
-  std::size_t frames_ = 1;
-  std::optional<double> proposed_;
-  Looks found_;
-};
-
-/// Says what became of each look. Gives the exit code.
-int tell(const std::vector<WedgeLook>& looks, const std::vector<WedgeTime>& times) {
-  bool has_failed = false;
+  make_wedge(looks, typed.page, typed.sheet, columns);
   std::set<std::string> told;
-  for (std::size_t i = 0; i < looks.size(); i++) {
-    for (const auto& note : times[i].notes)
+  for (const auto& look : looks) {
+    for (const auto& note : look.notes)
       if (const std::string line = fmt::format("{}: {}\n", level_of(note), printable(line_of(note, "")));
           told.insert(line).second)
         print_error("{}", line);
-    if (times[i].error)
-      print_error("alcove: error: look {}: {}\n", printable(looks[i].name), printable(times[i].error->what()));
-    has_failed = has_failed || times[i].error;
-    if (!times[i].error)
-      fmt::print("{:<32} {:>7.0f} ms\n  {}\n", printable(looks[i].name), times[i].ms, printable(looks[i].command));
+    if (look.error)
+      print_error("alcove: error: look {}: {}\n", printable(look.name), printable(look.error->what()));
+    else
+      fmt::print("{:<32} {:>7.0f} ms\n  {}\n", printable(look.name), look.ms, printable(look.command));
   }
-  return has_failed ? int(ErrorKind::some_frames_failed) : 0;
+  const bool is_whole = std::ranges::none_of(looks, [](const WedgeLook& look) { return look.error.has_value(); });
+  return is_whole ? 0 : int(ErrorKind::some_frames_failed);
 }
 
 }  // namespace
@@ -299,37 +236,34 @@ Command describe_wedge() { return wedge_syntax(); }
 int wedge_command(const std::vector<std::string>& arguments) {
   refuse_keys(arguments);
   const Command command = wedge_syntax();
-  const auto typed = typed_options(command, arguments);
-  if (!typed) return 0;
-  const auto file = [&](const char* option) {
-    const auto found = std::ranges::find(*typed, option, &TypedOption::name);
-    return found == typed->end() ? std::string() : found->words.front();
+  auto options = typed_options(command, arguments);
+  if (!options) return 0;
+  const auto word_of_option = [&](const char* option) {
+    const auto found = std::ranges::find(*options, option, &TypedOption::name);
+    return found == options->end() ? std::string() : found->words.front();
   };
-  const std::string page = file("-o,--output"), sheet = file("--sheet");
-  if (page.empty() && sheet.empty())
-    fail(ErrorKind::usage, "no output: name a page with -o FILE.html, or a picture with --sheet FILE.png{}",
-         see_help(command.name));
-  require_ending(page, "--output", ".html", "HTML");
-  require_ending(sheet, "--sheet", ".png", "PNG");
-  const auto make = [&](bool has_composite) {
-    Looks found;
-    with_help(command, [&] { found = LookFinder(choices_of(command, *typed), has_composite, !page.empty()).find(); });
-    for (const auto& [path, option] : {std::pair(page, "--output"), {sheet, "--sheet"}}) {
-      require_no_input(path, option, input_files(found.looks.front().settings.input));
-      if (!path.empty()) require_writable(path, option);
-    }
-    return tell(found.looks, make_wedge(found.looks, page, sheet, found.columns));
-  };
-  std::optional<Error> no_composite;
+  Typed typed{{}, "", word_of_option("-o,--output"), word_of_option("--sheet")};
+  for (const char* option : {"INPUT", "--depth", "--position"})
+    if (typed.input.empty()) typed.input = word_of_option(option);
+  const bool has_beauty = !word_of_option("--beauty").empty();
+  std::erase_if(*options, [](const auto& option) { return option.name == "-o,--output" || option.name == "--sheet"; });
+  with_help(command, [&] {
+    if (typed.input.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
+    if (typed.page.empty() && typed.sheet.empty())
+      fail(ErrorKind::usage, "no output: name a page with -o FILE.html, or a picture with --sheet FILE.png");
+    require_ending(typed.page, "--output", ".html", "HTML");
+    require_ending(typed.sheet, "--sheet", ".png", "PNG");
+    typed.arguments = arguments_in(*options);
+  });
   try {
-    return make(true);
+    return make(typed);
   } catch (const Error& error) {
-    if (error.kind() != ErrorKind::input || !file("--beauty").empty()) throw;
-    no_composite = error;
+    if (error.kind() != ErrorKind::input || has_beauty) throw;
+    typed.has_composite = false;
+    const int code = make(typed);
+    print_error("note: there is no composite: {}\n", printable(error.what()));
+    return code;
   }
-  const int code = make(false);
-  print_error("note: there is no composite: {}\n", printable(no_composite->what()));
-  return code;
 }
 
 }  // namespace alcove

@@ -36,63 +36,59 @@ bool has_ink(char letter, int x, int y) {
 }  // namespace
 
 Sheet::Sheet(std::size_t cells, std::size_t columns)
-    : cells_(cells),
-      columns_(columns ? columns : std::size_t(std::ceil(std::sqrt(double(cells))))),
-      cell_width_(std::max(kLeastCell, kMostWidth / int(columns_))) {}
+    : cells_(cells), columns_(columns ? columns : std::size_t(std::ceil(std::sqrt(double(cells))))) {}
 
-int Sheet::shrinkage(const ShownPicture& picture) const { return (picture.width + cell_width_ - 1) / cell_width_; }
-
-void Sheet::put(std::size_t cell, const std::string& label, std::span<const ShownPicture> pictures) {
-  const std::lock_guard lock(mutex_);
-  labels_[cell] = label;
-  if (pictures.empty()) return;
-  if (cell_height_ == 0) {
-    const int shrunk = shrinkage(pictures[0]);
-    cell_height_ = kLabelHeight + int(pictures.size()) * (pictures[0].height / shrunk + kGap);
-    cell_width_ = (pictures[0].width + shrunk - 1) / shrunk;  // in which it is shrunk by as much
-    width_ = int(columns_) * (cell_width_ + kGap) + kGap;
-    height_ = int((cells_ + columns_ - 1) / columns_) * cell_height_ + kGap;
-    pixels_.assign(3 * std::size_t(width_) * std::size_t(height_), kPaper);
-  }
-  const int room = (cell_height_ - kLabelHeight) / int(pictures.size());
-  for (std::size_t i = 0; i < pictures.size(); i++)
-    draw(left_of(cell), top_of(cell) + kLabelHeight + int(i) * room, room, pictures[i]);
-}
-
-int Sheet::left_of(std::size_t cell) const { return kGap + int(cell % columns_) * (cell_width_ + kGap); }
-
-int Sheet::top_of(std::size_t cell) const { return kGap + int(cell / columns_) * cell_height_; }
-
-void Sheet::draw(int left, int top, const std::string& label) {
-  const int size = int(label.size()) * kLetterWidth * 2 <= cell_width_ ? 2 : 1;
-  const int width = std::min(cell_width_, int(label.size()) * kLetterWidth * size);
-  for (int y = 0; y < kLetterHeight * size; y++)
-    for (int x = 0; x < width; x++)
-      if (has_ink(label[std::size_t(x / size / kLetterWidth)], x / size % kLetterWidth, y / size))
-        std::fill_n(at(left + x, top + y), 3, kInk);
-}
-
-void Sheet::draw(int left, int top, int room, const ShownPicture& picture) {
-  const int shrunk = shrinkage(picture);
-  for (int y = top; y < top + std::min(picture.height / shrunk, room - kGap); y++)
-    for (int x = left; x < left + picture.width / shrunk; x++)
-      for (int c = 0; c < 3; c++) {
-        float sum = 0;
-        for (int i = 0; i < shrunk * shrunk; i++) {
-          const auto row = std::size_t((y - top) * shrunk + i / shrunk);
-          const auto column = std::size_t((x - left) * shrunk + i % shrunk);
-          sum += std::clamp(picture.pixels[(row * std::size_t(picture.width) + column) * std::size_t(picture.channels) +
-                                           std::size_t(std::min(c, picture.channels - 1))],
-                            0.0f, 1.0f);
-        }
-        at(x, y)[c] = sum / float(shrunk * shrunk);
+void Sheet::put(std::size_t number, const std::string& label, std::span<const ShownPicture> pictures) {
+  Cell cell{label, {0, 0, 3, {}}};
+  ShownPicture& small = cell.picture;
+  for (const auto& picture : pictures) {
+    const int most = std::max(kLeastCell, kMostWidth / int(columns_)), block = (picture.width + most - 1) / most;
+    small.width = picture.width / block;
+    const int top = small.height ? small.height + kGap : 0;
+    small.height = top + picture.height / block;
+    small.pixels.resize(3 * std::size_t(small.width) * std::size_t(top), kPaper);
+    for (int i = 0; i < 3 * small.width * (small.height - top); i++) {
+      const int x = i / 3 % small.width * block, y = i / 3 / small.width * block;
+      float sum = 0;
+      for (int k = 0; k < block * block; k++) {
+        const std::size_t pixel = std::size_t(y + k / block) * std::size_t(picture.width) + std::size_t(x + k % block);
+        const auto channel = std::size_t(std::min(i % 3, picture.channels - 1));
+        sum += std::clamp(picture.pixels[pixel * std::size_t(picture.channels) + channel], 0.0f, 1.0f);
       }
+      small.pixels.push_back(sum / float(block * block));
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  filled_[number] = std::move(cell);
 }
 
-void Sheet::write(const std::string& path) {
-  if (pixels_.empty()) return;
-  for (const auto& [cell, label] : labels_) draw(left_of(cell), top_of(cell), label);
-  write_png(path, width_, height_, 3, pixels_);
+void Sheet::write(const std::string& path) const {
+  int width = 0, height = 0;  // of a cell
+  for (const auto& [number, cell] : filled_) {
+    width = std::max(width, cell.picture.width);
+    height = std::max(height, cell.picture.height + kLabelHeight + kGap);
+  }
+  if (width == 0) return;
+  width += kGap;
+  const std::size_t row = 3 * (columns_ * std::size_t(width) + kGap);  // values
+  const std::size_t rows = (cells_ + columns_ - 1) / columns_ * std::size_t(height) + kGap;
+  std::vector<float> pixels(row * rows, kPaper);
+  for (const auto& [number, cell] : filled_) {
+    const auto at = [&, number = number](int x, int y) {
+      return pixels.begin() + std::ptrdiff_t(row * (number / columns_ * std::size_t(height) + std::size_t(kGap + y)) +
+                                             3 * (number % columns_ * std::size_t(width) + std::size_t(kGap + x)));
+    };
+    const auto& [label, picture] = cell;
+    const int size = int(label.size()) * kLetterWidth * 2 < width ? 2 : 1;
+    const int end = std::min(width - kGap, int(label.size()) * kLetterWidth * size);
+    for (int y = 0; y < kLetterHeight * size; y++)
+      for (int x = 0; x < end; x++)
+        if (has_ink(label[std::size_t(x / size / kLetterWidth)], x / size % kLetterWidth, y / size))
+          std::fill_n(at(x, y), 3, kInk);
+    for (int y = 0; y < picture.height; y++)
+      std::copy_n(picture.pixels.begin() + 3 * y * picture.width, 3 * picture.width, at(0, kLabelHeight + y));
+  }
+  write_png(path, int(row / 3), int(rows), 3, pixels);
 }
 
 }  // namespace alcove

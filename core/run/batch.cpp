@@ -226,7 +226,7 @@ class Batch {
   }
 
   /// Writes the contact sheet of a run that came to its end. Fails with ErrorKind::output.
-  void write_sheet() {
+  void write_sheet() const {
     if (sheet_ && report_.dropped == 0) sheet_->write(plan_.settings().output.preview);
   }
 

@@ -16,7 +16,6 @@
 #include "core/formats/sheet.h"
 #include "core/frame/raw_plane.h"
 #include "core/measure/report.h"
-#include "core/options/options.h"
 #include "core/run/first_look.h"
 #include "core/run/memory.h"
 #include "core/run/pipeline.h"
@@ -48,54 +47,50 @@ Json scale_of(const Reading& reading, ShownPicture depth) {
           {"orthographic", view.orthographic != 0}};
 }
 
-/// What says which values the planes of a frame have, beside the group Input, which all looks share.
-std::vector<Words> hidden_words(const Settings& settings) {
-  std::vector<Words> words;
-  for (const auto& row : option_table())
-    if (row.group == "Hidden surfaces") words.push_back(row.words(settings));
-  return words;
-}
-
 /// The looks of one frame after the other.
 class WedgeMaker {
  public:
-  WedgeMaker(std::span<const WedgeLook> looks, bool has_page) : looks_(looks), has_page_(has_page) {
+  WedgeMaker(std::vector<WedgeLook>& looks, bool has_page) : looks_(looks), has_page_(has_page) {
     for (const auto& look : looks_) {
-      try {
-        Settings settings = look.settings;
-        settings.output.aovs = "ao,depth";
-        prepared_.emplace_back(settings);
-        times_.push_back({look.name, 0, prepared_.back().prepare(), {}});
-      } catch (const Error& error) {
-        throw Error(error.kind(), fmt::format("look {}: {}", look.name, error.what()));
-      }
+      Settings settings = look.settings;
+      settings.output.aovs = "ao,depth";
+      firsts_.emplace_back(settings);
+      firsts_.back().prepare();
     }
     set_exr_threads(core_count());
     set_exr_memory(memory_.host_bytes / kCodecPart);
   }
 
-  /// `sheet` may be null.
-  std::vector<WedgeTime> make(Sheet* sheet) {
-    sheet_ = sheet;
-    settled_ = prepared_.front().settle(memory_.host_bytes);
-    for (const int frame : plan().frames()) make_frame(frame);
-    if (images_.empty()) throw *times_.front().error;
-    return times_;
-  }
-
   std::size_t frames() { return plan().frames().size(); }
+
+  /// `sheet` may be null.
+  void make(Sheet* sheet) {
+    settled_ = firsts_.front().settle(memory_.host_bytes);
+    for (const int frame : plan().frames()) {
+      const std::string file = std::filesystem::path(main_input(looks_.front().settings.input)).filename().string();
+      planes_ = {};
+      frames_.push_back({{"name", plan().is_sequence() ? std::to_string(frame) : file}, {"scale", nullptr}});
+      auto first = firsts_.begin();
+      for (auto& look : looks_) {
+        const auto shown = look.error ? std::vector<ShownPicture>() : make_look(look, *first, frame);
+        const std::string label = plan().is_sequence() ? fmt::format("{}  {}", frame, look.name) : look.name;
+        const double ms = rows_.empty() ? 0 : rows_.back()["ms"].get<double>();
+        if (sheet) sheet->put(cell_, look.error ? label + "  failed" : fmt::format("{}  {:.0f} ms", label, ms), shown);
+        cell_++;
+        first++;
+      }
+    }
+    if (images_.empty()) throw *looks_.front().error;
+  }
 
   std::string page() {
     Json candidates = Json::array();
-    for (std::size_t i = 0; i < looks_.size(); i++) {
+    for (const auto& look : looks_) {
       Json notes = Json::array();
-      for (const auto& note : times_[i].notes) notes.push_back(fmt::format("{}: {}", level_of(note), note.text));
-      const auto radii = radii_of(looks_[i].settings.estimator);
-      candidates.push_back({{"name", looks_[i].name},
-                            {"settings", looks_[i].command},
-                            {"ms", times_[i].error ? Json(nullptr) : Json(times_[i].ms)},
-                            {"ms_min", nullptr},
-                            {"radius", radii.back()},
+      for (const auto& note : look.notes) notes.push_back(fmt::format("{}: {}", level_of(note), note.text));
+      candidates.push_back({{"name", look.name},
+                            {"settings", look.command},
+                            {"radius", radii_of(look.settings.estimator).back()},
                             {"notes", notes}});
     }
     return report_page(json_text({{"title", main_input(looks_.front().settings.input)},
@@ -109,28 +104,15 @@ class WedgeMaker {
   }
 
  private:
-  const FramePlan& plan() { return prepared_.front().plan(); }
+  const FramePlan& plan() { return firsts_.front().plan(); }
 
-  void make_frame(int frame) {
-    const std::string name = plan().is_sequence()
-                                 ? std::to_string(frame)
-                                 : std::filesystem::path(main_input(looks_.front().settings.input)).filename().string();
-    planes_ = {};
-    frames_.push_back({{"name", name}, {"yardstick_ms", nullptr}, {"scale", nullptr}});
-    auto first = prepared_.begin();
-    for (std::size_t i = 0; i < looks_.size(); i++, first++) {
-      if (i > 0 && hidden_words(looks_[i].settings) != hidden_words(looks_[i - 1].settings)) planes_ = {};
-      if (!times_[i].error) make_look(i, *first, frame, name);
-    }
-  }
-
-  void make_look(std::size_t i, FirstLook& first, int frame, const std::string& name) {
-    const OutputSettings& output = looks_[i].settings.output;
+  /// Gives the AO and the composite, if there is one; nothing where the look fails.
+  std::vector<ShownPicture> make_look(WedgeLook& look, FirstLook& first, int frame) {
     const FramePlan& frames = first.plan();
     const FrameSource* const like = settled_ ? &*settled_ : nullptr;
-    std::optional<SharedFrames> shot;
     const InputSettings& input = frames.settings().input;
     const bool takes_means = input.accumulate > 0;
+    std::optional<SharedFrames> shot;
     if (takes_means || takes_others(input)) shot.emplace(frames, like, std::span(&frame, 1));
     InputIdentities identities(frames);
     RunContext run{first, frames, identities, like, nullptr, shot ? &*shot : nullptr, takes_means, {}};
@@ -141,6 +123,7 @@ class WedgeMaker {
     small.run();
     std::vector<ShownPicture> shown;
     run.take_results = [&](FrameSource& source, const Window& window, const FrameOutputs& outputs) {
+      const OutputSettings& output = look.settings.output;
       shown.push_back(shown_plane(source, window, *outputs.ao));
       if (outputs.composite) {
         const DisplayTransform transform(output.ocio, output.display, output.view_transform);
@@ -149,54 +132,42 @@ class WedgeMaker {
       Json& scale = frames_.back()["scale"];
       if (has_page_ && scale.is_null()) scale = scale_of(source.reading, shown_plane(source, window, *outputs.depth));
     };
-    run_pipeline(lanes_, run, room_of_lane(memory_, 1, lanes_.device().info()), std::span(&frame, 1),
-                 [&](FrameReport&& report) { take(i, report, name, shown); }, {});
+    const auto take = [&](FrameReport&& report) {
+      look.ms += report.compute_ms;
+      look.error = report.error;
+      add_new(look.notes, report.notes);
+      if (report.error) return;
+      const Json name = frames_.back()["name"];
+      rows_.push_back({{"frame", name}, {"candidate", look.name}, {"ms", report.compute_ms}});
+      images_.push_back({{"frame", name}, {"candidate", look.name}});
+      images_.back().update({{"width", shown[0].width}, {"height", shown[0].height}});
+      if (has_page_) images_.back()["result"] = url_of(shown[0]);
+      if (has_page_ && shown.size() > 1) images_.back()["composite"] = url_of(shown[1]);
+    };
+    run_pipeline(lanes_, run, room_of_lane(memory_, 1, lanes_.device().info()), std::span(&frame, 1), take, {});
+    return shown;
   }
 
-  void take(std::size_t i, const FrameReport& report, const std::string& name, std::span<const ShownPicture> shown) {
-    const std::string in_frame = plan().is_sequence() ? name + "  " : "";
-    WedgeTime& time = times_[i];
-    time.ms += report.compute_ms;
-    add_new(time.notes, report.notes);
-    if (report.error) time.error = report.error;
-    const std::string end = report.error ? "failed" : fmt::format("{:.0f} ms", report.compute_ms);
-    if (sheet_)
-      sheet_->put((frames_.size() - 1) * looks_.size() + i, fmt::format("{}{}  {}", in_frame, time.look, end), shown);
-    if (report.error) return;
-    rows_.push_back({{"frame", name}, {"candidate", time.look}, {"ms", report.compute_ms}});
-    images_.push_back({{"frame", name},
-                       {"candidate", time.look},
-                       {"width", shown[0].width},
-                       {"height", shown[0].height},
-                       {"result", has_page_ ? url_of(shown[0]) : ""},
-                       {"truth", nullptr},
-                       {"error", nullptr},
-                       {"composite", has_page_ && shown.size() > 1 ? Json(url_of(shown[1])) : Json(nullptr)}});
-  }
-
-  const std::span<const WedgeLook> looks_;
+  std::vector<WedgeLook>& looks_;
   const bool has_page_;
-  std::list<FirstLook> prepared_;  // of each look
-  std::vector<WedgeTime> times_;   // the same
   const DeviceSettings& device_ = looks_.front().settings.device;
   Lanes lanes_{{device_.device, device_.require_gpu, device_.validate, !device_.no_pipeline_cache}, 1};
   const RunMemory memory_ = memory_for_frames(device_, lanes_.device().info());
-  Sheet* sheet_ = nullptr;
+  std::list<FirstLook> firsts_;         // of each look
   std::optional<FrameSource> settled_;  // as which all are read
   ReadPlanes planes_;                   // of the frame
+  std::size_t cell_ = 0;                // of the sheet
   Json rows_ = Json::array(), images_ = Json::array(), frames_ = Json::array();
 };
 
 }  // namespace
 
-std::vector<WedgeTime> make_wedge(std::span<const WedgeLook> looks, const std::string& page, const std::string& sheet,
-                                  std::size_t columns) {
+void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet, std::size_t columns) {
   WedgeMaker maker(looks, !page.empty());
   Sheet cells(maker.frames() * looks.size(), columns);
-  auto times = maker.make(sheet.empty() ? nullptr : &cells);
+  maker.make(sheet.empty() ? nullptr : &cells);
   if (!page.empty()) write_whole(page, maker.page());
   if (!sheet.empty()) cells.write(sheet);
-  return times;
 }
 
 }  // namespace alcove

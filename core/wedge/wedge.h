@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,23 +13,17 @@
 namespace alcove {
 
 struct WedgeLook {
-  std::string name;     // by what tells it from the others, each another one
-  std::string command;  // the run that gives its bits
-  Settings settings;    // of that run; all looks have the same frames and the same options of the group Input
+  std::string name;                 // each look has another one
+  std::string command;              // the run that gives its bits
+  Settings settings;                // of that run
+  double ms = 0;                    // of device time, for all frames
+  Notes notes = {};                 // on its frames
+  std::optional<Error> error = {};  // why one of its frames failed
 };
 
-/// What became of a look.
-struct WedgeTime {
-  std::string look;
-  double ms = 0;               // device time of all its frames
-  Notes notes;                 // on its frames
-  std::optional<Error> error;  // why it failed, in one of its frames at least
-};
-
-/// Computes all looks and writes the page and the sheet; "" stands for none. Each frame is read once. `columns` are
-/// those of the sheet, 0: any. A look that fails is left out. Fails with the first error where all looks fail, and with
-/// ErrorKind::output.
-std::vector<WedgeTime> make_wedge(std::span<const WedgeLook> looks, const std::string& page, const std::string& sheet,
-                                  std::size_t columns);
+/// Computes looks of the same frames, which are read alike, and once; all but time, notes and errors is given. Writes a
+/// page and a sheet; "" stands for none. `columns` are those of the sheet, 0: any. A look that fails is left out. Fails
+/// with the first error where all looks fail, and with ErrorKind::output.
+void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet, std::size_t columns);
 
 }  // namespace alcove

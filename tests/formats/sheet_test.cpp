@@ -57,13 +57,14 @@ TEST_F(Sheets, shrink_large_pictures_by_the_mean_of_whole_blocks) {
   ShownPicture large = grey(4000, 300, 0);
   for (std::size_t i = 0; i < large.pixels.size(); i++) large.pixels[i] = i % 3 == 0 ? 0.9F : 0;
   sheet.put(0, "", {&large, 1});
-  const ShownPicture other = grey(9000, 900, 0.5F);  // of another size: it stays within its cell
+  const ShownPicture other = grey(9000, 900, 0.5F);  // of another size: it makes all cells as large
   sheet.put(1, "", {&other, 1});
   const Written picture = written(sheet);
-  ASSERT_EQ(picture.window.width, 2 * (1334 + 8) + 8);
+  ASSERT_EQ(picture.window.width, 2 * (1800 + 8) + 8);
   EXPECT_NEAR(picture.at(100, 60), 0.3, 0.01);
-  EXPECT_NEAR(picture.at(8 + 1342 + 10, 60), 0.5, 0.01);
-  EXPECT_LT(picture.at(8 + 1342 + 10, 8 + 24 + 100 + 4), 0.2);
+  EXPECT_NEAR(picture.at(8 + 1808 + 10, 60), 0.5, 0.01);
+  EXPECT_NEAR(picture.at(8 + 1808 + 10, 8 + 24 + 179), 0.5, 0.01);
+  EXPECT_LT(picture.at(100, 8 + 24 + 101), 0.2);
 }
 
 TEST_F(Sheets, draw_each_letter_in_another_way) {

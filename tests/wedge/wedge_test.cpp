@@ -143,6 +143,8 @@ TEST_F(Wedge, of_a_sequence_shows_the_middle_frame_or_the_frames_that_are_named)
   const json whole = shown(of_frame("--radius 1", shot));
   EXPECT_EQ(frames_of(whole).size(), 5);
   EXPECT_EQ(names_of(whole), Names{"radius 1"});
+  EXPECT_EQ(run(typed(shot + " --camera " + camera + " --radius 1 --sheet " + sheet)).code, 0);
+  EXPECT_TRUE(fs::exists(sheet));
 }
 
 TEST_F(Wedge, that_makes_no_sense_is_refused) {
@@ -157,15 +159,15 @@ TEST_F(Wedge, that_makes_no_sense_is_refused) {
   refused("--radius .1 --radius .2", {"--radius", "one list"});
   refused("--preset draft,darft", {"darft", "did you mean draft"});
   refused("--set intensty=1,2", {"intensty", "did you mean intensity"});
-  refused("--set intensity=1,", {"--set intensity 1,", "empty"});
+  refused("--set intensity=1,", {"--intensity 1,", "empty"});
   refused("--set slices=2,900", {"slices", "900"});
-  refused("--set stats=x.json", {"stats", "wedge"});
-  refused("--set radius=1", {"radius", "wedge"});
+  refused("--set radius=1", {"--radius", "more than once"});
+  refused("--set output=x.exr", {"--output", "more than once"});
   refused("--set intensity=1,1", {"intensity=1", "twice"});
   refused("--depth-kind planar,ray", {"--depth-kind", "reads its frame once"});
   refused("--gain 1,2", {"--set gain=1,2"});
   refused("--stats x.json", {"--stats", "no option"});
-  refused("--radius 1,2,3,4,5,6,7,8 --set intensity=1,2,3,4,5,6,7,8", {"64", "shorter lists"});
+  refused("--radius 1,2,3,4,5,6,7,8 --set intensity=1,2,3,4,5,6,7,8", {"64", "fewer values"});
   expect_refused(3, of_frame("--radius 1", folder / "none.exr"), {"none.exr"});
 }
 
