@@ -9,6 +9,7 @@ const std::vector<Subcommand>& subcommands() {
       {"run", "compute ambient occlusion from a frame's depth and normals", run_command, describe_run},
       {"inspect", "say what a frame holds, how it would be read, and what is missing", inspect_command,
        describe_inspect},
+      {"wedge", "show a frame in many looks, with the command of each", wedge_command, describe_wedge},
       {"compare", "measure the error of a result against a reference", compare_command, describe_compare},
       {"bench", "measure device time against error", bench_command, describe_bench},
       {"presets", "list the presets, or print one", presets_command, describe_presets},

@@ -40,6 +40,7 @@ const std::vector<Subcommand>& subcommands();
 
 int run_command(const std::vector<std::string>& arguments);
 int inspect_command(const std::vector<std::string>& arguments);
+int wedge_command(const std::vector<std::string>& arguments);
 int compare_command(const std::vector<std::string>& arguments);
 int bench_command(const std::vector<std::string>& arguments);
 int presets_command(const std::vector<std::string>& arguments);
@@ -48,6 +49,7 @@ int doctor_command(const std::vector<std::string>& arguments);
 
 Command describe_run();
 Command describe_inspect();
+Command describe_wedge();
 Command describe_compare();
 Command describe_bench();
 Command describe_presets();

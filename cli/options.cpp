@@ -11,6 +11,7 @@
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/formats/sequence.h"
 
 namespace alcove {
 namespace {
@@ -69,6 +70,17 @@ std::vector<OptionValue> all_values(const TypedOptions& typed) {
   return values;
 }
 
+}  // namespace
+
+std::string usual_output(const std::string& input, const std::string& stem, const std::string& ending) {
+  const auto pattern = frame_pattern(input);
+  if (!pattern) return stem + ending;
+  const std::size_t token = pattern->before.size();
+  return stem + "." + input.substr(token, input.size() - token - pattern->after.size()) + ending;
+}
+
+namespace {
+
 constexpr const char* kRun =
     "Computes ambient occlusion from the depth and normals of a rendered frame.\n\n"
     "Examples:\n"
@@ -88,7 +100,8 @@ constexpr const char* kInspect =
     "  alcove inspect frame.exr --camera camera.json --preview sheet.png\n"
     "  alcove inspect frame.%04d.exr --json\n";
 
-/// INPUT first, and then the table.
+}  // namespace
+
 Command run_syntax() {
   Command command{"alcove run", kRun, {}};
   command.rows.push_back(
@@ -96,6 +109,8 @@ Command run_syntax() {
   std::ranges::copy_if(option_table(), std::back_inserter(command.rows), std::not_fn(&OptionRow::is_only_key));
   return command;
 }
+
+namespace {
 
 /// Whether inspect looks at an option of run.
 bool is_inspected(const OptionRow& row) {
@@ -124,7 +139,8 @@ Command inspect_syntax() {
   return command;
 }
 
-/// Refuses a key that is typed as an option, and says what to type.
+}  // namespace
+
 void refuse_keys(const std::vector<std::string>& arguments) {
   for (std::size_t i = 0; i < arguments.size(); i++) {
     const std::string& argument = arguments[i];
@@ -141,6 +157,8 @@ void refuse_keys(const std::vector<std::string>& arguments) {
     fail(ErrorKind::usage, "--{} is a setting: write --set {}", row->name, for_shell(row->name + "=" + value));
   }
 }
+
+namespace {
 
 /// Reads the command line; nothing where it asks for what is only printed.
 std::optional<TypedOptions> read_arguments(const Command& command, const std::vector<std::string>& arguments,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/parsing.h"
 #include "core/options/options.h"
 
 namespace alcove {
@@ -19,6 +20,15 @@ struct RunOptions {
 /// over presets). Returns false where --help, --help-markdown or --print-config was asked for and printed. Fails with
 /// ErrorKind::usage, naming the nearest options or presets, and on options that have no effect or contradict another.
 bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& options);
+
+/// The options of `alcove run`: INPUT first, and then the table.
+Command run_syntax();
+
+/// Refuses a key that is typed as an option, and says what to type. Fails with ErrorKind::usage.
+void refuse_keys(const std::vector<std::string>& arguments);
+
+/// The usual name of an output, by the name of its input: ao.####.exr for shot.####.exr.
+std::string usual_output(const std::string& input, const std::string& stem, const std::string& ending);
 
 /// What the command line of `alcove inspect` says.
 struct InspectOptions {

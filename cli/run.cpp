@@ -7,21 +7,12 @@
 #include "cli/progress.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
-#include "core/formats/sequence.h"
 #include "core/frame/raw_plane.h"
 #include "core/run/batch.h"
 #include "core/run/first_look.h"
 
 namespace alcove {
 namespace {
-
-/// The usual name of the output of an input: ao.####.exr for shot.####.exr.
-std::string usual_output(const std::string& input) {
-  const auto pattern = frame_pattern(input);
-  if (!pattern) return "ao.exr";
-  const std::size_t token = pattern->before.size();
-  return "ao." + input.substr(token, input.size() - token - pattern->after.size()) + ".exr";
-}
 
 /// Prints a line for each missing option, and the command that has all of them. Returns whether none is missing.
 bool has_all(FirstLook& look, const Settings& settings, const std::vector<std::string>& arguments) {
@@ -30,7 +21,7 @@ bool has_all(FirstLook& look, const Settings& settings, const std::vector<std::s
   std::string command = "alcove run";
   if (missing.input) command += " frame.exr";
   for (const auto& argument : arguments) command += " " + for_shell(argument);
-  if (missing.output) command += " -o " + for_shell(usual_output(main_input(settings.input)));
+  if (missing.output) command += " -o " + for_shell(usual_output(main_input(settings.input), "ao", ".exr"));
   if (missing.camera) command += " --camera CAMERA.json";
   if (missing.radius)
     command += " --radius " + (missing.proposed_radius ? fmt::format("{}", *missing.proposed_radius) : "auto");

@@ -85,7 +85,7 @@ function start_header() {
   document.getElementById('title').textContent = report.title;
   document.getElementById('kind').textContent = `Alcove ${report.kind}`;
   const facts = [['Device', report.device], ['Yardstick', report.yardstick_ms && `${number_text('ms', report.yardstick_ms)} ms`],
-    ['Frames', frames.length], ['Candidates', report.candidates.length]];
+    ['Frames', frames.length], [report.kind === 'wedge' ? 'Looks' : 'Candidates', report.candidates.length]];
   if (report.candidates.length === 1) facts[3] = [report.kind === 'compare' ? 'Compared' : 'Settings', report.candidates[0].settings];
   if (report.sequence) facts.push(...sequence_facts(report.sequence));
   for (const [name, value] of facts) {
@@ -96,4 +96,5 @@ function start_header() {
 start_header();
 start_chart();
 start_table();
+start_looks();
 start_viewer();

@@ -1,4 +1,4 @@
-// The picture viewer: two pictures under a divider that noUiSlider moves, zoom and pan, result or signed error.
+// The picture viewer: two pictures under a divider that noUiSlider moves, zoom and pan, and what lies under the pointer.
 // SPDX-License-Identifier: BSD-3-Clause
 'use strict';
 
@@ -12,7 +12,10 @@ const view = { width: 1, height: 1, scale: 1, x: 0, y: 0, fitted: true };
 const by_id = (id) => document.getElementById(id);
 const picture_of = (frame, candidate) => report.images.find((image) => image.frame === frame && image.candidate === candidate);
 const truth_of = (frame) => report.images.find((image) => image.frame === frame && image.truth)?.truth;
-const showing_error = () => document.querySelector('#viewer-show input:checked').value === 'error';
+const showing = () => document.querySelector('#viewer-show input:checked').value;
+const showing_error = () => showing() === 'error';
+/// The picture of an image that is chosen: its result, composite or error.
+const shown_of = (image) => image?.[showing()];
 
 /// Only pictures that are inside the page are shown.
 function set_picture(layer, url, text) {
@@ -40,6 +43,7 @@ function draw_view() {
     image.style.imageRendering = view.scale >= 2 ? 'pixelated' : 'auto';
   }
   stage.classList.toggle('zoomed', view.scale > fit * 1.001);
+  show_pixel();
   for (const button of document.querySelectorAll('#viewer-zoom [data-zoom]')) {
     const zoom = button.dataset.zoom;
     if (zoom === 'fit' || Number(zoom)) button.setAttribute('aria-pressed', zoom === 'fit' ? view.fitted : !view.fitted && view.scale === Number(zoom));
@@ -73,6 +77,55 @@ function pan_by(dx, dy) {
   draw_view();
 }
 
+const probe = Object.assign(document.createElement('canvas'), { width: 1, height: 1 }).getContext('2d', { willReadFrequently: true });
+const depth_image = new Image();
+let pointer = null;  // the last event of the pointer on the stage
+
+/// The bytes r, g, b of a pixel; nothing where the picture is not there.
+function bytes_of(image, x, y) {
+  if (!image.complete || !image.naturalWidth) return null;
+  probe.drawImage(image, x, y, 1, 1, 0, 0, 1, 1);
+  return probe.getImageData(0, 0, 1, 1).data;
+}
+
+/// A picture's value under the pointer: a grey one in parts of 1, a colour in bytes.
+function value_text(side, x, y) {
+  const bytes = !by_id(`layer-${side}`).hidden && bytes_of(document.querySelector(`#layer-${side} img`), x, y);
+  if (!bytes) return [];
+  const [r, g, b] = bytes;
+  return [`${by_id(`chip-${side}`).textContent}: ${showing() === 'result' && r === g && g === b ? (r / 255).toFixed(2) : `${r} ${g} ${b}`}`];
+}
+
+/// The planar depth of a pixel in scene units; nothing for sky.
+function depth_at({ near, far }, x, y) {
+  const step = bytes_of(depth_image, x, y)?.[0];
+  return step ? near * (far / near) ** ((step - 1) / 254) : null;
+}
+
+/// Shows the values under the pointer, and around it the radius of the look that lies there.
+function show_pixel() {
+  const box = by_id('stage').getBoundingClientRect(), ring = by_id('ring');
+  const at = pointer && { x: pointer.clientX - box.left, y: pointer.clientY - box.top };
+  const [x, y] = at ? [Math.floor((at.x - view.x) / view.scale), Math.floor((at.y - view.y) / view.scale)] : [-1, -1];
+  const texts = [];
+  ring.hidden = true;
+  if (x >= 0 && y >= 0 && x < view.width && y < view.height && !showing_error()) {
+    texts.push(`${x}, ${y}`, ...value_text('left', x, y), ...value_text('right', x, y));
+    const scale = report.frames?.find((frame) => frame.name === by_id('viewer-frame').value)?.scale;
+    const depth = scale && depth_at(scale, x, y);
+    const side = at.x < box.width * parseFloat(by_id('stage').style.getPropertyValue('--divider')) / 100 ? 'left' : 'right';
+    const radius = report.candidates.find((look) => look.name === by_id(`viewer-${side}`).value)?.radius;
+    if (depth) texts.push(`depth ${depth.toPrecision(3)}`);
+    if (depth && radius) {
+      const [width, height] = scale.tangents.map((tangent) => radius / tangent / (scale.orthographic ? 1 : depth) * view.scale);
+      Object.assign(ring.style, { left: `${at.x - width}px`, top: `${at.y - height}px`, width: `${2 * width}px`, height: `${2 * height}px` });
+      ring.hidden = false;
+      texts.push(`circle: radius ${radius}`);
+    }
+  }
+  by_id('pixel').textContent = texts.join(' · ');
+}
+
 /// Shows what the boxes above the pictures say.
 function fill_viewer() {
   const frame = by_id('viewer-frame').value;
@@ -80,15 +133,15 @@ function fill_viewer() {
   const right = picture_of(frame, by_id('viewer-right').value);
   const error = showing_error();
   const right_name = right ? right.candidate : 'truth';
-  set_picture(by_id('layer-left'), error ? left.error : left.result, `${left.candidate}${error ? ', signed error' : ''}`);
-  set_picture(by_id('layer-right'), error ? right?.error : right ? right.result : truth_of(frame), `${right_name}${error ? ', signed error' : ''}`);
+  set_picture(by_id('layer-left'), shown_of(left), `${left.candidate}${error ? ', signed error' : ''}`);
+  set_picture(by_id('layer-right'), right || error ? shown_of(right) : truth_of(frame), `${right_name}${error ? ', signed error' : ''}`);
   const divided = !by_id('layer-right').hidden;
   by_id('stage').classList.toggle('divided', divided);
   by_id('chip-left').textContent = error ? `${left.candidate}: result − truth` : left.candidate;
   by_id('chip-right').textContent = error ? `${right_name}: result − truth` : right_name;
   by_id('legend').hidden = !error;
   const row = report.rows.find((each) => each.frame === frame && each.candidate === left.candidate);
-  by_id('viewer-numbers').textContent = row ? `${left.candidate}: ${numbers_of(with_yardsticks(row)).map(([heading, text]) => `${heading} ${text}`).join(' · ')}` : '';
+  by_id('viewer-numbers').textContent = row && report.kind !== 'wedge' ? `${left.candidate}: ${numbers_of(with_yardsticks(row)).map(([heading, text]) => `${heading} ${text}`).join(' · ')}` : '';
 
   if (left.width !== view.width || left.height !== view.height) Object.assign(view, { width: left.width, height: left.height, fitted: true });
   const stage = by_id('stage');
@@ -96,13 +149,16 @@ function fill_viewer() {
   stage.style.setProperty('--ratio', left.width / left.height);
   for (const image of stage.querySelectorAll('img')) Object.assign(image, { width: left.width, height: left.height });
   draw_view();
+  fill_looks();
 }
 
 /// The candidates that have pictures of the chosen frame.
 function fill_choices() {
   const names = report.images.filter((image) => image.frame === by_id('viewer-frame').value).map((image) => [image.candidate, image.candidate]);
+  const truth = truth_of(by_id('viewer-frame').value);
   fill_select(by_id('viewer-left'), names);
-  fill_select(by_id('viewer-right'), [[kTruth, 'truth'], ...names]);
+  fill_select(by_id('viewer-right'), truth ? [[kTruth, 'truth'], ...names] : [...names.slice(1), names[0]]);
+  depth_image.src = report.frames?.find((each) => each.name === by_id('viewer-frame').value)?.scale?.depth ?? 'data:,';
   for (const side of ['left', 'right']) by_id(`viewer-${side}`).parentElement.hidden = names.length < 2;
   fill_viewer();
 }
@@ -114,6 +170,12 @@ function start_divider() {
     ariaFormat: { to: (value) => `${Math.round(value)} %`, from: Number },
   });
   slider.on('update', (values, handle, numbers) => by_id('stage').style.setProperty('--divider', `${numbers[0]}%`));
+}
+
+/// Shows the whole left picture, or the whole right one.
+function flip() {
+  const slider = by_id('divider').noUiSlider;
+  slider.set(Number(slider.get()) > 50 ? 0 : 100);
 }
 
 /// Dragging pans; the divider's handle lies above and keeps its own drags.
@@ -148,7 +210,7 @@ function start_zoom(stage) {
   }, { passive: false });
   stage.addEventListener('keydown', (event) => {
     if (event.target !== stage || event.ctrlKey || event.metaKey || event.altKey) return;
-    const act = { '+': () => zoom_by(2), '=': () => zoom_by(2), '-': () => zoom_by(0.5), 0: zoom_fit,
+    const act = { f: flip, '+': () => zoom_by(2), '=': () => zoom_by(2), '-': () => zoom_by(0.5), 0: zoom_fit,
       ArrowLeft: () => pan_by(60, 0), ArrowRight: () => pan_by(-60, 0), ArrowUp: () => pan_by(0, 60), ArrowDown: () => pan_by(0, -60) }[event.key];
     if (!act) return;
     event.preventDefault();
@@ -159,7 +221,8 @@ function start_zoom(stage) {
 function start_viewer() {
   if (!report.images.length) return;
   by_id('viewer-section').hidden = false;
-  by_id('viewer-show').hidden = !report.images.some((image) => image.error);
+  for (const input of document.querySelectorAll('#viewer-show input')) input.parentElement.hidden = !report.images.some((image) => image[input.value]);
+  by_id('viewer-show').hidden = !report.images.some((image) => image.error || image.composite);
   const stage = by_id('stage');
   const shown = [...new Set(report.images.map((image) => image.frame))];
   fill_select(by_id('viewer-frame'), shown.map((frame) => [frame, frame]));
@@ -169,6 +232,10 @@ function start_viewer() {
   start_zoom(stage);
   fill_choices();
   by_id('viewer-frame').addEventListener('change', fill_choices);
+  by_id('flip').addEventListener('click', flip);
+  stage.addEventListener('pointermove', (event) => { pointer = event; show_pixel(); });
+  stage.addEventListener('pointerleave', () => { pointer = null; show_pixel(); });
+  depth_image.addEventListener('load', show_pixel);
   for (const id of ['viewer-left', 'viewer-right', 'viewer-show']) by_id(id).addEventListener('change', fill_viewer);
   new ResizeObserver(draw_view).observe(stage);
 }

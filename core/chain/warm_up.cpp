@@ -9,10 +9,8 @@
 #include "core/gpu/kernel.h"
 
 namespace alcove {
-namespace {
 
-/// The kernels that a frame of these settings runs, each once, those with the most code first.
-std::vector<gpu::KernelName> kernels_of(EstimatorSettings settings, const Wanted& wanted) {
+void record_small_frame(gpu::Recorder& gpu, EstimatorSettings settings, const Wanted& wanted) {
   constexpr int kSide = 32;  // px
   HostFrame frame;
   frame.data = frame.display = {0, 0, kSide, kSide};
@@ -20,8 +18,15 @@ std::vector<gpu::KernelName> kernels_of(EstimatorSettings settings, const Wanted
   frame.depth.assign(frame.data.pixels(), 1);
   frame.normal.assign(3 * frame.data.pixels(), 1);
   if (!settings.radius) settings.radius = 1;
+  run_chain(gpu, upload(gpu, frame), settings, wanted);
+}
+
+namespace {
+
+/// The kernels that a frame of these settings runs, each once, those with the most code first.
+std::vector<gpu::KernelName> kernels_of(const EstimatorSettings& settings, const Wanted& wanted) {
   gpu::Recorder rehearsal;
-  run_chain(rehearsal, upload(rehearsal, frame), settings, wanted);
+  record_small_frame(rehearsal, settings, wanted);
   std::vector<gpu::KernelName> names = rehearsal.rehearsed();
   std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());

@@ -8,8 +8,12 @@
 
 #include "core/chain/results/outputs.h"
 #include "core/gpu/device.h"
+#include "core/gpu/recorder.h"
 
 namespace alcove {
+
+/// Records the chain for a frame of a few pixels, which uses most kernels that any frame of these settings does.
+void record_small_frame(gpu::Recorder& gpu, EstimatorSettings settings, const Wanted& wanted);
 
 /// Threads that make pipelines, each once, the largest first, while others read the first frame. What a frame needs
 /// beside them, by its own layout, is made when it comes. It waits for its threads when it goes; nothing of it fails.

@@ -1,4 +1,4 @@
-// The self-contained page that `alcove bench` and `alcove compare --report` write: chart, table, pictures.
+// The self-contained page of `alcove bench`, `alcove compare --report` and `alcove wedge`: chart, table, pictures.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,13 +14,14 @@ namespace alcove {
 /// Every string may be hostile: the page shows strings as text only. Members, all needed unless said otherwise:
 ///
 ///   "title"         string
-///   "kind"          "compare" or "bench"
+///   "kind"          "compare", "bench" or "wedge"; this one has a card of each candidate instead of the table
 ///   "device"        string or null
 ///   "yardstick_ms"  number or null: the time of a yardstick; times can then also be read in yardsticks
 ///   "candidates"    list of {"name": string, unique, "settings": string, "ms": number or null,
 ///                   "ms_min": number or null, "rmse": number, and any more numbers such as "p99", "bias"}: means over
 ///                   the frames. With a time and an RMSE a candidate is a point of the chart; without such a candidate
-///                   the page has no chart.
+///                   the page has no chart. Of a wedge, "settings" is the command, without "rmse"; it adds "radius", in
+///                   scene units, and "notes", a list of strings.
 ///   "rows"          list of {"frame": string, "candidate": a candidate's name, and numbers or nulls: "ms", "ms_min",
 ///                   "rmse", "p99", "bias", "estimator_rmse", "geometry_rmse", "samples_per_pixel", ...}: the table. A
 ///                   column is shown when any row has a number for it; columns that the page does not know come last
@@ -29,11 +30,14 @@ namespace alcove {
 ///                   "result": PICTURE, "truth": PICTURE, "error": PICTURE or null}. PICTURE is a
 ///                   "data:image/png;base64,..." URL; all three are of one size. "truth" may be null or absent where
 ///                   another image of the same frame has it, so that a frame's truth is stored once. "error" is
-///                   result - truth in the colours of error_picture(), which the page's legend explains.
+///                   result - truth in the colours of error_picture(), which the page's legend explains. "composite"
+///                   is optional: a PICTURE or null.
 ///   "sequence"      optional, or null: {"worst_frame": string, "worst_rmse": number, "mean_rmse": number, "flicker":
 ///                   number or null}: measures of a sequence as a whole, shown above the table
 ///   "frames"        optional list of {"name": string, "yardstick_ms": number or null}: a frame's own yardstick, where
-///                   frames differ in size; "yardstick_ms" above is then their mean
+///                   frames differ in size; "yardstick_ms" above is then their mean. For the circle of a radius around
+///                   the pointer it adds "scale": {"depth": PICTURE, 0 for sky, else 1 + 254 log(z / near) / log(far /
+///                   near), "near", "far", "tangents": of a pixel in x and y, or scene units where "orthographic"}
 ///
 /// Numbers that are not finite must be null, as JSON has no others.
 std::string report_page(const std::string& json);

@@ -146,7 +146,10 @@ void add_output_rows(std::vector<SettingRow>& rows) {
   files.text("--composite", &S::composite, "FILE.exr", "the beauty with AO in its ambient light, or in all of it")
       .is_common = true;
   add_composite_rows(rows);
-  files.text("--preview", &S::preview, "FILE.png", "a picture of the composite, or of the AO").is_common = true;
+  files
+      .text("--preview", &S::preview, "FILE.png",
+            "of the composite, or of the AO; of all frames in one where the name has no number")
+      .is_common = true;
   word_list(files, "debug", &S::debug,
             fmt::format("pictures beside OUTPUT, ao.VIEW.png: {}", fmt::join(debug_view_names(), ", ")));
   pixels.choice("--type", &S::type, "sample type of OUTPUT; depth is always float");

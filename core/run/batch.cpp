@@ -18,6 +18,7 @@
 #include "core/chain/results/outputs.h"
 #include "core/chain/warm_up.h"
 #include "core/formats/color.h"
+#include "core/formats/sheet.h"
 #include "core/options/options.h"
 #include "core/run/first_look.h"
 #include "core/run/frame_run.h"
@@ -80,7 +81,8 @@ void prepare_outputs(const FramePlan& plan) {
   std::set<std::string> folders;
   std::unordered_map<std::string, const char*> options;  // by name
   const auto prepare = [&](const OutputFile& file) {
-    if (const auto [known, is_new] = options.try_emplace(file.path, file.option); !is_new)
+    const bool is_shared = plan.has_contact_sheet() && file.path == output.preview;
+    if (const auto [known, is_new] = options.try_emplace(file.path, file.option); !is_new && !is_shared)
       fail(ErrorKind::usage, "{}: {} and {} of two frames name the same file", file.path, known->second, file.option);
     if (output.no_mkdir)
       require_writable(file.path, file.option);
@@ -184,6 +186,7 @@ class Batch {
     std::optional<DisplayTransform> transform;
     if (shows_composite(settings.output))
       transform.emplace(settings.output.ocio, settings.output.display, settings.output.view_transform);
+    if (plan_.has_contact_sheet()) sheet_.emplace(plan_.frames().size());
     std::optional<SharedFrames> shot;
     const bool takes_means = settings.input.accumulate > 0 && needs_ao(settings.output);
     if (takes_means || takes_others(settings.input)) shot.emplace(plan_, settled ? &*settled : nullptr, frames);
@@ -196,6 +199,7 @@ class Batch {
                    takes_means,
                    {report_.options, ""},
                    watch_.stop};
+    if (sheet_) run.take_preview = [this](int frame, const ShownPicture& shown) { put(frame, "", {&shown, 1}); };
 
     run_on_device(run, frames);
     if (!lost_ || report_.stop) return;  // a frame that failed beside the loss has ended the run
@@ -219,6 +223,11 @@ class Batch {
       if (watch_.frame) watch_.frame(report);
       keep(std::move(report));
     }
+  }
+
+  /// Writes the contact sheet of a run that came to its end. Fails with ErrorKind::output.
+  void write_sheet() const {
+    if (sheet_ && report_.dropped == 0) sheet_->write(plan_.settings().output.preview);
   }
 
   /// Puts the reports into the order of the plan: those of frames that were kept come first, and those of frames that
@@ -250,6 +259,12 @@ class Batch {
       fail(ErrorKind::device, "--validate: the validation layer reported {} messages", messages);
   }
 
+  /// Fills the frame's cell of the contact sheet.
+  void put(int frame, const char* state, std::span<const ShownPicture> shown) {
+    const auto place = std::ranges::find(plan_.frames(), frame) - plan_.frames().begin();
+    sheet_->put(std::size_t(place), fmt::format("{}{}", frame, state), shown);
+  }
+
   /// Counts a frame, and tells of it.
   void take(FrameReport&& frame) {
     if (frame.device_lost) lost_ = frame.error;
@@ -261,6 +276,7 @@ class Batch {
     if (frame.state == FrameState::failed) {
       report_.failed++;
       report_.failed_frames.push_back(frame.frame);
+      if (sheet_) put(frame.frame, " failed", {});
       if (!plan_.settings().frames.keep_going && !report_.stop) report_.stop = frame.error;
     }
     ended_.insert(frame.frame);
@@ -278,6 +294,7 @@ class Batch {
   const RunWatch& watch_;
   RunReport& report_;
   const FramePlan& plan_ = look_.plan();
+  std::optional<Sheet> sheet_;     // where --preview is one picture of all frames
   std::optional<Error> lost_;      // why the device was lost
   std::unordered_set<int> ended_;  // frames that were told of
 };
@@ -310,6 +327,7 @@ RunReport run_frames(FirstLook& look, const RunWatch& watch) {
   if (!wanted.empty()) batch.compute(wanted);
   batch.sort_reports();
   report.dropped = int(plan.frames().size()) - report.done - report.failed - report.kept;
+  batch.write_sheet();
   if (report.on_cpu_by_default && report.done)
     batch.note({{NoteCode::no_gpu, fmt::format("no GPU found; computed on {}", report.device)}});
   report.wall_s = wall.ms() / 1000;

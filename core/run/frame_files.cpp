@@ -211,41 +211,37 @@ std::vector<float> shown_composite(FrameSource& source, const Window& window, co
   return pixels;
 }
 
-/// Interleaved display values, over the picture's display window.
-struct Shown {
-  int width, planes;
-  std::vector<float> pixels;
-};
+}  // namespace
 
-/// AO by itself is data, and shown as it is.
-Shown shown_ao(const FrameSource& source, const Window& window, const gpu::Buffer& ao) {
+ShownPicture shown_plane(const FrameSource& source, const Window& window, const gpu::Buffer& plane) {
   const Window display = picture_of(source.reading, source.reading.display), data = picture_of(source.reading, window);
-  const std::vector<float> pixels = in_picture(source, window, ao.as<float>());
+  const std::vector<float> pixels = in_picture(source, window, plane.as<float>());
   const Window written = written_picture(source);
-  return {display.width, 1, displayed(display, written, cropped(pixels, data, written), 1)};
+  return {display.width, display.height, 1, displayed(display, written, cropped(pixels, data, written), 1)};
 }
 
-/// A beauty, or a composite, through the view transform.
-Shown shown_colors(FrameSource& source, const Window& window, const gpu::Buffer* computed,
-                   const DisplayTransform* transform) {
+ShownPicture shown_colors(FrameSource& source, const Window& window, const gpu::Buffer* computed,
+                          const DisplayTransform* transform) {
   const Window display = picture_of(source.reading, source.reading.display);
   const Window data = common_part(composite_window(source), display);
-  Shown shown{display.width, 3, displayed(display, data, shown_composite(source, window, computed, data), 3)};
+  ShownPicture shown{display.width, display.height, 3,
+                     displayed(display, data, shown_composite(source, window, computed, data), 3)};
   if (transform) transform->apply(shown.pixels);
   return shown;
 }
 
+namespace {
+
 /// Both side by side, with a grey line between.
-Shown beside(const Shown& left, const Shown& right) {
+ShownPicture beside(const ShownPicture& left, const ShownPicture& right) {
   constexpr int kLine = 4;  // px
   constexpr float kGrey = 0.5F;
-  Shown both{left.width + kLine + right.width, 3, {}};
-  const auto of_row = [](const Shown& shown, std::size_t row) {
+  ShownPicture both{left.width + kLine + right.width, left.height, 3, {}};
+  const auto of_row = [](const ShownPicture& shown, std::size_t row) {
     const std::size_t values = 3 * std::size_t(shown.width);
     return std::span(shown.pixels).subspan(row * values, values);
   };
-  const std::size_t rows = left.pixels.size() / (3 * std::size_t(left.width));
-  for (std::size_t row = 0; row < rows; row++) {
+  for (std::size_t row = 0; row < std::size_t(left.height); row++) {
     std::ranges::copy(of_row(left, row), std::back_inserter(both.pixels));
     both.pixels.insert(both.pixels.end(), 3 * kLine, kGrey);
     std::ranges::copy(of_row(right, row), std::back_inserter(both.pixels));
@@ -253,25 +249,26 @@ Shown beside(const Shown& left, const Shown& right) {
   return both;
 }
 
-Shown preview_of(FrameSource& source, const Window& window, const FrameOutputs& outputs,
-                 const DisplayTransform* transform, const std::string& style) {
-  if (!outputs.composite || style == "ao") return shown_ao(source, window, *outputs.ao);
-  const Shown composite = shown_colors(source, window, outputs.composite, transform);
+ShownPicture preview_of(FrameSource& source, const Window& window, const FrameOutputs& outputs,
+                        const DisplayTransform* transform, const std::string& style) {
+  if (!outputs.composite || style == "ao") return shown_plane(source, window, *outputs.ao);
+  const ShownPicture composite = shown_colors(source, window, outputs.composite, transform);
   return style == "split" ? beside(shown_colors(source, window, nullptr, transform), composite) : composite;
 }
 
 }  // namespace
 
 void write_pictures(FrameSource& source, const Window& computed, const FrameOutputs& outputs,
-                    const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance) {
+                    const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance,
+                    const TakePreview& take_preview) {
   const std::string text = made_by(provenance.options, provenance.inputs);
   for (const auto& plane : outputs.debug)
     write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y,
                      plane.values->as<float>(), text);
   if (settings.preview.empty()) return;
-  const Shown shown = preview_of(source, computed, outputs, transform, settings.preview_style);
-  const int height = int(shown.pixels.size()) / shown.planes / shown.width;
-  write_png(settings.preview, shown.width, height, shown.planes, shown.pixels, text);
+  const ShownPicture shown = preview_of(source, computed, outputs, transform, settings.preview_style);
+  if (take_preview) return take_preview(shown);
+  write_png(settings.preview, shown.width, shown.height, shown.channels, shown.pixels, text);
 }
 
 // Planes.

@@ -13,6 +13,7 @@
 #include "core/chain/chain.h"
 #include "core/formats/color.h"
 #include "core/formats/exr.h"
+#include "core/formats/sheet.h"
 #include "core/frame/gbuffer.h"
 
 namespace alcove {
@@ -119,10 +120,20 @@ class FrameWriter {
   std::optional<CompositeRows> composite_;  // where it has another window than the AO
 };
 
+/// A plane over a window, as it is, in the picture's display window; 0 where there are no pixels.
+ShownPicture shown_plane(const FrameSource& source, const Window& window, const gpu::Buffer& plane);
+/// The composite that is computed over a window, or the beauty where that is null, through the view transform.
+ShownPicture shown_colors(FrameSource& source, const Window& window, const gpu::Buffer* computed,
+                          const DisplayTransform* transform);
+
+/// Takes a preview instead of its file.
+using TakePreview = std::function<void(const ShownPicture&)>;
+
 /// Writes the preview and the debug views of a frame that was computed at once, over a window; each picture is written
-/// whole or not at all. `transform` is for the preview of a composite, and may be null. Fails with
-/// ErrorKind::output.
+/// whole or not at all. `transform` is for the preview of a composite, and may be null, `take_preview` may be empty.
+/// Fails with ErrorKind::output.
 void write_pictures(FrameSource& source, const Window& computed, const FrameOutputs& outputs,
-                    const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance);
+                    const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance,
+                    const TakePreview& take_preview = {});
 
 }  // namespace alcove

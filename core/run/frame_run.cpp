@@ -237,7 +237,7 @@ class FrameRun {
                               longest_side(settings_.estimator)};
     require_room_for_preview(source, limits);
     take_others(source);
-    if (!source.region && limits.allow(source.reading.data))
+    if (!run_.planes && !source.region && limits.allow(source.reading.data))
       run_whole(source, source.reading.data);
     else
       run_parts(source, limits.in_parts(source));
@@ -370,6 +370,7 @@ class FrameRun {
         run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.takes_means;
     const FrameOutputs outputs = compute(source, computed, reuses);
     finish_tally(source);
+    if (run_.take_results) return run_.take_results(source, computed, outputs);
     const Stopwatch writing;
     std::vector<std::vector<float>> regions;
     auto planes = result_planes(outputs, computed, settings_.output);
@@ -379,7 +380,9 @@ class FrameRun {
     make_folders(outputs_of(settings_.output), settings_.output);
     FrameWriter writer(source, settings_, by);
     writer.write(planes);
-    write_pictures(source, computed, outputs, run_.transform, settings_.output, by);
+    TakePreview take_preview;
+    if (run_.take_preview) take_preview = [this](const auto& shown) { run_.take_preview(frame_, shown); };
+    write_pictures(source, computed, outputs, run_.transform, settings_.output, by, take_preview);
     writer.finish(by.notes);
     report_.write_ms += writing.ms();
   }
@@ -436,9 +439,10 @@ class FrameRun {
   /// Pictures show a frame on a scale of its own, which no tile knows.
   void refuse_pictures(const WindowLimits& limits, const Window& computed) const {
     if (settings_.output.preview.empty() && settings_.output.debug.empty()) return;
-    limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {} needs it whole: leave it out",
-                              report_.input, settings_.output.preview.empty() ? "--set debug" : "--preview"),
-                  computed);
+    const char* const whose = run_.take_results                  ? "a wedge needs it whole: give a part by --roi"
+                              : settings_.output.preview.empty() ? "--set debug needs it whole: leave it out"
+                                                                 : "--preview needs it whole: leave it out";
+    limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {}", report_.input, whose), computed);
   }
 
   /// The planes of the results over one row of tiles.
@@ -470,8 +474,10 @@ class FrameRun {
   Settings settings_;
   Others others_;             // that the frame takes
   TakenEstimates estimates_;  // the same
-  ReadPlanes read_;           // of the whole frame, for its parts; without planes these come from the files
-  EstimateSet in_slots_;      // these for all parts of the frame
+  ReadPlanes own_planes_;
+  // of the whole frame, for its parts; without planes these come from the files
+  ReadPlanes& read_ = run_.planes ? *run_.planes : own_planes_;
+  EstimateSet in_slots_;  // these for all parts of the frame
   FrameReport& report_;
   FrameTally tally_;
 };

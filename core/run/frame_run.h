@@ -74,6 +74,11 @@ struct RunContext {
   bool takes_means = false;                     // a frame is the mean of many estimates
   Provenance provenance;                        // of settings whose camera file is the same for all frames
   std::function<bool()> stop = {};              // asked between steps: true drops the frame
+  // Takes the preview of a frame instead of its file; may be empty. Any thread calls it.
+  std::function<void(int frame, const ShownPicture&)> take_preview = {};
+  // Instead of files, of a frame that is computed at once; may be empty.
+  std::function<void(FrameSource&, const Window&, const FrameOutputs&)> take_results = {};
+  ReadPlanes* planes = nullptr;  // of the only frame, from run to run; null: they are read
 };
 
 /// The report of a frame that nothing was done for yet.

@@ -134,12 +134,22 @@ std::vector<int> FramePlan::all_frames() const {
   return frames_on_disk(input->name, input->path.option);
 }
 
-void FramePlan::refuse_shared_files(const std::vector<int>& all) const {
+void FramePlan::refuse_shared_files(const std::vector<int>& all) {
   Settings whole = settings_;
+  const FrameSettings& frames = settings_.frames;
   for (const auto& path : named_paths()) {
     const bool is_pattern =
         std::ranges::any_of(patterns_, [&](const Pattern& pattern) { return pattern.path.option == path.option; });
-    if (path.is_output && all.size() > 1 && !path.of(whole).empty() && !is_pattern)
+    const bool is_shared = path.is_output && all.size() > 1 && !path.of(whole).empty() && !is_pattern;
+    const char* const part = frames.chunks > 1 ? "--chunk" : frames.resume && !frames.overwrite ? "--resume" : nullptr;
+    const bool is_sheet = is_shared && path.option == std::string_view("--preview");
+    has_contact_sheet_ = has_contact_sheet_ || is_sheet;
+    if (is_sheet && part)
+      fail(ErrorKind::usage,
+           "{} {}: a contact sheet shows all {} frames, and {} leaves some out: put a place for the frame number into "
+           "its name, such as %04d",
+           path.option, path.of(whole), all.size(), part);
+    if (is_shared && !is_sheet)
       fail(ErrorKind::usage,
            "{} {}: all {} frames would be written to it: put a place for the frame number into its name, such as %04d",
            path.option, path.of(whole), all.size());
@@ -153,7 +163,9 @@ void FramePlan::refuse_shared_files(const std::vector<int>& all) const {
       if (const auto path = pattern.name.path(frame + settings_.frames.output_offset);
           pattern.path.is_output && inputs.contains(path))
         fail(ErrorKind::usage, "{}: {} of frame {} would overwrite an input", path, pattern.path.option, frame);
-  for (const auto& report : reports_of(settings_.output))
+  auto shared = reports_of(settings_.output);
+  if (has_contact_sheet_) shared.push_back({"--preview", whole.output.preview});
+  for (const auto& report : shared)
     if (inputs.contains(report.path))
       fail(ErrorKind::usage, "{}: {} would overwrite an input", report.path, report.option);
 }

@@ -81,6 +81,8 @@ class FramePlan {
   const Settings& settings() const { return settings_; }
   /// The settings with the files of one frame.
   Settings at(int frame) const;
+  /// Whether the frames of a sequence share one --preview, the contact sheet.
+  bool has_contact_sheet() const { return has_contact_sheet_; }
   /// Gives all frames this radius, in scene units, instead of an automatic one.
   void set_radius(double radius);
 
@@ -97,7 +99,7 @@ class FramePlan {
   };
   void find_patterns();
   std::vector<int> all_frames() const;
-  void refuse_shared_files(const std::vector<int>& all) const;
+  void refuse_shared_files(const std::vector<int>& all);
   void find_evidence(const std::vector<int>& all);
   void find_inputs(const std::vector<int>& chunk);
   bool has_inputs(int frame) const;
@@ -106,7 +108,7 @@ class FramePlan {
 
   Settings settings_;
   std::vector<Pattern> patterns_;
-  bool is_sequence_ = false;
+  bool is_sequence_ = false, has_contact_sheet_ = false;
   std::vector<int> frames_, missing_, evidence_, holes_, shot_;
   std::set<int> absent_;  // of the shot
 };

@@ -61,7 +61,7 @@ TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
 
 TEST_F(CommandLine, help_of_a_command_is_what_its_option_prints) {
   EXPECT_EQ(run_program({"help"}).out, run_program({"--help"}).out);
-  for (const char* command : {"run", "inspect", "compare", "bench", "presets", "devices", "doctor"}) {
+  for (const char* command : {"run", "inspect", "wedge", "compare", "bench", "presets", "devices", "doctor"}) {
     const Finished finished = run_well({"help", command});
     EXPECT_EQ(finished.out, run_program({command, "--help"}).out) << command;
     EXPECT_THAT(finished.out, HasSubstr(command));

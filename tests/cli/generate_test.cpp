@@ -11,7 +11,7 @@ namespace {
 using namespace test;
 using Names = std::vector<std::string>;
 
-const Names kCommands{"run", "inspect", "compare", "bench", "presets", "devices", "doctor"};
+const Names kCommands{"run", "inspect", "wedge", "compare", "bench", "presets", "devices", "doctor"};
 
 std::string generated(const Names& what) {
   const Finished finished = run_well(joined({"--generate"}, what));

@@ -111,6 +111,8 @@ const std::map<std::string, Names> kRooms = {
     {"core/reference", {"core/base", "core/frame", "kernels"}},
     {"core/measure", {"core/base", "core/formats", "core/frame"}},
     {"core/inspect", {"core/base", "core/formats", "core/frame", "core/frame/camera", "core/chain", "core/run"}},
+    {"core/wedge",
+     {"core/base", "core/formats", "core/frame", "core/chain", "core/options", "core/run", "core/measure"}},
     {"core/bench",
      {"core/base", "core/gpu", "core/formats", "core/frame", "core/chain", "core/run", "core/reference",
       "core/measure"}},
@@ -118,7 +120,7 @@ const std::map<std::string, Names> kRooms = {
     {"api", {"api/alcove", "core/base", "core/gpu", "core/frame", "core/chain", "core/options"}},
     {"cli",
      {"core/base", "core/gpu", "core/formats", "core/frame", "core/chain", "core/options", "core/run", "core/measure",
-      "core/inspect", "core/bench"}},
+      "core/inspect", "core/wedge", "core/bench"}},
 };
 
 std::string folder_of(const std::string& file) { return fs::path(file).parent_path().string(); }
@@ -188,6 +190,7 @@ std::string rooms_markdown() {
       {"core/reference", "What is right? The estimators again, slowly, in double precision."},
       {"core/measure", "How far off is a result?"},
       {"core/inspect", "What is in this file?"},
+      {"core/wedge", "How does it look otherwise?"},
       {"core/bench", "How fast and how accurate are we?"},
       {"api/alcove", "What may other programs call? The C header, and its manual."},
       {"api", "What do they get? The C library: options and planes in memory, no files."},

@@ -104,6 +104,34 @@ TEST_F(Batch, files_that_frames_would_share_are_refused) {
   expect_refused(2, {"-o", in + "/f.%04d.exr", "--set", "output-offset=2"}, {"f.0003.exr", "overwrite an input"});
 }
 
+TEST_F(Batch, a_preview_without_a_number_is_the_contact_sheet_of_the_shot) {
+  write_frames(1, 5);
+  const std::string sheet = out + "/sheet.png";
+  const Options with_sheet{"--preview", sheet};
+  const auto size_of = [&](std::size_t at) {  // a number of four bytes in the header of the PNG
+    int number = 0;
+    for (const char byte : read_bytes(sheet).substr(at, 4)) number = 256 * number + static_cast<unsigned char>(byte);
+    return number;
+  };
+  done(with_sheet);
+  EXPECT_EQ(names_in(out).size(), 6);
+  EXPECT_EQ(size_of(16), 3 * (kWallWindow.width + 8) + 8);
+  EXPECT_EQ(size_of(20), 2 * (24 + kWallWindow.height + 8) + 8);
+  const std::string whole = read_bytes(sheet);
+  done(joined(with_sheet, {"--threads", "1"}));
+  EXPECT_TRUE(read_bytes(sheet) == whole) << "the cells do not depend on who is done first";
+  expect_refused(2, joined(with_sheet, {"--resume"}), {"--preview", "contact sheet", "--resume", "%04d"});
+  expect_refused(2, joined(with_sheet, typed("--chunk 1/2")), {"--preview", "all 5 frames", "--chunk", "%04d"});
+  // A frame that fails has its number in its cell; a run that ends before all frames has no sheet.
+  fs::remove(sheet);
+  write_bytes(input(1), "no frame");
+  EXPECT_EQ(run(with_sheet).code, 3);
+  EXPECT_FALSE(fs::exists(sheet));
+  EXPECT_EQ(run(joined(with_sheet, {"--keep-going"})).code, 1);
+  EXPECT_EQ(size_of(16), 3 * (kWallWindow.width + 8) + 8);
+  EXPECT_TRUE(read_bytes(sheet) != whole);
+}
+
 TEST_F(Batch, a_dry_run_tells_the_plan_and_does_nothing) {
   write_frames(1, 4);
   const auto before = names_in(folder.path());

@@ -1,0 +1,269 @@
+// `alcove wedge INPUT --radius A,B,C -o PAGE.html`: a frame in many looks, and the command of each.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/wedge/wedge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/text.h"
+#include "core/formats/sequence.h"
+#include "core/frame/raw_plane.h"
+#include "core/run/first_look.h"
+
+namespace alcove {
+namespace {
+
+constexpr std::size_t kMostPictures = 64;
+
+constexpr const char* kWedge =
+    "Shows a frame in many looks: one for each radius, and for each value of every other list. The page has all looks "
+    "to\nwipe and flip between, and the command that makes each. The radius that inspect proposes is one of them. Of a "
+    "sequence\nit shows the middle frame, or --frames; with one look all frames. Input options are those of run.\n\n"
+    "Examples:\n"
+    "  alcove wedge frame.exr --camera camera.json -o looks.html\n"
+    "  alcove wedge frame.exr --camera camera.json --radius .1,.2,.5,1 --preset draft,production --sheet looks.png\n"
+    "  alcove wedge frame.exr --camera camera.json --radius .5 --set intensity=.8,1,1.3 -o looks.html\n";
+
+/// The options of run that say how a frame is read and estimated, and its own.
+Command wedge_syntax() {
+  Command command = run_syntax();
+  command.name = "alcove wedge";
+  command.description = kWedge;
+  static const Words kGroups{"", "Input", "Hidden surfaces", "Estimator"}, kOthers{"--frames", "--device", "--memory"};
+  std::erase_if(command.rows, [](const OptionRow& row) {
+    return std::ranges::find(kGroups, row.group) == kGroups.end() &&
+           std::ranges::find(kOthers, row.name) == kOthers.end();
+  });
+  for (auto& row : command.rows) {
+    if (row.name == "--frames") row.sentence = "such as 1001,1050; else the middle one of INPUT on the disk";
+    if (row.name == "--preset") row.sentence = "settings from presets, a look for each of a list";
+    if (row.name == "--set") row.value = "KEY=VALUE[,VALUE...]";
+    if (row.name == "--radius")
+      row.sentence = "how far occluders reach, a look for each; else half, once and twice what inspect proposes";
+  }
+  const auto add = [&](const char* name, const char* value, const char* sentence) {
+    command.rows.push_back({.group = "Output", .name = name, .value = value, .sentence = sentence, .is_common = true});
+  };
+  add("-o,--output", "FILE.html", "a self-contained page with all looks");
+  add("--sheet", "FILE.png", "all looks in one labelled picture");
+  return command;
+}
+
+// Looks: one value of each list.
+
+/// What was typed for run: arguments, and of a list all its values; and the wedge's own options.
+struct Typed {
+  std::vector<Words> arguments;
+  std::string input, page, sheet;
+  bool has_composite = true;
+};
+
+bool takes_whole(const SettingRow& row, const std::string& value) {
+  try {
+    Settings settings;
+    row.read(settings, {value});
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// The values of a list. What the setting takes as one value is one, but for radii, of which run takes the mean.
+Words values_in(const SettingRow& row, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (row.name == "--set" && (equals == 0 || equals == text.npos)) return {text};
+  if (row.name == "--set") {
+    Words values = values_in(row_of_key(lower_case(text.substr(0, equals))), text.substr(equals + 1));
+    for (auto& value : values) value = text.substr(0, equals + 1) + value;
+    return values;
+  }
+  if (row.is_key() && row.name != "--radius" && takes_whole(row, text)) return {text};
+  Words values = split(text);
+  if (std::ranges::find(values, "") != values.end())
+    fail(ErrorKind::usage, "{} {}: a value of the list is empty", row.long_name(), visible(text));
+  return values;
+}
+
+std::vector<Words> arguments_in(const std::vector<TypedOption>& typed) {
+  std::vector<Words> arguments;
+  for (const auto& [name, words] : typed) {
+    const auto row = std::ranges::find(option_table(), name, &SettingRow::name);
+    for (const auto& word : words) {
+      if (row == option_table().end())
+        arguments.push_back({word});
+      else if (row->is_flag() || word.starts_with('-'))
+        arguments.push_back({name + "=" + word});
+      else
+        arguments.insert(arguments.end(), {{name}, values_in(*row, word)});
+    }
+  }
+  return arguments;
+}
+
+std::size_t count_of(const std::vector<Words>& arguments) {
+  std::size_t count = 1;
+  for (const auto& values : arguments) count *= values.size();
+  return count;
+}
+
+/// The look of that number: the values of the last list change fastest. The last argument is the radius.
+WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::size_t number) {
+  Words chosen, parts;
+  std::size_t rest = count_of(arguments);
+  for (std::size_t i = 0; i < arguments.size(); i++) {
+    rest /= arguments[i].size();
+    chosen.push_back(arguments[i][number / rest % arguments[i].size()]);
+    const std::string option = i > 0 ? arguments[i - 1].front() : "";
+    const std::string name =
+        option == "--preset" || option == "--set" ? "" : option.substr(std::min<std::size_t>(2, option.size())) + " ";
+    if (arguments[i].size() > 1 || (parts.empty() && i + 1 == arguments.size())) parts.push_back(name + chosen.back());
+  }
+  chosen.insert(chosen.end(), {"-o", usual_output(typed.input, "ao", ".exr")});
+  if (typed.has_composite) chosen.insert(chosen.end(), {"--composite", usual_output(typed.input, "composite", ".exr")});
+  chosen.insert(chosen.end(), {"--preview", usual_output(typed.input, "preview", ".png")});
+  RunOptions options;
+  (void)parse_run_options(chosen, options);
+  for (auto& word : chosen) word = for_shell(word);
+  return {fmt::format("{}", fmt::join(parts, ", ")), fmt::format("alcove run {}", fmt::join(chosen, " ")),
+          options.settings};
+}
+
+/// The radii that were typed, or half and twice the proposed one; and that.
+std::set<double> radii_of(const Words& typed, std::optional<double> proposed, bool adds_proposed) {
+  std::set<double> radii;
+  if (proposed && adds_proposed) radii.insert(*proposed);
+  if (typed.empty()) radii.insert({0.5 * *proposed, 2 * *proposed});
+  for (const auto& word : typed) {
+    const auto number = lower_case(word) == "auto" ? proposed : number_of(word);
+    if (!number) fail(ErrorKind::usage, "--radius: {} is neither auto nor a number", word);
+    radii.insert(*number);
+  }
+  return radii;
+}
+
+/// Fails where looks are not of one reading of a frame, or one is there twice.
+void check_looks(const std::vector<WedgeLook>& looks) {
+  std::set<std::string> names;
+  for (const auto& look : looks) {
+    if (!names.insert(look.name).second) fail(ErrorKind::usage, "the look {} is there twice", look.name);
+    for (const auto& row : option_table())
+      if ((row.group == "Input" || row.group == "Hidden surfaces") &&
+          row.words(look.settings) != row.words(looks.front().settings))
+        fail(ErrorKind::usage, "{} differs between the looks {} and {}: a wedge reads its frame once", row.long_name(),
+             looks.front().name, look.name);
+  }
+}
+
+/// All combinations of what was typed, with the proposed radius among the radii; and the columns of the sheet.
+std::pair<std::vector<WedgeLook>, std::size_t> looks_of(const Typed& typed) {
+  std::vector<Words> arguments = typed.arguments;
+  Words given;
+  if (std::ranges::count(arguments, Words{"--radius"}) > 1)
+    fail(ErrorKind::usage, "--radius is given more than once: its looks are one list, as .1,.2,.5");
+  if (const auto at = std::ranges::find(arguments, Words{"--radius"}); at != arguments.end()) {
+    given = at[1];
+    arguments.erase(at, at + 2);
+  }
+  const auto with_radii = [&](const Words& radii) {
+    auto all = arguments;
+    all.insert(all.end(), {{"--radius"}, radii});
+    return all;
+  };
+  FirstLook first(look_of(typed, with_radii({"auto"}), 0).settings);
+  std::size_t frames = first.plan().frames().size();
+  const bool names_frames = std::ranges::find(arguments, Words{"--frames"}) != arguments.end();
+  const bool is_contact_sheet = frames > 1 && !names_frames && given.size() == 1 && count_of(arguments) == 1;
+  std::optional<double> proposed;
+  try {
+    first.prepare();
+    proposed = first.plan().settings().estimator.radius;
+  } catch (const Error& error) {  // where radii are given, a frame without a surface is no mistake
+    if (given.empty() || error.kind() != ErrorKind::input) throw;
+  }
+  if (frames > 1 && !names_frames && !is_contact_sheet) {
+    arguments.insert(arguments.end(), {{"--frames"}, {std::to_string(first.plan().frames()[frames / 2])}});
+    frames = 1;
+  }
+  Words radii;
+  for (const double radius : radii_of(given, proposed, !is_contact_sheet)) radii.push_back(fmt::format("{}", radius));
+  const auto all = with_radii(radii);
+  const std::size_t count = count_of(all);
+  if (count * frames > kMostPictures && !(count == 1 && typed.page.empty()))
+    fail(ErrorKind::usage, "there are {} looks of {} frames, and a wedge has at most {} pictures: give {}", count,
+         frames, kMostPictures, count == 1 ? "--sheet alone, or --frames" : "fewer values or --frames");
+  std::vector<WedgeLook> looks;
+  for (std::size_t i = 0; i < count; i++) {
+    looks.push_back(look_of(typed, all, i));
+    if (proposed && looks.back().settings.estimator.radius == proposed) looks.back().name += " (proposed)";
+  }
+  check_looks(looks);
+  return {looks, count > radii.size() ? radii.size() : 0};
+}
+
+/// Makes the wedge, and says what became of each look. Gives the exit code.
+int make(const Typed& typed) {
+  auto [looks, columns] = looks_of(typed);
+  for (const auto& [path, option] : {std::pair(typed.page, "--output"), {typed.sheet, "--sheet"}}) {
+    require_no_input(path, option, input_files(looks.front().settings.input));
+    if (!path.empty()) require_writable(path, option);
+  }
+  make_wedge(looks, typed.page, typed.sheet, columns);
+  std::set<std::string> told;
+  for (const auto& look : looks) {
+    for (const auto& note : look.notes)
+      if (const std::string line = fmt::format("{}: {}\n", level_of(note), printable(line_of(note, "")));
+          told.insert(line).second)
+        print_error("{}", line);
+    if (look.error)
+      print_error("alcove: error: look {}: {}\n", printable(look.name), printable(look.error->what()));
+    else
+      fmt::print("{:<32} {:>7.0f} ms\n  {}\n", printable(look.name), look.ms, printable(look.command));
+  }
+  const bool is_whole = std::ranges::none_of(looks, [](const WedgeLook& look) { return look.error.has_value(); });
+  return is_whole ? 0 : int(ErrorKind::some_frames_failed);
+}
+
+}  // namespace
+
+Command describe_wedge() { return wedge_syntax(); }
+
+int wedge_command(const std::vector<std::string>& arguments) {
+  refuse_keys(arguments);
+  const Command command = wedge_syntax();
+  auto options = typed_options(command, arguments);
+  if (!options) return 0;
+  const auto word_of_option = [&](const char* option) {
+    const auto found = std::ranges::find(*options, option, &TypedOption::name);
+    return found == options->end() ? std::string() : found->words.front();
+  };
+  Typed typed{{}, "", word_of_option("-o,--output"), word_of_option("--sheet")};
+  for (const char* option : {"INPUT", "--depth", "--position"})
+    if (typed.input.empty()) typed.input = word_of_option(option);
+  const bool has_beauty = !word_of_option("--beauty").empty();
+  std::erase_if(*options, [](const auto& option) { return option.name == "-o,--output" || option.name == "--sheet"; });
+  with_help(command, [&] {
+    if (typed.input.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
+    if (typed.page.empty() && typed.sheet.empty())
+      fail(ErrorKind::usage, "no output: name a page with -o FILE.html, or a picture with --sheet FILE.png");
+    require_ending(typed.page, "--output", ".html", "HTML");
+    require_ending(typed.sheet, "--sheet", ".png", "PNG");
+    typed.arguments = arguments_in(*options);
+  });
+  try {
+    return make(typed);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::input || has_beauty) throw;
+    typed.has_composite = false;
+    const int code = make(typed);
+    print_error("note: there is no composite: {}\n", printable(error.what()));
+    return code;
+  }
+}
+
+}  // namespace alcove

@@ -1,0 +1,29 @@
+// A wedge: a frame, or a few, in many looks, each of which a command makes; as a page, and as one labelled picture.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/note.h"
+#include "core/base/settings.h"
+
+namespace alcove {
+
+struct WedgeLook {
+  std::string name;                 // each look has another one
+  std::string command;              // the run that gives its bits
+  Settings settings;                // of that run
+  double ms = 0;                    // of device time, for all frames
+  Notes notes = {};                 // on its frames
+  std::optional<Error> error = {};  // why one of its frames failed
+};
+
+/// Computes looks of the same frames, which are read alike, and once; all but time, notes and errors is given. Writes a
+/// page and a sheet; "" stands for none. `columns` are those of the sheet, 0: any. A look that fails is left out. Fails
+/// with the first error where all looks fail, and with ErrorKind::output.
+void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet, std::size_t columns);
+
+}  // namespace alcove

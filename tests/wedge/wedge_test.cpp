@@ -1,0 +1,195 @@
+// A wedge shows what its commands compute, has the radius that inspect proposes, and loses no look in silence.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <regex>
+#include <sstream>
+
+#include "core/measure/report.h"
+#include "tests/support/sequence_folder.h"
+
+namespace alcove::wedge_test {
+namespace {
+
+using namespace test;
+using Names = std::vector<std::string>;
+
+/// The JSON of a page.
+json report_in(const std::string& page) {
+  const std::string text = read_bytes(page), begin = "<script id=\"report\" type=\"application/json\">";
+  const std::size_t from = text.find(begin);
+  return from == text.npos
+             ? json()
+             : json::parse(text.substr(from + begin.size(), text.find("</script>", from) - from - begin.size()));
+}
+
+class Wedge : public SequenceFolder {
+ protected:
+  Wedge() { wall_frame().write(frame); }
+
+  Finished run(const Options& more, const Launch& launch = {}) const override {
+    return run_program(joined({"wedge"}, more), {.folder = folder.path(), .environment = launch.environment});
+  }
+  /// A wedge of the frame, or of another input.
+  Options of_frame(const std::string& more, const std::string& input = "") const {
+    return joined({input.empty() ? frame : input, "--camera", camera, "-o", page}, typed(more));
+  }
+  /// What its page holds.
+  json shown(const Options& arguments) const {
+    fs::remove(page);
+    const Finished finished = run(arguments);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return finished.code ? json() : report_in(page);
+  }
+  static Names names_of(const json& report) {
+    Names names;
+    for (const auto& look : report["candidates"]) names.push_back(look["name"]);
+    return names;
+  }
+
+  /// Runs the command of a look, and gives the AO as the page would show it.
+  std::string run_command_of(const json& report, std::size_t look, const Options& more = {}) const {
+    std::istringstream stream(report["candidates"][look]["settings"].get<std::string>());
+    Names words{std::istream_iterator<std::string>(stream), {}};
+    EXPECT_EQ(words.front(), "alcove");
+    words.erase(words.begin());
+    const Finished finished = run_program(joined(joined(words, {"--type", "float"}), more), {.folder = folder.path()});
+    EXPECT_EQ(finished.code, 0) << finished;
+    if (finished.code) return "";
+    const Image ao = read_exr_image(folder / "ao.exr");
+    std::vector<float> pixels(kWallWindow.pixels());  // of the display window, 0 outside of a region
+    copy_common(ao.pixels.data(), ao.data, pixels.data(), kWallWindow);
+    return grey_picture(kWallWindow.width, kWallWindow.height, pixels);
+  }
+  void expect_bits_of_commands(const json& report) const {
+    ASSERT_GE(report["images"].size(), 1);
+    for (std::size_t i = 0; i < report["images"].size(); i++)
+      EXPECT_TRUE(run_command_of(report, i) == report["images"][i]["result"]) << report["candidates"][i];
+  }
+
+  const std::string frame = folder / "wall.exr", page = folder / "page.html", sheet = folder / "sheet.png";
+};
+
+TEST_F(Wedge, shows_the_bits_of_its_commands) {
+  expect_bits_of_commands(shown(of_frame("--radius .5,1.5 --preset draft,production")));
+  expect_bits_of_commands(shown(of_frame("--radius 1 --set denoise=none,box --set intensity=1,2 --roi 8,4,40,20")));
+  expect_bits_of_commands(shown(of_frame("--radius .7 --estimator hbao,crytek,bitmask --intensity 1,2")));
+}
+
+// What a frame is read by goes into the commands, be it a guess's option, a name with blanks or a flag.
+TEST_F(Wedge, reads_the_frame_as_run_does) {
+  FrameFile other = wall_frame();
+  other.rename("ViewLayer.Depth.Z", "far away");
+  other.change("far away", [](float z) { return 2 * z; });
+  other.write(folder / "other.exr");
+  const json report = shown({folder / "other.exr", "--camera", camera, "--depth-channel", "far away", "--depth-scale",
+                             "0.5", "--radius", "1", "-o", page});
+  ASSERT_FALSE(report.is_null());
+  EXPECT_THAT(report["candidates"][0]["settings"], HasSubstr("--depth-channel 'far away' --depth-scale 0.5"));
+  const Finished plain =
+      run_program({"run", frame, "--camera", camera, "--radius", "1", "-o", folder / "ao.exr", "--type", "float"});
+  const Image ao = read_exr_image(folder / "ao.exr");
+  EXPECT_EQ(plain.code, 0);
+  const auto one =
+      std::ranges::find(report["images"], "radius 1", [](const json& image) { return image["candidate"]; });
+  ASSERT_NE(one, report["images"].end());
+  EXPECT_TRUE((*one)["result"] == grey_picture(ao.data.width, ao.data.height, ao.pixels));
+}
+
+TEST_F(Wedge, has_the_radius_that_inspect_proposes) {
+  const json inspected = json::parse(run_well({"inspect", frame, "--camera", camera, "--json"}).out);
+  std::smatch found;
+  const std::string command = inspected["command"];
+  ASSERT_TRUE(std::regex_search(command, found, std::regex("--radius ([0-9.]+)")));
+  const double proposed = std::stod(found[1]);
+  const std::string name = fmt::format("radius {} (proposed)", proposed);
+  EXPECT_EQ(names_of(shown(of_frame(""))),
+            (Names{fmt::format("radius {}", proposed / 2), name, fmt::format("radius {}", 2 * proposed)}));
+  EXPECT_EQ(names_of(shown(of_frame("--radius 9,.01"))), (Names{"radius 0.01", name, "radius 9"}));
+  EXPECT_EQ(names_of(shown(of_frame("--radius auto"))), Names{name});
+  EXPECT_EQ(names_of(shown(of_frame(fmt::format("--radius 9,{} --preset draft,standard", proposed)))),
+            (Names{"draft, " + name, "draft, radius 9", "standard, " + name, "standard, radius 9"}));
+}
+
+TEST_F(Wedge, of_a_beauty_shows_composites_and_makes_them) {
+  FrameFile with_beauty = wall_frame();
+  add_beauty(with_beauty);
+  with_beauty.write(frame);
+  const json report = shown(of_frame("--radius 1 --set gain=1,1.5"));
+  for (const auto& image : report["images"])
+    EXPECT_THAT(image["composite"].get<std::string>(), HasSubstr("data:image"));
+  EXPECT_THAT(report["candidates"][0]["settings"], HasSubstr("-o ao.exr --composite composite.exr"));
+  expect_bits_of_commands(report);
+  EXPECT_TRUE(fs::exists(folder / "composite.exr"));
+  // A beauty that was not rendered is told of, and the AO is shown.
+  with_beauty.change("Combined", [](float) { return 0.0F; });
+  with_beauty.write(frame);
+  EXPECT_THAT(run(of_frame("--radius 1")).err, AllOf(HasSubstr("no composite"), HasSubstr("one colour")));
+  EXPECT_TRUE(report_in(page)["images"][0]["composite"].is_null());
+}
+
+TEST_F(Wedge, of_a_sequence_shows_the_middle_frame_or_the_frames_that_are_named) {
+  write_frames(1001, 1005);
+  const auto frames_of = [](const json& report) {
+    std::set<std::string> frames;
+    for (const auto& image : report["images"]) frames.insert(image["frame"]);
+    return frames;
+  };
+  const std::string shot = in + "/f.####.exr";
+  const json middle = shown(of_frame("--radius 1,2", shot));
+  EXPECT_EQ(frames_of(middle), std::set<std::string>{"1003"});
+  EXPECT_THAT(middle["candidates"][0]["settings"], AllOf(HasSubstr("--frames 1003"), HasSubstr("-o 'ao.####.exr'")));
+  EXPECT_EQ(frames_of(shown(of_frame("--radius 1,2 --frames 1001,1004", shot))),
+            (std::set<std::string>{"1001", "1004"}));
+  // With one setting it is the contact sheet of the shot.
+  const json whole = shown(of_frame("--radius 1", shot));
+  EXPECT_EQ(frames_of(whole).size(), 5);
+  EXPECT_EQ(names_of(whole), Names{"radius 1"});
+  EXPECT_EQ(run(typed(shot + " --camera " + camera + " --radius 1 --sheet " + sheet)).code, 0);
+  EXPECT_TRUE(fs::exists(sheet));
+}
+
+TEST_F(Wedge, that_makes_no_sense_is_refused) {
+  const auto refused = [&](const std::string& more, const Options& texts) { expect_refused(2, of_frame(more), texts); };
+  expect_refused(2, {frame, "--camera", camera}, {"-o FILE.html", "--sheet FILE.png"});
+  expect_refused(2, typed("--radius 1 -o page.html"), {"no input", "--depth"});
+  expect_refused(2, {frame, "--camera", camera, "-o", folder / "page.exr"}, {"--output", ".html"});
+  expect_refused(2, {frame, "--camera", camera, "--sheet", folder / "sheet.jpg"}, {"--sheet", "PNG"});
+  refused("--radius .1,,.2", {"--radius .1,,.2", "empty"});
+  refused("--radius .1,x", {"--radius", "x"});
+  refused("--radius .1,-1", {"--radius", "-1"});
+  refused("--radius .1 --radius .2", {"--radius", "one list"});
+  refused("--preset draft,darft", {"darft", "did you mean draft"});
+  refused("--set intensty=1,2", {"intensty", "did you mean intensity"});
+  refused("--set intensity=1,", {"--intensity 1,", "empty"});
+  refused("--set slices=2,900", {"slices", "900"});
+  refused("--set radius=1", {"--radius", "more than once"});
+  refused("--set output=x.exr", {"--output", "more than once"});
+  refused("--set intensity=1,1", {"intensity=1", "twice"});
+  refused("--depth-kind planar,ray", {"--depth-kind", "reads its frame once"});
+  refused("--gain 1,2", {"--set gain=1,2"});
+  refused("--stats x.json", {"--stats", "no option"});
+  refused("--radius 1,2,3,4,5,6,7,8 --set intensity=1,2,3,4,5,6,7,8", {"64", "fewer values"});
+  expect_refused(3, of_frame("--radius 1", folder / "none.exr"), {"none.exr"});
+}
+
+TEST_F(Wedge, tells_which_look_fails_and_shows_the_others) {
+  FrameFile with_beauty = wall_frame();
+  add_beauty(with_beauty);
+  with_beauty.erase("Diff");
+  with_beauty.write(frame);
+  const Finished finished = run(joined(of_frame("--radius auto --set multi-bounce=false,true"), {"--sheet", sheet}));
+  EXPECT_EQ(finished.code, 1) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("look multi-bounce=true"), HasSubstr("albedo")));
+  EXPECT_EQ(report_in(page)["images"].size(), 1);
+  EXPECT_TRUE(fs::exists(sheet));
+}
+
+// A preset may say how a frame is read, but not two presets two ways.
+TEST_F(Wedge, of_two_readings_is_refused) {
+  write_bytes(folder / "half.toml", "depth-scale=0.5\n");
+  expect_refused(2, of_frame("--radius 1 --preset standard," + (folder / "half.toml")),
+                 {"--depth-scale", "reads its frame once"});
+  EXPECT_EQ(shown(of_frame("--radius 1 --preset " + (folder / "half.toml")))["images"].size(), 2);
+}
+
+}  // namespace
+}  // namespace alcove::wedge_test
