@@ -53,8 +53,8 @@ const float kMostBend = 0.55;
 /// does not. It goes on no farther than it is seen inside: where the pixel as far inside, the mirrored one, shows
 /// something behind the plane, the surface has ended. from, mirrored, to: tangent_of() the centres of the two pixels
 /// and the point. z, n: depth and unit normal of the border's pixel; mirrored_z: depth of the mirrored one.
-/// least_facing: of the plane at the pixel and at the point; the dot product of the normal and the way to the eye, which
-/// is 1 long along the optical axis.
+/// least_facing: of the plane at the pixel and at the point; the dot product of the normal and the way to the eye,
+/// which is 1 long along the optical axis.
 float depth_beyond(View view, vec2 from, float z, vec3 n, vec2 mirrored, float mirrored_z, vec2 to,
                    float least_facing) {
   const bool perspective = view.orthographic == 0;
