@@ -20,6 +20,8 @@ namespace alcove {
 namespace {
 
 constexpr std::size_t kMostPictures = 64;
+/// Options of run that a wedge has, beside those of groups of its own.
+const Words kOthers{"--frames", "--device", "--memory"};
 
 constexpr const char* kWedge =
     "Shows a frame in many looks: one for each radius, and for each value of every other list. The page has all looks "
@@ -35,7 +37,7 @@ Command wedge_syntax() {
   Command command = run_syntax();
   command.name = "alcove wedge";
   command.description = kWedge;
-  static const Words kGroups{"", "Input", "Hidden surfaces", "Estimator"}, kOthers{"--frames", "--device", "--memory"};
+  static const Words kGroups{"", "Input", "Hidden surfaces", "Estimator"};
   std::erase_if(command.rows, [](const OptionRow& row) {
     return std::ranges::find(kGroups, row.group) == kGroups.end() &&
            std::ranges::find(kOthers, row.name) == kOthers.end();
@@ -95,10 +97,13 @@ std::vector<Words> arguments_in(const std::vector<TypedOption>& typed) {
   for (const auto& [name, words] : typed) {
     const auto row = std::ranges::find(option_table(), name, &SettingRow::name);
     for (const auto& word : words) {
+      const bool is_radius = name == "--set" && lower_case(word).starts_with("radius=");
       if (row == option_table().end())
         arguments.push_back({word});
-      else if (row->is_flag() || word.starts_with('-'))
+      else if (row->is_flag())
         arguments.push_back({name + "=" + word});
+      else if (is_radius)
+        arguments.insert(arguments.end(), {{"--radius"}, split(word.substr(word.find('=') + 1))});
       else
         arguments.insert(arguments.end(), {{name}, values_in(*row, word)});
     }
@@ -119,10 +124,16 @@ WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::
   for (std::size_t i = 0; i < arguments.size(); i++) {
     rest /= arguments[i].size();
     chosen.push_back(arguments[i][number / rest % arguments[i].size()]);
+    const std::string value = chosen.back();
+    // A value that begins as an option does is joined to its own.
+    if (value.starts_with('-') && i > 0 && arguments[i - 1].size() == 1 && arguments[i - 1][0].starts_with("--")) {
+      chosen.pop_back();
+      chosen.back() += "=" + value;
+    }
     const std::string option = i > 0 ? arguments[i - 1].front() : "";
     const std::string name =
         option == "--preset" || option == "--set" ? "" : option.substr(std::min<std::size_t>(2, option.size())) + " ";
-    if (arguments[i].size() > 1 || (parts.empty() && i + 1 == arguments.size())) parts.push_back(name + chosen.back());
+    if (arguments[i].size() > 1 || (parts.empty() && i + 1 == arguments.size())) parts.push_back(name + value);
   }
   chosen.insert(chosen.end(), {"-o", usual_output(typed.input, "ao", ".exr")});
   if (typed.has_composite) chosen.insert(chosen.end(), {"--composite", usual_output(typed.input, "composite", ".exr")});
@@ -153,7 +164,8 @@ void check_looks(const std::vector<WedgeLook>& looks) {
   for (const auto& look : looks) {
     if (!names.insert(look.name).second) fail(ErrorKind::usage, "the look {} is there twice", look.name);
     for (const auto& row : option_table())
-      if ((row.group == "Input" || row.group == "Hidden surfaces") &&
+      if ((row.group == "Input" || row.group == "Hidden surfaces" ||
+           std::ranges::find(kOthers, row.name) != kOthers.end()) &&
           row.words(look.settings) != row.words(looks.front().settings))
         fail(ErrorKind::usage, "{} differs between the looks {} and {}: a wedge reads its frame once", row.long_name(),
              looks.front().name, look.name);
@@ -184,7 +196,9 @@ std::pair<std::vector<WedgeLook>, std::size_t> looks_of(const Typed& typed) {
     first.prepare();
     proposed = first.plan().settings().estimator.radius;
   } catch (const Error& error) {  // where radii are given, a frame without a surface is no mistake
-    if (given.empty() || error.kind() != ErrorKind::input) throw;
+    const bool needs_it =
+        given.empty() || std::ranges::any_of(given, [](const auto& word) { return lower_case(word) == "auto"; });
+    if (needs_it || error.kind() != ErrorKind::input) throw;
   }
   if (frames > 1 && !names_frames && !is_contact_sheet) {
     arguments.insert(arguments.end(), {{"--frames"}, {std::to_string(first.plan().frames()[frames / 2])}});
@@ -200,7 +214,9 @@ std::pair<std::vector<WedgeLook>, std::size_t> looks_of(const Typed& typed) {
   std::vector<WedgeLook> looks;
   for (std::size_t i = 0; i < count; i++) {
     looks.push_back(look_of(typed, all, i));
-    if (proposed && looks.back().settings.estimator.radius == proposed) looks.back().name += " (proposed)";
+    std::string& name = looks.back().name;
+    if (proposed && looks.back().settings.estimator.radius == proposed)
+      name += name.find("radius") != name.npos ? " (proposed)" : " (proposed radius)";
   }
   check_looks(looks);
   return {looks, count > radii.size() ? radii.size() : 0};
@@ -225,6 +241,8 @@ int make(const Typed& typed) {
     else
       fmt::print("{:<32} {:>7.0f} ms\n  {}\n", printable(look.name), look.ms, printable(look.command));
   }
+  if (const std::string& frames = looks.front().settings.frames.frames; !frames.empty())
+    print_error("note: the commands make the frames {}; for the whole shot leave out --frames\n", printable(frames));
   const bool is_whole = std::ranges::none_of(looks, [](const WedgeLook& look) { return look.error.has_value(); });
   return is_whole ? 0 : int(ErrorKind::some_frames_failed);
 }
@@ -260,7 +278,13 @@ int wedge_command(const std::vector<std::string>& arguments) {
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::input || has_beauty) throw;
     typed.has_composite = false;
-    const int code = make(typed);
+    int code = 0;
+    try {
+      code = make(typed);
+    } catch (const Error& without) {  // such as of settings of the composite
+      if (without.kind() == ErrorKind::usage) throw error;
+      throw;
+    }
     print_error("note: there is no composite: {}\n", printable(error.what()));
     return code;
   }

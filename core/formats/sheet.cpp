@@ -78,7 +78,9 @@ void Sheet::write(const std::string& path) const {
       return pixels.begin() + std::ptrdiff_t(row * (number / columns_ * std::size_t(height) + std::size_t(kGap + y)) +
                                              3 * (number % columns_ * std::size_t(width) + std::size_t(kGap + x)));
     };
-    const auto& [label, picture] = cell;
+    const auto& picture = cell.picture;
+    const std::size_t most = std::size_t((width - kGap) / kLetterWidth);
+    const std::string label = cell.label.size() > most ? cell.label.substr(0, most - 2) + ".." : cell.label;
     const int size = int(label.size()) * kLetterWidth * 2 < width ? 2 : 1;
     const int end = std::min(width - kGap, int(label.size()) * kLetterWidth * size);
     for (int y = 0; y < kLetterHeight * size; y++)

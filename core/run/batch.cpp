@@ -81,8 +81,10 @@ void prepare_outputs(const FramePlan& plan) {
   std::set<std::string> folders;
   std::unordered_map<std::string, const char*> options;  // by name
   const auto prepare = [&](const OutputFile& file) {
-    const bool is_shared = plan.has_contact_sheet() && file.path == output.preview;
-    if (const auto [known, is_new] = options.try_emplace(file.path, file.option); !is_new && !is_shared)
+    const auto [known, is_new] = options.try_emplace(file.path, file.option);
+    const bool is_shared =
+        plan.has_contact_sheet() && file.path == output.preview && std::string_view(file.option) == known->second;
+    if (!is_new && !is_shared)
       fail(ErrorKind::usage, "{}: {} and {} of two frames name the same file", file.path, known->second, file.option);
     if (output.no_mkdir)
       require_writable(file.path, file.option);

@@ -505,12 +505,15 @@ ReadPlanes kept_planes(const FrameInputs& inputs) {
 
 void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& known, std::uint64_t most_bytes) {
   if (!are_of(known, source)) {
+    known = {};  // where reading fails, there are none
+    ReadPlanes planes;
     std::vector<PlaneRead> reads;
     for (const auto& row : kRawPlanes) {
-      known[row.plane].resize(source.channels[row.plane].size() * source.reading.data.pixels());
-      reads.push_back({&source.channels[row.plane], known[row.plane].data()});
+      planes[row.plane].resize(source.channels[row.plane].size() * source.reading.data.pixels());
+      reads.push_back({&source.channels[row.plane], planes[row.plane].data()});
     }
     read_planes(source, source.reading.data, reads);
+    known = std::move(planes);
   }
   if (!source.evidence)
     settle_by_planes(source, settings.input, known[RawPlane::depth], known[RawPlane::normal], most_bytes);

@@ -366,8 +366,9 @@ class FrameRun {
 
   void run_whole(FrameSource& source, const Window& computed) {
     const EstimatorSettings& estimator = settings_.estimator;
-    const bool reuses =
-        run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.takes_means;
+    // Planes that stay from run to run are estimated with other settings each time.
+    const bool reuses = run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed &&
+                        !run_.takes_means && !run_.planes;
     const FrameOutputs outputs = compute(source, computed, reuses);
     finish_tally(source);
     if (run_.take_results) return run_.take_results(source, computed, outputs);

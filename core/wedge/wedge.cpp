@@ -51,11 +51,11 @@ Json scale_of(const Reading& reading, ShownPicture depth) {
 class WedgeMaker {
  public:
   WedgeMaker(std::vector<WedgeLook>& looks, bool has_page) : looks_(looks), has_page_(has_page) {
-    for (const auto& look : looks_) {
+    for (auto& look : looks_) {
       Settings settings = look.settings;
       settings.output.aovs = "ao,depth";
       firsts_.emplace_back(settings);
-      firsts_.back().prepare();
+      add_new(look.notes, firsts_.back().prepare());
     }
     set_exr_threads(core_count());
     set_exr_memory(memory_.host_bytes / kCodecPart);

@@ -482,7 +482,7 @@ void add_beyond(inout Found found, Walk walk, Context c, int last) {
 const int kStepsBeyond = 8;
 const float kReachBeyond = 1.2, kMostBeyond = 2000.0;
 
-/// The plane of a pixel that is seen more nearly edge on than this does not go on: see depth_on_plane().
+/// The plane of a pixel that is seen more nearly edge on than this does not go on: see depth_beyond().
 const float kLeastFacingBeyond = 0.02;
 
 /// The depth at a step of the line beyond the border, counted from the display window's corner: the plane of the

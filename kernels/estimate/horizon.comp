@@ -269,7 +269,7 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
   Run run = Run(border.place, border.place, at_border.x, at_border.y);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
-  for (int k = 0; k <= count; k++) {  // the last one ends the last run
+  for (int k = 0; k < count + (kHard ? 1 : 0); k++) {  // one more ends the last run
     const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
     const bool joins =
         both(both(k < count, both(s.above, last.above)), same_surface(r, reach, s.z, last.z, s.offset - last.offset));

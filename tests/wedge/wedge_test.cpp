@@ -105,6 +105,9 @@ TEST_F(Wedge, has_the_radius_that_inspect_proposes) {
             (Names{fmt::format("radius {}", proposed / 2), name, fmt::format("radius {}", 2 * proposed)}));
   EXPECT_EQ(names_of(shown(of_frame("--radius 9,.01"))), (Names{"radius 0.01", name, "radius 9"}));
   EXPECT_EQ(names_of(shown(of_frame("--radius auto"))), Names{name});
+  EXPECT_EQ(names_of(shown(of_frame("--set radius=9,.01"))), (Names{"radius 0.01", name, "radius 9"}));
+  EXPECT_EQ(names_of(shown(of_frame("--radius auto --set intensity=1,2"))),
+            (Names{"intensity=1 (proposed radius)", "intensity=2 (proposed radius)"}));
   EXPECT_EQ(names_of(shown(of_frame(fmt::format("--radius 9,{} --preset draft,standard", proposed)))),
             (Names{"draft, " + name, "draft, radius 9", "standard, " + name, "standard, radius 9"}));
 }
@@ -137,8 +140,14 @@ TEST_F(Wedge, of_a_sequence_shows_the_middle_frame_or_the_frames_that_are_named)
   const json middle = shown(of_frame("--radius 1,2", shot));
   EXPECT_EQ(frames_of(middle), std::set<std::string>{"1003"});
   EXPECT_THAT(middle["candidates"][0]["settings"], AllOf(HasSubstr("--frames 1003"), HasSubstr("-o 'ao.####.exr'")));
-  EXPECT_EQ(frames_of(shown(of_frame("--radius 1,2 --frames 1001,1004", shot))),
-            (std::set<std::string>{"1001", "1004"}));
+  // The frames are the same, the looks are not.
+  const json two = shown(of_frame("--radius 1,2 --frames 1001,1004", shot));
+  EXPECT_EQ(frames_of(two), (std::set<std::string>{"1001", "1004"}));
+  const std::size_t looks = middle["images"].size();
+  ASSERT_EQ(two["images"].size(), 2 * looks);
+  EXPECT_FALSE(middle["images"][0]["result"] == middle["images"][1]["result"]);
+  for (std::size_t i = 0; i < 2 * looks; i++)
+    EXPECT_TRUE(two["images"][i]["result"] == middle["images"][i % looks]["result"]) << i;
   // With one setting it is the contact sheet of the shot.
   const json whole = shown(of_frame("--radius 1", shot));
   EXPECT_EQ(frames_of(whole).size(), 5);
@@ -161,7 +170,8 @@ TEST_F(Wedge, that_makes_no_sense_is_refused) {
   refused("--set intensty=1,2", {"intensty", "did you mean intensity"});
   refused("--set intensity=1,", {"--intensity 1,", "empty"});
   refused("--set slices=2,900", {"slices", "900"});
-  refused("--set radius=1", {"--radius", "more than once"});
+  refused("--radius 1 --set radius=2", {"--radius", "one list"});
+  refused("--radius=-1,2", {"--radius", "-1"});
   refused("--set output=x.exr", {"--output", "more than once"});
   refused("--set intensity=1,1", {"intensity=1", "twice"});
   refused("--depth-kind planar,ray", {"--depth-kind", "reads its frame once"});
@@ -181,6 +191,23 @@ TEST_F(Wedge, tells_which_look_fails_and_shows_the_others) {
   EXPECT_THAT(finished.err, AllOf(HasSubstr("look multi-bounce=true"), HasSubstr("albedo")));
   EXPECT_EQ(report_in(page)["images"].size(), 1);
   EXPECT_TRUE(fs::exists(sheet));
+}
+
+TEST_F(Wedge, of_a_frame_that_cannot_be_read_is_none) {
+  fs::resize_file(frame, fs::file_size(frame) * 2 / 3);
+  fs::remove(page);
+  expect_refused(3, of_frame("--radius 1,2"), {"wall.exr"});
+  EXPECT_FALSE(fs::exists(page));
+}
+
+TEST_F(Wedge, tells_why_there_is_no_composite_or_no_radius) {
+  expect_refused(3, of_frame("--radius 1 --set gain=1,2"), {"no beauty channel"});
+  FrameFile sky = wall_frame();
+  sky.change("ViewLayer.Depth.Z", [](float) { return 1e10F; });
+  sky.write(frame);
+  const Finished finished = run(of_frame("--radius .1,auto"));
+  EXPECT_NE(finished.code, 0);
+  EXPECT_THAT(finished.err, Not(HasSubstr("neither auto")));
 }
 
 // A preset may say how a frame is read, but not two presets two ways.
