@@ -13,6 +13,8 @@ using namespace test;
 
 constexpr const char* kSwiftShader = "/usr/lib/chromium/vk_swiftshader_icd.json";
 constexpr Window kWindow{0, 0, 160, 90};
+constexpr Window kLargeWindow{0, 0, 480, 270};
+constexpr std::uint64_t kLittleMemory = 6 << 20;  // bytes for frames: too few for a large one as a whole
 
 /// The second of two frames past a board, with a beauty, and with a wall behind the board.
 class SecondDriver : public WalkedShot {
@@ -32,14 +34,16 @@ class SecondDriver : public WalkedShot {
   }
   ~SecondDriver() override { ::unsetenv("VK_ADD_DRIVER_FILES"); }
 
-  /// All floats that a run on the second frame writes.
-  std::vector<float> computed(const std::string& device, const std::string& more) const {
-    Options options = joined(arguments(typed("--type float --frames 2 --device " + device)), typed(more));
+  /// All floats that a run on the second frame writes. With `bytes` for frames it must take several tiles.
+  std::vector<float> computed(const std::string& device, const std::string& more, std::uint64_t bytes = 0) const {
+    const Options first = typed("--type float --frames 2 --device " + device + " --stats " + (folder / "stats.json"));
+    Options options = arguments(joined(first, typed(more)));
     const bool composes = more.ends_with("--composite");
     if (composes) options = joined(options, {composite});
-    const RunReport report = run_here(options);
+    const RunReport report = run_here(options, bytes);
     EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "") << more;
     if (report.done != 1) return {};
+    EXPECT_EQ(report.frames[0].parts > 1, bytes > 0) << more;
     EXPECT_THAT(lower_case(report.device), HasSubstr(device));
     std::vector<float> values = read_exr_image(output(2)).pixels;
     if (composes) std::ranges::copy(read_exr_image(composite).pixels, std::back_inserter(values));
@@ -56,8 +60,8 @@ class SecondDriver : public WalkedShot {
     EXPECT_LT(*std::ranges::min_element(first), 0.9) << more << ": a frame that says little";
     return second;
   }
-  void expect_same(const std::vector<float>& whole, const std::string& more) const {
-    EXPECT_TRUE(same_bits(computed("swiftshader", more), whole)) << more;
+  void expect_same(const std::vector<float>& whole, const std::string& more, std::uint64_t bytes = 0) const {
+    EXPECT_TRUE(same_bits(computed("swiftshader", more, bytes), whole)) << more;
   }
 
   const std::string composite = folder / "composite.exr";
@@ -82,6 +86,13 @@ TEST_F(SecondDriver, accumulates_and_composes_as_the_first_does) {
   compared(crytek + " --composite");
   expect_same(whole, crytek + " --no-skip");
   expect_same(whole, crytek);
+}
+
+TEST_F(SecondDriver, computes_tiles_to_the_bit) {
+  write_shot(2, kLargeWindow);
+  std::vector<std::string> ways{"--estimator crytek --radius 0.2"};
+  if (long_tests()) ways.push_back("--slices 2 --steps 8 --radius 0.2");
+  for (const auto& more : ways) expect_same(computed("swiftshader", more), more, kLittleMemory);
 }
 
 }  // namespace
