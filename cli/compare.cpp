@@ -149,7 +149,7 @@ int compare_command(const std::vector<std::string>& arguments) {
   if (!a.report.empty()) {
     const CompareSettings& s = a.settings;
     require_no_input(a.report, "--report", std::array{s.result, s.reference, s.reference_b, s.mask, s.depth, s.motion});
-    require_writable(a.report, "--report");
+    require_makeable(a.report, "--report");
   }
   if (a.limits.max_grain && a.settings.depth.empty())
     fail(ErrorKind::usage,
@@ -167,8 +167,12 @@ int compare_command(const std::vector<std::string>& arguments) {
   else if (!a.quiet)
     print_picture(report.frames[0]);
   if (!a.quiet)
-    for (const auto& warning : warnings_of(report, a.settings)) print_error("warning: {}\n", printable(warning));
-  if (!a.report.empty()) write_whole(a.report, compare_page(report));
+    for (const auto& note : notes_on(report, a.settings))
+      print_error("alcove: {}: {}\n", level_of(note), printable(line_of(note, "")));
+  if (!a.report.empty()) {
+    make_folder_of(a.report, "--report");
+    write_whole(a.report, compare_page(report));
+  }
   if (!broken.sentences.empty()) fail(broken.kind, "{}", fmt::join(broken.sentences, "; "));
   return 0;
 }

@@ -28,7 +28,7 @@ FramePlan plan_of(const Settings& settings) {
 }
 
 /// Fails with ErrorKind::usage where nothing tells which camera of a list the frame has.
-Inspection inspect_one(const FramePlan& plan, int frame) {
+Inspection inspect_one(const FramePlan& plan, int frame, const std::string& settings) {
   Notes notes;
   try {
     notes = notes_on_number(plan);
@@ -36,7 +36,8 @@ Inspection inspect_one(const FramePlan& plan, int frame) {
     if (error.kind() == ErrorKind::usage) throw;
     // What is wrong with the camera file is a part of what is found.
   }
-  Inspection found = inspect_frame(plan.settings().input, frame);
+  const InputSettings& input = plan.settings().input;
+  Inspection found = inspect_frame(input, frame, {.inputs = input, .settings = settings});
   add_new(notes, found.notes);
   found.notes = std::move(notes);
   return found;
@@ -66,7 +67,8 @@ int inspect_command(const std::vector<std::string>& arguments) {
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   const FramePlan plan = plan_of(options.settings);
   const int frame = frame_number_of(path);
-  const Inspection inspection = plan.is_sequence() ? inspect_sequence(plan) : inspect_one(plan, frame);
+  const Inspection inspection =
+      plan.is_sequence() ? inspect_sequence(plan, asked.settings) : inspect_one(plan, frame, asked.settings);
   fmt::print("{}",
              asked.json ? inspection_json(inspection) : inspection_text(inspection, options.settings.progress.verbose));
   if (inspection.unreadable) throw *inspection.unreadable;

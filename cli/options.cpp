@@ -44,7 +44,7 @@ std::vector<OptionValue> values_of_sets(const Words& sets) {
     const std::string value = equals == set.size() ? "true" : set.substr(equals + 1);
     const auto earlier = std::ranges::find(values, &row, &OptionValue::row);
     if (earlier == values.end())
-      values.push_back({&row, {value}});
+      values.push_back({&row, {value}, "", true});
     else if (row.repeats)
       earlier->words.push_back(value);
     else
@@ -68,6 +68,16 @@ std::vector<OptionValue> all_values(const TypedOptions& typed) {
     if (row != option_table().end() && row->is_key()) values.push_back({&*row, words});
   }
   return values;
+}
+
+/// The options among them that say how AO is computed, and not how the frame is read, as they would be typed.
+std::string settings_of_command(const TypedOptions& typed) {
+  std::string text;
+  for (const auto& preset : words_for(typed, "--preset")) text += " --preset " + for_shell(preset);
+  for (const auto& radius : words_for(typed, "--radius")) text += " --radius " + radius;
+  for (const auto& set : words_for(typed, "--set"))
+    if (row_of_key(lower_case(set.substr(0, set.find('=')))).group == "Estimator") text += " --set " + for_shell(set);
+  return text;
 }
 
 }  // namespace
@@ -202,6 +212,7 @@ bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOpt
   const auto typed = read_arguments(command, arguments, options.run, Reader::inspect);
   if (!typed) return false;
   with_help(command, [&] { options.json = is_on(*typed, "--json"); });
+  options.settings = settings_of_command(*typed);
   const Words path = words_for(*typed, "--write-camera");
   if (!path.empty()) options.write_camera = path.front();
   return true;

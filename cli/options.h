@@ -35,6 +35,7 @@ struct InspectOptions {
   RunOptions run;
   bool json = false;
   std::string write_camera;  // a file; empty: none
+  std::string settings;      // --preset, --radius and --set of the estimator, as they were typed, for the proposed run
 };
 /// Does the same for `alcove inspect`, which writes no outputs: there, no option can lack one.
 bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOptions& options);

@@ -146,7 +146,8 @@ void with_help(const Command& command, const std::function<void()>& call) {
   try {
     call();
   } catch (const Error& error) {
-    if (error.kind() != ErrorKind::usage) throw;
+    if (error.kind() != ErrorKind::usage || std::string_view(error.what()).find("--help") != std::string_view::npos)
+      throw;
     fail(ErrorKind::usage, "{}{}", error.what(), see_help(command.name));
   }
 }

@@ -100,8 +100,9 @@ void Progress::say_further() {
 }
 
 std::string Progress::rate_text() const {
+  if (computed_ == 0) return fmt::format("{} of {}", ended_, frames_);  // what is kept says nothing of the time
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(),
-               each = seconds / std::max(1, computed_);
+               each = seconds / computed_;
   return fmt::format("{} of {}, {:.2f} frames/s, {} left", ended_, frames_, 1 / each,
                      clock_text(each * (frames_ - ended_)));
 }

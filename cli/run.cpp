@@ -23,6 +23,7 @@ bool has_all(FirstLook& look, const Settings& settings, const std::vector<std::s
   for (const auto& argument : arguments) command += " " + for_shell(argument);
   if (missing.output) command += " -o " + for_shell(usual_output(main_input(settings.input), "ao", ".exr"));
   if (missing.camera) command += " --camera CAMERA.json";
+  if (missing.lacks_matrix) command += " --normal none";
   if (missing.radius)
     command += " --radius " + (missing.proposed_radius ? fmt::format("{}", *missing.proposed_radius) : "auto");
   print_error("alcove: error: missing:\n");

@@ -72,6 +72,9 @@ constexpr std::array kTable = {
               InHeader::nothing},
     NoteFacts{NoteCode::frame_number, "frame-number", false, "the number in a file's name chose the camera"},
     NoteFacts{NoteCode::automatic_radius, "automatic-radius", false, "the radius was chosen by the frame"},
+    NoteFacts{NoteCode::computed_again, "computed-again", false, "why --resume computes frames that are there"},
+    NoteFacts{NoteCode::ao_layer, "ao-layer", false, "the AO of a comparison was found by its layer's name"},
+    NoteFacts{NoteCode::sky_differs, "sky-differs", true, "sky of 0 against 1 decides a comparison"},
 };
 
 constexpr bool is_in_order() {

@@ -66,6 +66,10 @@ enum class NoteCode {
   sequence_hole,
   frame_number,
   automatic_radius,
+  computed_again,
+  // comparisons
+  ao_layer,
+  sky_differs,
 };
 
 /// The form of a note in the header of an output. Headers are the same bits for the same inputs.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -27,12 +28,18 @@ std::vector<PictureChannel> channels_of(const ExrFile& file) {
 
 std::string last_part(const std::string& name) { return lower_case(name.substr(name.rfind('.') + 1)); }
 
+/// All before the last part; "" where there is no more.
+std::string layer_of(const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  return dot == name.npos ? "" : name.substr(0, dot);
+}
+
 /// Whether `name` is all of `full`, or the end of it after a dot. Both are in lower case.
 bool is_end_of(const std::string& name, const std::string& full) { return full == name || full.ends_with("." + name); }
 
 std::string both_lists(const Picture& result, const Picture& reference) {
-  return fmt::format("{} has {}; {} has {}", result.path(), list_of(result.names()), reference.path(),
-                     list_of(reference.names()));
+  return fmt::format("{} has {}; {} has {}", result.path(), list_of(result.layers()), reference.path(),
+                     list_of(reference.layers()));
 }
 
 std::vector<ChannelPair> chosen_pairs(const Picture& result, const Picture& reference, const std::string& chosen) {
@@ -46,24 +53,50 @@ std::vector<ChannelPair> chosen_pairs(const Picture& result, const Picture& refe
   return pairs;
 }
 
-/// The name of a picture's AO channel: the only channel, or the only one with an AO name; "" if several qualify.
-std::string likely_ao(const Picture& picture) {
-  if (picture.channels().size() == 1) return picture.channels()[0].name;
-  std::string found;
-  for (const auto& channel : picture.channels()) {
-    const std::string name = lower_case(channel.name);
-    if (name != "y" && !is_end_of("ao", name)) continue;
-    if (!found.empty()) return "";
-    found = channel.name;
-  }
-  return found;
+/// Whether a layer bears the name of an AO pass: AO, Ambient Occlusion, ViewLayer.AmbientOcclusion.
+bool is_of_ao(const std::string& layer) {
+  std::string name = last_part(layer);
+  std::erase_if(name, [](char c) { return c == ' ' || c == '_' || c == '-'; });
+  return name == "ao" || name == "ambientocclusion";
 }
 
-/// The likely value of --channel for two pictures.
-std::string likely_pair(const Picture& result, const Picture& reference) {
-  const std::string of_result = likely_ao(result), of_reference = likely_ao(reference);
-  const bool has_names = !of_result.empty() && !of_reference.empty();
-  return "RESULT=REFERENCE" + (has_names ? fmt::format(", such as --channel {}={}", of_result, of_reference) : "");
+/// A picture's AO.
+struct AoChannels {
+  std::vector<std::size_t> channels;  // empty: none that is certain
+  bool by_layer = false;
+};
+
+/// The channels of the only AO layer, without its alpha; else the channel Y.
+AoChannels ao_of(const Picture& picture) {
+  AoChannels ao, plain;
+  std::string only;
+  for (std::size_t i = 0; i < picture.channels().size(); i++) {
+    const std::string name = lower_case(picture.channels()[i].name), layer = is_of_ao(name) ? name : layer_of(name);
+    if (name == "y") plain.channels.push_back(i);
+    if (!is_of_ao(layer) || last_part(name) == "a") continue;
+    if (!ao.channels.empty() && layer != only) return {};
+    only = layer;
+    ao.by_layer = true;
+    ao.channels.push_back(i);
+  }
+  return ao.by_layer ? ao : plain;
+}
+
+/// Pairs the AO of both. Of a layer in colours only red counts where the other picture has one channel.
+ChannelMatch ao_pairs(const Picture& result, const Picture& reference) {
+  const AoChannels a = ao_of(result), b = ao_of(reference);
+  if (a.channels.empty() || b.channels.empty() || !(a.by_layer || b.by_layer)) return {};
+  const auto last_of = [](const Picture& picture, std::size_t i) { return last_part(picture.channels()[i].name); };
+  const auto one_of = [&](const Picture& picture, const AoChannels& ao) {
+    const auto red = std::ranges::find_if(ao.channels, [&](std::size_t i) { return last_of(picture, i) == "r"; });
+    return red == ao.channels.end() ? ao.channels.front() : *red;
+  };
+  if (a.channels.size() == 1 || b.channels.size() == 1) return {{{one_of(result, a), one_of(reference, b)}}, true};
+  ChannelMatch match{{}, true};
+  for (const std::size_t r : a.channels)
+    for (const std::size_t f : b.channels)
+      if (last_of(result, r) == last_of(reference, f)) match.pairs.push_back({r, f});
+  return match;
 }
 
 /// Pairs the channels whose names are the same once `key` has been applied to them.
@@ -125,6 +158,26 @@ std::size_t Picture::find(const std::string& name, const char* option) const {
   return index;
 }
 
+std::vector<std::string> Picture::layers() const {
+  std::vector<std::pair<std::string, std::vector<std::string>>> grouped;
+  for (const auto& channel : channels_) {
+    const std::string layer = layer_of(channel.name);
+    const auto known = std::ranges::find(grouped, layer, &std::pair<std::string, std::vector<std::string>>::first);
+    if (known != grouped.end() && !layer.empty())
+      known->second.push_back(channel.name.substr(layer.size() + 1));
+    else
+      grouped.push_back({layer, {layer.empty() ? channel.name : channel.name.substr(layer.size() + 1)}});
+  }
+  std::vector<std::string> layers;
+  for (const auto& [layer, names] : grouped) {
+    const std::string shown = names.size() > 1 ? fmt::format("{} ({})", layer, fmt::join(names, ", "))
+                              : layer.empty()  ? names.front()
+                                               : layer + "." + names.front();
+    layers.push_back(shown);
+  }
+  return layers;
+}
+
 std::vector<float> Picture::read(std::span<const std::size_t> channels) {
   const Window& data = channels_[channels[0]].data;
   require_host_room(path_, data);
@@ -142,11 +195,12 @@ std::vector<float> Picture::read(std::span<const std::size_t> channels) {
   return planes;
 }
 
-std::vector<ChannelPair> match_channels(const Picture& result, const Picture& reference, const std::string& chosen) {
-  if (!chosen.empty()) return chosen_pairs(result, reference, chosen);
-  if (result.channels().size() == 1 && reference.channels().size() == 1) return {{0, 0}};
+ChannelMatch match_channels(const Picture& result, const Picture& reference, const std::string& chosen) {
+  if (!chosen.empty()) return {chosen_pairs(result, reference, chosen)};
+  if (result.channels().size() == 1 && reference.channels().size() == 1) return {{{0, 0}}};
   auto pairs = same_names(result, reference, lower_case);
   if (pairs.empty()) {
+    if (ChannelMatch ao = ao_pairs(result, reference); !ao.pairs.empty()) return ao;
     pairs = same_names(result, reference, last_part);
     // The Y of an AO file is no component of a normal.
     std::erase_if(pairs, [&](const ChannelPair& pair) {
@@ -154,8 +208,8 @@ std::vector<ChannelPair> match_channels(const Picture& result, const Picture& re
     });
   }
   if (pairs.empty())
-    fail(ErrorKind::input, "the pictures share no channel: {}; say what to compare with --channel {}",
-         both_lists(result, reference), likely_pair(result, reference));
+    fail(ErrorKind::input, "the pictures share no channel: {}; say what to compare with --channel RESULT=REFERENCE",
+         both_lists(result, reference));
   std::vector<std::size_t> seen_result, seen_reference;
   for (const auto& pair : pairs) {
     if (std::ranges::count(seen_result, pair.result) || std::ranges::count(seen_reference, pair.reference))
@@ -164,7 +218,7 @@ std::vector<ChannelPair> match_channels(const Picture& result, const Picture& re
     seen_result.push_back(pair.result);
     seen_reference.push_back(pair.reference);
   }
-  return pairs;
+  return {std::move(pairs)};
 }
 
 }  // namespace alcove

@@ -30,6 +30,8 @@ class Picture {
   /// Lists the channels that have a sample for every pixel.
   const std::vector<PictureChannel>& channels() const { return channels_; }
   std::vector<std::string> names() const;
+  /// Lists the layers with their channels: "ViewLayer.Combined (R, G, B)"; a channel alone has its full name.
+  std::vector<std::string> layers() const;
 
   /// Gives the index into channels() of the channel with that full name, or else with that end of its name after a dot:
   /// "R" finds "ViewLayer.Combined.R". Case is ignored. Fails if there is none, naming the nearest, or if there are
@@ -50,11 +52,18 @@ struct ChannelPair {
   std::size_t result, reference;
 };
 
+/// The pairs of two pictures.
+struct ChannelMatch {
+  std::vector<ChannelPair> pairs;
+  bool by_ao_layer = false;  // a layer's name decided: the user should know which
+};
+
 /// Pairs the channels of two pictures. `chosen` is a list with commas of names, or of RESULT=REFERENCE if the names
 /// differ. Without it, the first of these rules that finds pairs is used: the only channel of each, whatever their
-/// names; channels with the same full name; channels with the same last part of the name. The last rule leaves out a
-/// channel that belongs to a vector in one picture alone. Case is ignored. Fails with ErrorKind::input, listing the
-/// channels of both, if there are no pairs or if a last part stands for several channels.
-std::vector<ChannelPair> match_channels(const Picture& result, const Picture& reference, const std::string& chosen);
+/// names; channels with the same full name; the only AO layer of one, named AO or Ambient Occlusion, and that of the
+/// other or its Y; channels with the same last part of the name. The last rule leaves out a channel that belongs to a
+/// vector in one picture alone. Case is ignored. Fails with ErrorKind::input, listing the layers of both, if there are
+/// no pairs or if a last part stands for several channels.
+ChannelMatch match_channels(const Picture& result, const Picture& reference, const std::string& chosen);
 
 }  // namespace alcove

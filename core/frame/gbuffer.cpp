@@ -566,9 +566,15 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   take_deep(source, settings);
   if (!source.channels[RawPlane::normal].empty() && source.reading.normal_space == NormalSpace::world &&
       !source.open.normal_space && !source.reading.camera.view_from_world)
-    fail(ErrorKind::input, "{}: {}", source.path_of(RawPlane::normal), kWorldWithoutMatrix);
+    throw NoWorldToCamera(source.path_of(RawPlane::normal));
   return source;
 }
+
+NoWorldToCamera::NoWorldToCamera(const std::string& file)
+    : Error(ErrorKind::input,
+            file +
+                ": its normals are in world space, and the camera has no world_to_camera: give a --camera file with "
+                "it, or --normal none, which reconstructs them from depth") {}
 
 InputSettings with_some_camera(const InputSettings& settings) {
   InputSettings with = settings;

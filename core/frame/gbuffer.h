@@ -111,10 +111,10 @@ struct FrameSource {
 /// depth; the message lists the channels and names the option that decides. Fails with NoCamera if nothing gives one.
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
 
-/// The end of a refusal of normals in world space, if the camera has no world_to_camera.
-constexpr const char* kWorldWithoutMatrix =
-    "its normals are in world space, and the camera has no world_to_camera: give a --camera file with it, or --normal "
-    "none, which reconstructs them from depth";
+/// ErrorKind::input: the normals of this file are in world space, and the camera has no world_to_camera.
+struct NoWorldToCamera : Error {
+  explicit NoWorldToCamera(const std::string& file);
+};
 
 /// Whether the file of the depth or the positions may tell a camera: its header has one, or looks as if it had, or the
 /// file has positions. Fails as opening it does.

@@ -530,7 +530,7 @@ class NormalSettlement : private Settlement {
 
   /// Refuses normals that are not those of view space where no matrix turns those of the world.
   [[noreturn]] void refuse_without_matrix(const std::vector<NormalScore>& scores) const {
-    if (!source_.program.by.empty()) fail(ErrorKind::input, "{}: {}", normal_path(), kWorldWithoutMatrix);
+    if (!source_.program.by.empty()) throw NoWorldToCamera(normal_path());
     fail(
         ErrorKind::input,
         "{}: {:.0f} % of its normals at most agree with depth in view space; those of world space need a --camera file "

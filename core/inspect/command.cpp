@@ -47,6 +47,14 @@ void add_files(Command& command, const FrameSource& source, const InputSettings&
   command.add("--position-channels", settings.position_channels);
 }
 
+/// The beauty goes with the composite that it is for.
+void add_beauty(Command& command, const InputSettings& settings, const std::string& output) {
+  command.add("--beauty", settings.beauty);
+  command.add("--set beauty-channels", settings.beauty_channels);
+  if (settings.beauty.empty() && settings.beauty_channels.empty()) return;
+  command.add("--composite", output.starts_with("ao.") ? "composite" + output.substr(2) : "composite." + output);
+}
+
 void add_behind(Command& command, const InputSettings& settings) {
   for (const auto& file : settings.behind) command.add("--behind", file);
   command.add("--set behind-channel", fmt::format("{}", fmt::join(settings.behind_channels, ",")));
@@ -107,9 +115,12 @@ std::string command_of(const FrameSource& source, const CommandNames& names, boo
   add_behind(command, settings);
   command.add("--frames", names.frames);
   command.add("-o", names.output);
+  add_beauty(command, settings, names.output);
   add_depth(command, source, settings);
   add_normals(command, source, settings, has_camera);
   add_camera(command, settings, has_camera);
+  if (!names.settings.empty()) command.add(names.settings.substr(1));
+  if (names.settings.find("--radius ") != names.settings.npos) return command.text();
   if (const auto radius = proposed_radius(source.reading.camera, source.evidence->median_depth))
     command.add("--radius", radius);
   else

@@ -169,7 +169,8 @@ std::vector<HiddenGuess> hidden_guesses(const FrameSource& source, const InputSe
 struct CommandNames {
   InputSettings inputs;  // its files and cameras
   std::string output = "ao.exr";
-  std::string frames = {};  // a list, or empty
+  std::string frames = {};    // a list, or empty
+  std::string settings = {};  // options that say how AO is computed, each after a blank
 };
 
 /// The command of the run that reads the settled frame as it was understood, with every guess made explicit. Without a
@@ -205,7 +206,7 @@ CameraSearch look_for_camera(const InputSettings& settings, int frame);
 
 /// Inspects the frame by which a run would decide the reading of all, and adds changes along the sequence: by the
 /// headers of all frames, and by the pixels of a few. Fails as inspect_frame() does for that frame; faults of others
-/// are part of the answer.
-Inspection inspect_sequence(const FramePlan& plan);
+/// are part of the answer. `settings` is that of CommandNames.
+Inspection inspect_sequence(const FramePlan& plan, const std::string& settings);
 
 }  // namespace alcove

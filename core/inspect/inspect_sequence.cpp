@@ -79,12 +79,28 @@ double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// The angle of the rotation from one camera to the other, in degrees.
+/// The angle of the rotation from one camera to the other, in degrees. Its sine is by what differs between entries
+/// across the diagonal: of equal matrices that is 0, also where rounding has made them no exact rotations.
 double turn(const Camera& a, const Camera& b) {
-  double trace = 0;
-  for (std::size_t i = 0; i < 3; i++)
-    for (std::size_t j = 0; j < 3; j++) trace += (*a.view_from_world)[i][j] * (*b.view_from_world)[i][j];
-  return std::acos(std::clamp(0.5 * (trace - 1), -1.0, 1.0)) * kDegrees;
+  const auto entry = [&](std::size_t i, std::size_t j) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; k++) sum += (*a.view_from_world)[i][k] * (*b.view_from_world)[j][k];
+    return sum;
+  };
+  const double sine = 0.5 * std::hypot(entry(2, 1) - entry(1, 2), entry(0, 2) - entry(2, 0), entry(1, 0) - entry(0, 1));
+  const double cosine = 0.5 * (entry(0, 0) + entry(1, 1) + entry(2, 2) - 1);
+  return std::atan2(sine, cosine) * kDegrees;
+}
+
+/// From there on a turn is more than the rounding of a matrix to single precision, in degrees; and the same of a way,
+/// by the eye's distance from the world's origin.
+constexpr double kLeastTurn = 2e-5, kLeastWay = 4e-7;
+
+/// The way from one camera to the other; 0 below what single precision can tell.
+double way(const Camera& a, const Camera& b) {
+  const auto from = eye_of(a), to = eye_of(b);
+  const double way = distance(from, to);
+  return way > kLeastWay * std::hypot(from[0], from[1], from[2]) ? way : 0;
 }
 
 double width_of(const Camera& camera) {
@@ -94,7 +110,7 @@ double width_of(const Camera& camera) {
 /// A sequence being looked at.
 class SequenceInspector {
  public:
-  explicit SequenceInspector(const FramePlan& plan) : plan_(plan) {}
+  SequenceInspector(const FramePlan& plan, const std::string& settings) : plan_(plan), settings_(settings) {}
 
   Inspection inspect() {
     Inspection found = first_that_shows();
@@ -112,7 +128,7 @@ class SequenceInspector {
  private:
   /// The frame that a run would settle the sequence by.
   Inspection first_that_shows() {
-    const CommandNames run{plan_.settings().input, "ao.%04d.exr", plan_.settings().frames.frames};
+    const CommandNames run{plan_.settings().input, "ao.%04d.exr", plan_.settings().frames.frames, settings_};
     std::optional<Inspection> first;
     for (const int frame : plan_.evidence()) {
       Inspection found = inspect_frame(plan_.at(frame).input, frame, run);
@@ -165,9 +181,10 @@ class SequenceInspector {
     path.narrowest = first_camera_ ? std::min(path.narrowest, width) : width;
     if (camera.view_from_world && first_camera_ && first_camera_->view_from_world) {
       path.is_placed = true;
-      path.farthest = std::max(path.farthest, distance(eye_of(camera), eye_of(*first_camera_)));
-      path.largest_turn = std::max(path.largest_turn, turn(camera, *first_camera_));
-      const double step = distance(eye_of(camera), eye_of(last_camera_));
+      path.farthest = std::max(path.farthest, way(camera, *first_camera_));
+      const double angle = turn(camera, *first_camera_);
+      if (angle > kLeastTurn) path.largest_turn = std::max(path.largest_turn, angle);
+      const double step = way(camera, last_camera_);
       if (step > path.largest_step) path.largest_step = step, path.at_largest_step = frame;
     }
     if (!first_camera_) first_camera_ = camera;
@@ -213,6 +230,7 @@ class SequenceInspector {
   static constexpr const char* kRefused = "refused";
 
   const FramePlan& plan_;
+  const std::string& settings_;
   int shown_frame_ = 0;
   bool has_camera_ = false;
   InspectedSequence shown_{};
@@ -224,6 +242,8 @@ class SequenceInspector {
 
 }  // namespace
 
-Inspection inspect_sequence(const FramePlan& plan) { return SequenceInspector(plan).inspect(); }
+Inspection inspect_sequence(const FramePlan& plan, const std::string& settings) {
+  return SequenceInspector(plan, settings).inspect();
+}
 
 }  // namespace alcove

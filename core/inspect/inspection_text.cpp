@@ -169,7 +169,7 @@ void add(TextLines& lines, const SequenceCamera& camera, bool is_orthographic) {
   const bool is_constant = camera.widest - camera.narrowest < 1e-6 * camera.widest;
   std::string text = is_constant ? fmt::format("{:.2f} {} wide in all frames", camera.widest, unit)
                                  : fmt::format("{:.2f} to {:.2f} {} wide", camera.narrowest, camera.widest, unit);
-  if (camera.is_placed && camera.farthest == 0 && camera.largest_turn < 1e-4)
+  if (camera.is_placed && camera.farthest == 0 && camera.largest_turn == 0)
     text += ", stands still";
   else if (camera.is_placed)
     text += fmt::format(", moves up to {:.4g} scene units and turns up to {:.4g} degrees from its first place",

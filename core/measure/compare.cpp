@@ -121,8 +121,9 @@ struct FilePlanes {
 /// The planes of a frame, by their roles.
 struct Planes {
   Window data;
-  bool is_part = false;               // some file has pixels outside of this window
-  std::vector<std::string> channels;  // names in the result
+  bool is_part = false;                       // some file has pixels outside of this window
+  std::vector<std::string> channels;          // names in the result
+  std::vector<std::string> ao_channels = {};  // names in the reference, if the name of its layer was all that told them
   Comparable values;
   std::vector<float> depth;  // empty: none
   std::vector<float> motion_x, motion_y;
@@ -194,13 +195,14 @@ FilePlanes read_motion(const CompareSettings& settings, CommonWindow& common) {
 
 Planes read_planes_of(const CompareSettings& settings) {
   Picture result(settings.result, "RESULT"), reference(settings.reference, "REFERENCE");
-  const auto pairs = match_channels(result, reference, settings.channels);
+  const auto [pairs, by_ao_layer] = match_channels(result, reference, settings.channels);
   std::vector<std::size_t> of_result, of_reference;
   Planes planes;
   for (const auto& pair : pairs) {
     of_result.push_back(pair.result);
     of_reference.push_back(pair.reference);
     planes.channels.push_back(result.channels()[pair.result].name);
+    if (by_ao_layer) planes.ao_channels.push_back(reference.channels()[pair.reference].name);
   }
   CommonWindow common;
   FilePlanes results = read_channels(result, of_result, common),
@@ -342,6 +344,7 @@ FrameComparison measure(const CompareSettings& settings, const Planes& planes, i
   c.result = settings.result;
   c.reference = settings.reference;
   c.channels = planes.channels;
+  c.ao_channels = planes.ao_channels;
   c.width = width;
   c.height = height;
   if (planes.is_part) c.common = planes.data;
@@ -415,18 +418,41 @@ CompareReport compare_pictures(const CompareSettings& settings) {
   return {settings.result, settings.reference, false, {measure(settings, read_planes_of(settings), 0)}, {}};
 }
 
-std::vector<std::string> warnings_of(const CompareReport& report, const CompareSettings& settings) {
+namespace {
+
+/// The note on what names alone have paired.
+Notes notes_on_channels(const CompareReport& report) {
+  Notes notes;
+  for (const auto& frame : report.frames)
+    if (!frame.ao_channels.empty())
+      add_new(notes,
+              {{NoteCode::ao_layer, fmt::format("{} against {} of the reference, by the name; --channel chooses others",
+                                                fmt::join(frame.channels, ", "), fmt::join(frame.ao_channels, ", "))}});
+  return notes;
+}
+
+Notes warnings_on_sky(const CompareReport& report, const CompareSettings& settings) {
   const auto pixels = [](const FrameComparison& frame) { return frame.sky_differs ? frame.sky_differs->count : 0; };
   const FrameComparison& frame = *std::ranges::max_element(report.frames, {}, pixels);
   if (!frame.sky_differs) return {};
   const SkyDifference& sky = *frame.sky_differs;
   const auto& [zero, one] =
       sky.zero_in_result ? std::pair(frame.result, frame.reference) : std::pair(frame.reference, frame.result);
-  return {fmt::format(
-      "{:.1f} % of the pixels are 0 in {} and 1 in {}, as sky may be; without them rmse is {:.4f}, not {:.4f}: {}",
-      100 * double(sky.count) / double(frame.count), zero, one, sky.rmse_without, frame.errors.rmse,
-      settings.depth.empty() ? "--depth FRAME.exr leaves the sky out, --mask FILE what you like"
-                             : "--sky VALUE says from which depth on pixels are sky")};
+  return {
+      {NoteCode::sky_differs,
+       fmt::format(
+           "{:.1f} % of the pixels are 0 in {} and 1 in {}, as sky may be; without them rmse is {:.4f}, not {:.4f}: {}",
+           100 * double(sky.count) / double(frame.count), zero, one, sky.rmse_without, frame.errors.rmse,
+           settings.depth.empty() ? "--depth FRAME.exr leaves the sky out, --mask FILE what you like"
+                                  : "--sky VALUE says from which depth on pixels are sky")}};
+}
+
+}  // namespace
+
+Notes notes_on(const CompareReport& report, const CompareSettings& settings) {
+  Notes notes = notes_on_channels(report);
+  add_new(notes, warnings_on_sky(report, settings));
+  return notes;
 }
 
 const FrameComparison& worst_frame(const CompareReport& report) {

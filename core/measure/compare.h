@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/image.h"
+#include "core/base/note.h"
 #include "core/measure/metrics.h"
 
 namespace alcove {
@@ -47,6 +48,7 @@ struct FrameComparison {
   int frame = 0;
   std::string result, reference;  // files
   std::vector<std::string> channels;
+  std::vector<std::string> ao_channels;  // of the reference, if the name of its AO layer told them; else empty
   int width = 0, height = 0;
   std::optional<Window> common;                     // the compared pixels, if the files have different windows
   std::size_t count = 0, excluded = 0, masked = 0;  // pixels; see Comparable
@@ -79,8 +81,8 @@ CompareReport compare_pictures(const CompareSettings& settings);
 /// The frame with the largest rmse.
 const FrameComparison& worst_frame(const CompareReport& report);
 
-/// Warnings to the user beside broken limits; sentences that end without a full stop.
-std::vector<std::string> warnings_of(const CompareReport& report, const CompareSettings& settings);
+/// Notes and warnings to the user beside broken limits.
+Notes notes_on(const CompareReport& report, const CompareSettings& settings);
 
 /// Limits. Each holds for every frame of a sequence.
 struct CompareLimits {

@@ -253,10 +253,10 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
   OptionGroup pixels(rows, "Input", Effect::pixels, &Settings::input, true);
   pixels.number("--fov", &S::fov, "degrees", strictly_between(0, 180), "horizontal field of view").is_common = true;
   pixels.number("--focal", &S::focal, "mm", above(0), "focal length").idle([](const Settings& all) {
-    return unless_given(all.input.aperture.has_value(), "--aperture");
+    return unless_given(all.input.aperture.has_value(), "--aperture: add it, the film back's width in mm");
   });
   pixels.number("--aperture", &S::aperture, "mm", above(0), "width of the film back").idle([](const Settings& all) {
-    return unless_given(all.input.focal.has_value(), "--focal");
+    return unless_given(all.input.focal.has_value(), "--focal: add it, the focal length in mm");
   });
   pixels.number("--ortho-width", &S::ortho_width, "scene units", above(0), "width of an orthographic view");
 }

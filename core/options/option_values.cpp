@@ -56,12 +56,19 @@ namespace {
 
 using Values = std::vector<OptionValue>;
 
+/// Names --set in a sentence about a value that --set gave, and not the option that it is too.
+std::string as_given(const OptionValue& value, const std::string& sentence) {
+  const std::string option = value.row->long_name();
+  return value.by_set && sentence.starts_with(option) ? "--set " + value.row->key() + sentence.substr(option.size())
+                                                      : sentence;
+}
+
 /// Reads a value, and names its preset in the sentence on a text that is none.
 void read_value(Settings& settings, const OptionValue& value) {
   try {
     value.row->read(settings, value.words);
   } catch (const Error& error) {
-    if (value.is_typed()) throw;
+    if (value.is_typed()) fail(error.kind(), "{}", as_given(value, error.what()));
     fail(error.kind(), "{} (--preset): {}", value.preset, error.what());
   }
 }
@@ -157,7 +164,7 @@ Settings with_values(const Settings& initial, std::vector<OptionValue> values, R
   std::set<const SettingRow*> typed;
   for (std::size_t i = 0; i < values.size(); i++) {
     if (!values[i].is_typed()) continue;
-    if (!objections[i].empty()) fail(ErrorKind::usage, "{}", objections[i]);
+    if (!objections[i].empty()) fail(ErrorKind::usage, "{}", as_given(values[i], objections[i]));
     typed.insert(values[i].row);
   }
   Settings settings = with_some(initial, values, counts);

@@ -163,8 +163,13 @@ const SettingRow& row_of_key(const std::string& key) {
     std::vector<std::string> keys;
     for (const auto& other : option_table())
       if (other.is_key()) keys.push_back(other.key());
-    fail(ErrorKind::usage, "there is no setting {}{}", key, suggestion(key, keys));
+    fail(ErrorKind::usage, "there is no setting {}{}; alcove run --help-markdown lists all", key,
+         suggestion(key, keys));
   }
+  if (key == "preset")
+    fail(ErrorKind::usage,
+         "preset is an option of the command line only: give both presets there, the one that wins last (--preset A "
+         "--preset B)");
   if (!row->is_key()) fail(ErrorKind::usage, "{} is an option of the command line only", key);
   return *row;
 }

@@ -51,6 +51,7 @@ struct OptionValue {
   const SettingRow* row;
   Words words;
   std::string preset = {};  // the preset that gives it; "": the command line
+  bool by_set = false;      // --set gives it, though there is an option of its name
 
   bool is_typed() const { return preset.empty(); }
 };

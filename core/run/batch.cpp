@@ -150,21 +150,14 @@ class RunDevice {
   /// The number of frames at once, up to `most`, for which the memory has room.
   int lanes_within(const RunMemory& memory, int most) const {
     if (!settled_ || frames_.size() < 2) return 1;
-    const FrameMemory frame = memory_with_others(plan_, *settled_, settings_);
-    int lanes = int(std::min(frames_.size(), std::size_t(most)));
-    const auto has_room = [&] {
-      const RunMemory left = without_shared_frames(memory, plan_, *settled_, settings_, frames_, lanes);
-      return frames_in(left, frame, settled_->reading.data) >= std::uint64_t(lanes);
-    };
-    while (lanes > 1 && !has_room()) lanes--;
-    return lanes;
+    return frames_at_once(memory, plan_, *settled_, settings_, frames_, most);
   }
 
   const Settings& settings_;
   const FramePlan& plan_;
   const FrameSource* const settled_;
   const std::span<const int> frames_;
-  const int threads_ = settings_.device.threads > 0 ? settings_.device.threads : core_count();  // of the process
+  const int threads_ = threads_of(settings_.device);
   std::optional<Lanes> lanes_;
   Room room_;
   std::optional<WarmUp> warm_up_;
@@ -321,7 +314,8 @@ RunReport run_frames(FirstLook& look, const RunWatch& watch) {
     report.options = options_digest(first);
   }
   InputIdentities identities(plan);
-  const std::vector<int> wanted = frames_to_compute(plan, report.options, identities);
+  const auto [wanted, notes] = frames_to_compute(plan, report.options, identities);
+  add_new(report.notes, notes);
   Batch batch(look, identities, watch, report);
   make_folders(reports_of(settings.output), settings.output);
   if (watch.begin) watch.begin(report, int(plan.frames().size()));

@@ -82,12 +82,19 @@ const FramePlan& FirstLook::plan() {
   return *plan_;
 }
 
+/// The inputs of a frame, changed so that all else can be looked at where it lacks a camera or its world_to_camera.
+InputSettings FirstLook::input_of(int frame) {
+  InputSettings input = plan().at(frame).input;
+  if (leaves_normals_) input.normal = "none";
+  return lacks_camera_ ? with_some_camera(input) : input;
+}
+
 FrameSource& FirstLook::opened(int frame) {
   const auto found = opened_.find(frame);
   if (found != opened_.end()) return found->second;
   const Settings settings = plan().at(frame);
   FrameSource source =
-      lacks_camera_ ? find_frame(with_some_camera(settings.input), false, frame) : open_frame(settings, frame);
+      lacks_camera_ || leaves_normals_ ? find_frame(input_of(frame), false, frame) : open_frame(settings, frame);
   source.open.camera = lacks_camera_;
   return opened_.emplace(frame, std::move(source)).first->second;
 }
@@ -103,12 +110,15 @@ FrameSource FirstLook::open(const Settings& settings, int frame) {
 
 /// Whether an option or the header of the first frame gives a camera. A plan without frames, of a chunk of nothing,
 /// needs none.
-bool FirstLook::has_camera() {
+bool FirstLook::has_camera(std::string& why_not) {
   if (names_a_camera(settings_.input) || plan().evidence().empty()) return true;
   const int frame = plan().evidence().front();
   try {
     opened(frame);
     return true;
+  } catch (const NoCamera& error) {
+    why_not = error.why;
+    return false;
   } catch (const Error&) {
     return may_tell_camera(plan().at(frame).input);
   }
@@ -117,7 +127,7 @@ bool FirstLook::has_camera() {
 /// The radius that is proposed for a frame; none where all is sky. Depth and camera alone decide: a fault of the beauty
 /// or of an output is found when the frame is computed.
 std::optional<double> FirstLook::radius_of(int frame) {
-  const InputSettings given = plan().at(frame).input, input = lacks_camera_ ? with_some_camera(given) : given;
+  const InputSettings input = input_of(frame);
   const auto proposed = [&](FrameSource& source) {
     if (!source.evidence) settle_by_rows(source, input);
     return proposed_radius(source.reading.camera, source.evidence->median_depth);
@@ -137,11 +147,29 @@ std::optional<double> FirstLook::radius_of_first(std::optional<Error>& error) {
   for (const int frame : plan().evidence()) {
     try {
       if (const auto radius = radius_of(frame)) return radius;
+    } catch (const NoWorldToCamera& failure) {
+      lacks_matrix_ = true;
+      if (!error) error = failure;
     } catch (const Error& failure) {
       if (!error) error = failure;
     }
   }
   return std::nullopt;
+}
+
+/// Opens the first frame for what its channels need of a camera.
+void FirstLook::look_at_first(MissingOptions& missing) {
+  if (plan().evidence().empty()) return;
+  try {
+    const FrameSource& source = opened(plan().evidence().front());
+    missing.turns_normals = missing.camera && !source.channels[RawPlane::normal].empty() &&
+                            source.program.rules->normal_space == NormalSpace::world &&
+                            settings_.input.normal_space != NormalSpace::view;
+  } catch (const NoWorldToCamera&) {
+    missing.lacks_matrix = leaves_normals_ = true;
+  } catch (const Error& error) {
+    if (missing.camera) missing.no_channels = error;
+  }
 }
 
 MissingOptions FirstLook::missing_options() {
@@ -154,15 +182,15 @@ MissingOptions FirstLook::missing_options() {
   if (missing.input || !(missing.radius || missing.output || !has_option)) return missing;
   try {
     notes_on_number(plan());  // or the command that is proposed would be refused
-    missing.camera = lacks_camera_ = !has_camera();
-    if (missing.camera) {
-      try {
-        opened(plan().evidence().front());
-      } catch (const Error& error) {
-        missing.no_channels = error;
-      }
-    }
+    missing.camera = lacks_camera_ = !has_camera(missing.no_camera);
+    look_at_first(missing);
     if (missing.radius) missing.proposed_radius = radius_of_first(missing.unreadable);
+    if (lacks_matrix_) {
+      missing.lacks_matrix = leaves_normals_ = true;
+      missing.unreadable.reset();
+      opened_.clear();
+      missing.proposed_radius = radius_of_first(missing.unreadable);
+    }
   } catch (const Error& error) {
     // A name that no command could have comes first, since it would be a part of the one that is proposed.
     if (error.kind() == ErrorKind::usage) throw;
@@ -175,10 +203,20 @@ std::vector<std::string> MissingOptions::sentences() const {
   std::vector<std::string> sentences;
   if (input) sentences.emplace_back("INPUT, an EXR with depth and normals, or --depth FILE, or --position FILE");
   if (output) sentences.emplace_back("-o FILE.exr, the AO");
-  if (camera) sentences.push_back(fmt::format("a camera: {}", kCameraOptions));
+  if (camera && turns_normals)
+    sentences.emplace_back(
+        "a camera: --camera FILE.json with world_to_camera, since the normals are in world space; or --fov DEGREES, or "
+        "--focal MM with --aperture MM, or --ortho-width UNITS, each with --normal none");
+  else if (camera)
+    sentences.push_back(fmt::format("a camera: {}{}", no_camera.empty() ? "" : no_camera + "; ", kCameraOptions));
+  if (lacks_matrix)
+    sentences.emplace_back(
+        "world_to_camera, since the normals are in world space: --camera FILE.json with it, or --normal none, which "
+        "reconstructs them from depth");
   if (no_channels) sentences.emplace_back(no_channels->what());
   if (radius) sentences.emplace_back("--radius NUMBER, how far occluders reach in scene units, or --radius auto");
-  if (unreadable) sentences.push_back(fmt::format("a frame to look at: {}", unreadable->what()));
+  const bool is_said = unreadable && no_channels && std::string(unreadable->what()) == no_channels->what();
+  if (unreadable && !is_said) sentences.push_back(fmt::format("a frame to look at: {}", unreadable->what()));
   return sentences;
 }
 
@@ -237,6 +275,16 @@ std::string span_text(const std::string& first, const std::string& last) {
   return first == last ? first : first + " to " + last;
 }
 
+/// The frames that a CPU computes at once, and why no more.
+std::string at_once_text(const RunMemory& memory, const FramePlan& plan, const FrameSource& source,
+                         const Settings& settings, std::span<const int> wanted) {
+  const int threads = threads_of(settings.device),
+            count = wanted.size() < 2 ? 1 : frames_at_once(memory, plan, source, settings, wanted, threads);
+  if (wanted.size() <= std::size_t(count)) return fmt::format("{} at once, since there are no more", count);
+  if (count == threads) return fmt::format("{} at once on a CPU, one per thread (--threads)", count);
+  return fmt::format("{} at once, for which there is room (--memory)", count);
+}
+
 }  // namespace
 
 std::string plan_text(FirstLook& look) {
@@ -271,13 +319,12 @@ std::string plan_text(FirstLook& look) {
   const FrameMemory frame = memory_with_others(plan, source, first);
   const std::uint64_t bytes = frame.of(source.reading.data).host;
   InputIdentities identities(plan);
-  const auto wanted = frames_to_compute(plan, options_digest(first), identities);
+  const auto [wanted, resumed] = frames_to_compute(plan, options_digest(first), identities);
   require_room_for_others(memory_of_host(first.device), plan, source, first, wanted);
-  const RunMemory run = without_shared_frames(memory_of_host(first.device), plan, source, first, wanted, 1);
-  const std::uint64_t memory = run.host_bytes;
+  const RunMemory host = memory_of_host(first.device);
+  const std::uint64_t memory = without_shared_frames(host, plan, source, first, wanted, 1).host_bytes;
   line("size", to_string(written_picture(source)));
-  const std::string at_once =
-      bytes > memory ? "in tiles" : fmt::format("up to {} at once", frames_in(run, frame, source.reading.data));
+  const std::string at_once = bytes > memory ? "in tiles" : at_once_text(host, plan, source, first, wanted);
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
   const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared) {
     line(name, fmt::format("up to {} of the {} frames of the shot: {} MiB of {} for each at once, beside what it takes "
@@ -292,6 +339,7 @@ std::string plan_text(FirstLook& look) {
                    bytes_of_estimates(plan, source, first, wanted, 1));
   if (wanted.size() < plan.frames().size())
     line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));
+  for (const auto& note : resumed) line(level_of(note), line_of(note, ""));
   return text;
 }
 

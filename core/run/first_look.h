@@ -18,6 +18,9 @@ namespace alcove {
 /// Options that a run cannot do without, and that nobody gave.
 struct MissingOptions {
   bool input = false, output = false, camera = false, radius = false;
+  bool turns_normals = false;             // a camera that is missing must have world_to_camera, or normals be left out
+  bool lacks_matrix = false;              // the camera that is given has none, so that normals must be left out
+  std::string no_camera;                  // why header and positions, which look as if they had a camera, give none
   std::optional<double> proposed_radius;  // where there is no radius, and the first frame can be read
   std::optional<Error> no_channels;       // why its channels are not found, where there is no camera
   std::optional<Error> unreadable;        // why the first frame cannot be looked at
@@ -57,14 +60,18 @@ class FirstLook {
 
  private:
   FrameSource& opened(int frame);
-  bool has_camera();
+  InputSettings input_of(int frame);
+  bool has_camera(std::string& why_not);
+  void look_at_first(MissingOptions& missing);
   std::optional<double> radius_of(int frame);
   std::optional<double> radius_of_first(std::optional<Error>& error);
   void take_proposed_radius(Notes& notes);
 
   const Settings settings_;
   std::optional<FramePlan> plan_;
-  bool lacks_camera_ = false;  // frames are opened with one that stands in for it
+  bool lacks_camera_ = false;    // frames are opened with one that stands in for it
+  bool lacks_matrix_ = false;    // pixels have shown that normals need a world_to_camera, and there is none
+  bool leaves_normals_ = false;  // frames are opened without normals, which the camera cannot turn
   std::map<int, FrameSource> opened_;
 };
 

@@ -314,16 +314,14 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
   ExrOutput output =
       output_like(source, source.channels[RawPlane::depth][0], written_picture(source), settings, provenance);
   output.compression = settings.compression;
-  const auto radii = estimator.radius ? radii_of(estimator) : std::vector<double>();
-  if (needs_ao(settings)) output.own_attributes["alcove/radius"] = fmt::format("{}", fmt::join(radii, " "));
+  if (needs_ao(settings)) output.own_attributes["alcove/radius"] = radius_text(estimator);
   for (const auto& aov : aovs_of(settings)) {
     const SampleType type =
         settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
     for (const auto& channel : channels_of(aov, planes_of(aov, estimator)))
       output.planes.push_back({channel, type, {}});
   }
-  if (wants(settings, &FrameOutputs::scales))
-    output.own_attributes["alcove/radii"] = fmt::format("{}", fmt::join(radii, " "));
+  if (wants(settings, &FrameOutputs::scales)) output.own_attributes["alcove/radii"] = radius_text(estimator);
   if (wants(settings, &FrameOutputs::normal) || wants(settings, &FrameOutputs::bent_normal))
     output.own_attributes["alcove/normal_space"] = in_world(source.reading.camera, settings) ? "world" : "view";
   return output;
@@ -365,6 +363,7 @@ ExrOutput composite_file(const FrameSource& source, const Settings& all, const P
   ExrOutput output =
       output_like(source, source.channels[RawPlane::beauty][0], composite_window(source), settings, provenance);
   output.own_attributes["alcove/composite"] = composite_text(source, all);
+  output.own_attributes["alcove/radius"] = radius_text(all.estimator);
   output.compression = settings.composite_compression;
   const char* names[] = {"R", "G", "B", "A"};
   for (std::size_t c = 0; c < source.channels[RawPlane::beauty].size(); c++)
@@ -619,6 +618,10 @@ void FrameWriter::finish(const std::string& notes) {
   if (notes != notes_) late[kNotesAttribute] = notes;
   if (composite_) composite_->finish();
   for (auto& file : files_) std::visit([&](auto& open) { open.finish(late); }, file);
+}
+
+std::string radius_text(const EstimatorSettings& estimator) {
+  return estimator.radius ? fmt::format("{}", fmt::join(radii_of(estimator), " ")) : "";
 }
 
 std::string made_by(const std::string& options, const std::string& inputs) { return options + " " + inputs; }

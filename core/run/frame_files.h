@@ -56,6 +56,9 @@ struct Provenance {
   std::string estimates = {};   // the same, of those that the AO is a mean of
 };
 
+/// The radii of all scales, as headers have them; "" where none is known.
+std::string radius_text(const EstimatorSettings& estimator);
+
 /// The text that tells in a picture what it was made with: whoever finds it there need not make the picture again.
 std::string made_by(const std::string& options, const std::string& inputs);
 

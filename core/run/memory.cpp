@@ -299,6 +299,20 @@ RunMemory without_shared_frames(const RunMemory& memory, const FramePlan& plan, 
   return left;
 }
 
+int frames_at_once(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame, const Settings& settings,
+                   std::span<const int> frames, int most) {
+  const FrameMemory of_frame = memory_with_others(plan, frame, settings);
+  int count = int(std::min(frames.size(), std::size_t(most)));
+  const auto has_room = [&] {
+    const RunMemory left = without_shared_frames(memory, plan, frame, settings, frames, count);
+    return frames_in(left, of_frame, frame.reading.data) >= std::uint64_t(count);
+  };
+  while (count > 1 && !has_room()) count--;
+  return std::max(1, count);
+}
+
+int threads_of(const DeviceSettings& settings) { return settings.threads > 0 ? settings.threads : core_count(); }
+
 void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
                              const Settings& settings, std::span<const int> frames) {
   const InputSettings& input = settings.input;

@@ -108,6 +108,13 @@ std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame
 RunMemory without_shared_frames(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
                                 const Settings& settings, std::span<const int> frames, int lanes);
 
+/// The number of these frames, up to `most`, that the memory has room for at once.
+int frames_at_once(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame, const Settings& settings,
+                   std::span<const int> frames, int most);
+
+/// The threads of the process: as many as --threads says, else one per core.
+int threads_of(const DeviceSettings& settings);
+
 /// Fails with ErrorKind::usage where --memory has no room for the frames around one, naming how many it has room for,
 /// and what would be enough; with ErrorKind::device where nobody has said --memory.
 void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,

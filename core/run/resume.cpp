@@ -149,34 +149,76 @@ InputIdentities::Identity InputIdentities::all_of(int frame) {
   return all;
 }
 
-/// Whether all outputs of a frame are there and whole, made with the options of this digest from inputs of this
-/// identity, and no older than the newest of them. `frame` names the files of one frame. Reads headers and the table of
-/// chunks; never fails.
-static bool has_whole_outputs(const Settings& frame, const std::string& options_digest, const std::string& inputs,
-                              fs::file_time_type newest_input) {
-  return std::ranges::all_of(outputs_of(frame.output), [&](const OutputFile& output) {
-    const auto time = time_of(output.path);
-    if (!time || *time < newest_input) return false;
-    const bool is_picture = output.path != frame.output.output && output.path != frame.output.composite;
-    if (is_picture) return is_whole_png(output.path, made_by(options_digest, inputs));
-    return attribute_of_whole_exr(output.path, "alcove/options") == options_digest &&
-           attribute_of_whole_exr(output.path, "alcove/inputs") == inputs &&
-           !(fails_on_warnings(frame) && attribute_of_whole_exr(output.path, kNotesAttribute));
-  });
+namespace {
+
+/// Why an output is made again; "" if it is not there, nothing if it is whole, made with the options of this digest
+/// from inputs of this identity, and no older than the newest of them. Reads headers and the table of chunks; never fails.
+std::optional<std::string> reason_to_make(const OutputFile& output, const Settings& frame,
+                                          const std::string& options_digest, const std::string& inputs,
+                                          fs::file_time_type newest_input) {
+  const auto time = time_of(output.path);
+  if (!time) return "";
+  if (*time < newest_input) return "an input is newer than the output";
+  const bool is_picture = output.path != frame.output.output && output.path != frame.output.composite;
+  if (is_picture) {
+    if (is_whole_png(output.path, made_by(options_digest, inputs))) return std::nullopt;
+    return fmt::format("{} is cut short, or was made otherwise", output.option);
+  }
+  const auto attribute = [&](const char* name) { return attribute_of_whole_exr(output.path, name); };
+  const auto version = attribute("alcove/version");
+  if (!version) return fmt::format("{} is no whole file of Alcove", output.option);
+  if (*version != kVersion) return fmt::format("version {} made them", *version);
+  if (attribute("alcove/options") != options_digest) {
+    const std::string before = attribute("alcove/radius").value_or(""), now = radius_text(frame.estimator);
+    return "other settings made them" +
+           (before.empty() || before == now ? "" : fmt::format(", with the radius {} and not {}", before, now));
+  }
+  if (attribute("alcove/inputs") != inputs) return "an input has changed";
+  if (fails_on_warnings(frame) && attribute(kNotesAttribute)) return "warnings count as errors, and they have some";
+  return std::nullopt;
 }
 
-std::vector<int> frames_to_compute(const FramePlan& plan, const std::string& digest, InputIdentities& identities) {
+/// The same of the first output of a frame that is made again. `frame` names the files of one frame.
+std::optional<std::string> reason_to_compute(const Settings& frame, const std::string& options_digest,
+                                             const std::string& inputs, fs::file_time_type newest_input) {
+  for (const auto& output : outputs_of(frame.output))
+    if (auto reason = reason_to_make(output, frame, options_digest, inputs, newest_input)) return reason;
+  return std::nullopt;
+}
+
+/// One line for all frames that are computed again.
+Notes notes_on_reasons(const std::vector<std::pair<std::string, std::vector<int>>>& reasons) {
+  std::vector<std::string> texts;
+  for (const auto& [reason, frames] : reasons)
+    texts.push_back(fmt::format("{} {}: {}", frames.size() == 1 ? "frame" : "frames", frames_text(frames), reason));
+  if (texts.empty()) return {};
+  return {{NoteCode::computed_again, fmt::format("--resume computes again {}", fmt::join(texts, "; "))}};
+}
+
+}  // namespace
+
+FramesToCompute frames_to_compute(const FramePlan& plan, const std::string& digest, InputIdentities& identities) {
   const FrameSettings& frames = plan.settings().frames;
-  if (!frames.resume || frames.overwrite || plan.frames().empty()) return plan.frames();
+  if (!frames.resume || frames.overwrite || plan.frames().empty()) return {plan.frames(), {}};
   const Settings first = plan.at(plan.frames().front());
-  std::vector<int> wanted;
-  std::ranges::copy_if(plan.frames(), std::back_inserter(wanted), [&](int frame) {
+  FramesToCompute found;
+  std::vector<std::pair<std::string, std::vector<int>>> reasons;
+  for (const int frame : plan.frames()) {
     const Settings of_frame = plan.at(frame);
     const bool has_own_camera = of_frame.input.camera != first.input.camera;
-    return !has_whole_outputs(of_frame, has_own_camera ? options_digest(of_frame) : digest, identities.of(frame),
-                              identities.newest(frame));
-  });
-  return wanted;
+    const auto reason = reason_to_compute(of_frame, has_own_camera ? options_digest(of_frame) : digest,
+                                          identities.of(frame), identities.newest(frame));
+    if (!reason) continue;
+    found.frames.push_back(frame);
+    if (reason->empty()) continue;
+    const auto known = std::ranges::find(reasons, *reason, [](const auto& one) { return one.first; });
+    if (known == reasons.end())
+      reasons.push_back({*reason, {frame}});
+    else
+      known->second.push_back(frame);
+  }
+  found.notes = notes_on_reasons(reasons);
+  return found;
 }
 
 }  // namespace alcove

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/run/plan.h"
 
@@ -47,8 +48,14 @@ class InputIdentities {
   std::map<int, Identity> own_;  // of the files of each frame
 };
 
+/// Frames to compute.
+struct FramesToCompute {
+  std::vector<int> frames;
+  Notes notes;  // why outputs that are there are made again
+};
+
 /// The frames of the plan to compute: all but those whose outputs an earlier run has left whole, where the settings say
 /// to resume it. `digest` is that of the first frame.
-std::vector<int> frames_to_compute(const FramePlan& plan, const std::string& digest, InputIdentities& identities);
+FramesToCompute frames_to_compute(const FramePlan& plan, const std::string& digest, InputIdentities& identities);
 
 }  // namespace alcove

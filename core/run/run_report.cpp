@@ -114,8 +114,9 @@ std::string summary_of(const RunReport& report) {
   if (report.failed) text += fmt::format(", {} failed ({})", report.failed, frames_text(report.failed_frames));
   if (report.warned) text += fmt::format(", {} with warnings", report.warned);
   if (report.dropped) text += fmt::format(", {} not begun or dropped", report.dropped);
-  return text + fmt::format(", in {:.1f} s on {}, {} at once, peak memory {:.0f} MiB", report.wall_s,
-                            report.device.empty() ? "no device" : report.device, report.at_once, peak_memory_mib());
+  text += fmt::format(", in {:.1f} s", report.wall_s);
+  if (!report.device.empty()) text += fmt::format(" on {}, {} at once", report.device, report.at_once);
+  return text + fmt::format(", peak memory {:.0f} MiB", peak_memory_mib());
 }
 
 }  // namespace alcove

@@ -5,6 +5,7 @@
 """Ambient occlusion of the rendered frame, or of the whole animation, by the program `alcove`."""
 
 import json
+import math
 import os
 import re
 import shutil
@@ -13,6 +14,7 @@ import tempfile
 import threading
 
 import bpy
+import mathutils
 
 bl_info = {
     "name": "Alcove",
@@ -27,6 +29,7 @@ bl_info = {
 PASSES = ("use_pass_z", "use_pass_normal", "use_pass_position")
 FOR_COMPOSITE = ("use_pass_diffuse_color", "use_pass_diffuse_indirect")
 NODE_LABEL = "Alcove"
+FRAME_LABEL = "Ambient Occlusion"
 HASHES = "####"  # of a frame's number in names
 
 
@@ -88,6 +91,61 @@ class Cameras:
         frames = [dict(frame=frame, **fields) for frame, fields in sorted(self.frames.items())]
         with open(path, "w", encoding="utf-8") as file:
             json.dump({"frames": frames}, file, indent=1)
+
+
+# ---- the radius ----
+
+
+def depths_of(scene, depsgraph, fields):
+    """How far away the surfaces are that the camera sees, by a grid of rays: no frame is rendered for it."""
+    width, height = fields["resolution"]
+    view = mathutils.Matrix(fields["world_to_camera"])
+    world = view.inverted()
+    depths = []
+    for row in range(18):
+        for column in range(32):
+            x = ((column + 0.5) / 32 * width - fields["cx"]) / fields["fx"]
+            y = (fields["cy"] - (row + 0.5) / 18 * height) / fields["fy"]
+            is_orthographic = fields["projection"] == "orthographic"
+            start = world @ mathutils.Vector((x, y, 0) if is_orthographic else (0, 0, 0))
+            way = world.to_3x3() @ mathutils.Vector((0, 0, -1) if is_orthographic else (x, y, -1))
+            is_hit, place = scene.ray_cast(depsgraph, start, way.normalized())[:2]
+            if is_hit:
+                depths.append(-(view @ place).z)
+    return depths
+
+
+def proposed_radius(scene, depsgraph):
+    """What --radius auto would take, by the program's own rule: one digit of a tenth of the median depth; 0: nothing is seen."""
+    fields = camera_of(scene, depsgraph)
+    depths = sorted(depths_of(scene, depsgraph, fields))
+    if not depths:
+        return 0
+    median = depths[len(depths) // 2]
+    width = fields["resolution"][0] / fields["fx"]
+    radius = 0.1 * width if fields["projection"] == "orthographic" else min(0.1 * median, 0.25 * width * median)
+    return float("%.1g" % radius) if radius > 0 and math.isfinite(radius) else 0
+
+
+class Proposal:
+    """The radius that the panel shows. Rays are cast again only when the view changes, and never while a scene plays."""
+
+    key, radius = None, 0
+
+    @classmethod
+    def of(cls, context):
+        scene = context.scene
+        if scene.camera is None or (context.screen and context.screen.is_animation_playing):
+            return cls.radius
+        key = (scene.name, scene.frame_current, len(scene.objects), scene.camera.name,
+               tuple(round(x, 4) for row in scene.camera.matrix_world for x in row), scene.camera.data.angle)
+        if key != cls.key:
+            try:
+                cls.radius = proposed_radius(scene, context.evaluated_depsgraph_get())
+            except FAILURES:
+                cls.radius = 0
+            cls.key = key
+        return cls.radius
 
 
 # ---- rendering ----
@@ -226,15 +284,63 @@ def compositor_of(scene):
     return scene.node_tree, is_new
 
 
+def place_of(node):
+    """A node's corner in the tree, whatever frames it lies in."""
+    x, y = node.location
+    while node.parent:
+        node = node.parent
+        x, y = x + node.location[0], y + node.location[1]
+    return x, y
+
+
+def height_of(node):
+    """What a node takes, also before it is ever drawn: then by its sockets."""
+    return max(node.dimensions[1], node.height, 150 + 25 * (len(node.inputs) + len(node.outputs)))
+
+
+def free_place(tree):
+    """The corner of what lies below all nodes."""
+    nodes = [node for node in tree.nodes if node.bl_idname != "NodeFrame"]
+    if not nodes:
+        return 0, 0
+    return min(place_of(node)[0] for node in nodes), min(place_of(node)[1] - height_of(node) for node in nodes) - 100
+
+
+def add_node(tree, kind, beside=None):
+    """A node in Alcove's own frame: below all others, or to the right of one in it."""
+    place = (beside.location[0] + beside.width + 60, beside.location[1]) if beside else free_place(tree)
+    node = tree.nodes.new(kind)
+    frame = beside.parent if beside else tree.nodes.new("NodeFrame")
+    frame.label = FRAME_LABEL
+    node.parent = frame
+    node.location = place
+    return node
+
+
+def show(image, frames):
+    """Shows the result in an image editor, at best in the one that shows the rendered frame. Returns whether there is one."""
+    editors = [area.spaces.active for window in bpy.context.window_manager.windows for area in window.screen.areas
+               if area.type == "IMAGE_EDITOR"]
+    if not editors:
+        return False
+    editor = next((one for one in editors if one.image and one.image.type == "RENDER_RESULT"), editors[0])
+    editor.image = image
+    if len(frames) > 1:
+        user = editor.image_user
+        user.frame_start, user.frame_duration, user.frame_offset = frames[0], frames[-1] - frames[0] + 1, frames[0] - 1
+        user.use_auto_refresh = True
+    return True
+
+
 def load_result(scene, folder, frames):
-    """Loads the result into an image node; a second run reuses the node. In a new compositor the AO darkens the picture;
-    an existing node tree only gets the image node."""
+    """Loads the result into an image node, and shows it; a second run reuses the node. In a new compositor the AO darkens the
+    picture; an existing node tree only gets the image node."""
     stem = "composite" if scene.alcove.output == "COMPOSITE" else "ao"
     path = os.path.join(folder, "%s.%04d.exr" % (stem, frames[0]))
     tree, is_new = compositor_of(scene)
     node = next((n for n in tree.nodes if n.bl_idname == "CompositorNodeImage" and n.label == NODE_LABEL), None)
     if node is None:
-        node = tree.nodes.new("CompositorNodeImage")
+        node = add_node(tree, "CompositorNodeImage")
         node.label = NODE_LABEL
     image = bpy.data.images.load(path, check_existing=True)
     image.reload()
@@ -247,6 +353,10 @@ def load_result(scene, folder, frames):
         node.use_auto_refresh = True
     if is_new and hasattr(scene, "node_tree"):
         wire(tree, node, stem)
+    for other in tree.nodes:
+        other.select = other == node
+    tree.nodes.active = node
+    show(image, frames)
     return node
 
 
@@ -257,7 +367,7 @@ def wire(tree, node, stem):
         return
     picture = next((socket for socket in node.outputs if socket.name in ("Image", "Combined")), node.outputs[0])
     if stem == "ao":
-        mix = tree.nodes.new("CompositorNodeMixRGB")
+        mix = add_node(tree, "CompositorNodeMixRGB", node)
         mix.blend_type = "MULTIPLY"
         mix.inputs[0].default_value = 1
         tree.links.new(layers.outputs["Image"], mix.inputs[1])
@@ -415,7 +525,7 @@ class ALCOVE_OT_write_cameras(bpy.types.Operator):
 
 class AlcoveSettings(bpy.types.PropertyGroup):
     radius: bpy.props.FloatProperty(
-        name="Radius", description="Reach of occluders; 0: as the frame proposes", default=0, min=0, soft_max=10,
+        name="Radius", description="Reach of occluders; 0: what stands below, as the frame proposes", default=0, min=0, soft_max=10,
         subtype="DISTANCE")
     preset: bpy.props.EnumProperty(
         name="Preset", default="STANDARD",
@@ -440,6 +550,9 @@ class ALCOVE_PT_panel(bpy.types.Panel):
         layout.use_property_split = True
         for name in ("radius", "preset", "output", "folder"):
             layout.prop(settings, name)
+            if name == "radius" and settings.radius == 0:
+                proposed = Proposal.of(context)
+                layout.label(text="Automatic radius: %s" % ("about %g" % proposed if proposed else "by the frame"), icon="INFO")
         row = layout.row()
         row.operator(ALCOVE_OT_compute.bl_idname, text="This Frame", icon="RENDER_STILL").animation = False
         row.operator(ALCOVE_OT_compute.bl_idname, text="Animation", icon="RENDER_ANIMATION").animation = True

@@ -110,6 +110,7 @@ TEST_F(Composites, composite_dims_only_the_ambient_part) {
     };
     expect_composite(frame, indirect, is_half ? 0x1p-11 : 1e-6);
     EXPECT_THAT(how(), StartsWith("ambient"));
+    EXPECT_EQ(text_in(read_header(composite), "alcove/radius"), text_in(read_header(ao), "alcove/radius"));
     const int type = is_half ? 1 : 2;
     EXPECT_THAT(channels_in(read_header(composite)), ElementsAre(HeaderChannel{"A", type}, HeaderChannel{"B", type},
                                                                  HeaderChannel{"G", type}, HeaderChannel{"R", type}));

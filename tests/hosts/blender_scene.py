@@ -59,12 +59,31 @@ def make_scene():
     return scene
 
 
+def boxes_of(tree):
+    """Corner and size of all nodes but frames."""
+    return {node.name: (*alcove.place_of(node), node.width, alcove.height_of(node)) for node in tree.nodes
+            if node.bl_idname != "NodeFrame"}
+
+
+def on_top(tree):
+    """The pairs of nodes that cover each other."""
+    boxes = sorted(boxes_of(tree).items())
+    return [(one, other) for i, (one, (x, y, w, h)) in enumerate(boxes) for other, (u, v, s, t) in boxes[:i]
+            if x < u + s and u < x + w and y - h < v and v - t < y]
+
+
 def nodes_of(scene):
     return [node for node in scene.node_tree.nodes if node.label == alcove.NODE_LABEL]
 
 
 scene = make_scene()
 scene.frame_set(2)
+areas = [area for window in bpy.context.window_manager.windows for area in window.screen.areas]
+if areas:
+    areas[0].type = "IMAGE_EDITOR"
+facts["has an editor"] = bool(areas)
+facts["proposed radius"] = alcove.proposed_radius(scene, bpy.context.evaluated_depsgraph_get())
+facts["shown radius"] = alcove.Proposal.of(bpy.context)
 before = (scene.render.filepath, scene.render.image_settings.file_format)
 facts["still"] = sorted(bpy.ops.alcove.compute(animation=False))
 facts["output is the user's"] = before == (scene.render.filepath, scene.render.image_settings.file_format)
@@ -72,6 +91,10 @@ facts["image of the still"] = [(node.image.filepath, node.image.source, node.ima
                                for node in nodes_of(scene)]
 facts["wired"] = [link.from_node.bl_idname for link in scene.node_tree.links
                   if link.to_node.bl_idname == "CompositorNodeComposite"]
+facts["on top of each other"] = on_top(scene.node_tree)
+facts["in the frame"] = sorted(node.bl_idname for node in scene.node_tree.nodes if node.parent and node.parent.label == alcove.FRAME_LABEL)
+facts["shown"] = [area.spaces.active.image.filepath for area in areas[:1] if area.spaces.active.image]
+facts["active"] = scene.node_tree.nodes.active.label
 facts["handlers"] = len(bpy.app.handlers.frame_change_post)
 
 facts["animation"] = sorted(bpy.ops.alcove.compute(animation=True))

@@ -43,6 +43,18 @@ class Blender(unittest.TestCase):
         self.assertEqual((image, source, has_data), (path("ao.0002.exr"), "FILE", True))
         self.assertEqual(self.facts["wired"], ["CompositorNodeMixRGB"])
 
+    def test_its_nodes_lie_beside_the_others_in_a_frame_and_the_result_is_shown(self):
+        self.assertEqual(self.facts["on top of each other"], [])
+        self.assertEqual(self.facts["in the frame"], ["CompositorNodeImage", "CompositorNodeMixRGB"])
+        self.assertEqual(self.facts["active"], "Alcove")
+        if self.facts["has an editor"]:
+            self.assertEqual(self.facts["shown"], [path("ao.0002.exr")])
+
+    def test_the_radius_it_shows_is_what_the_program_proposes(self):
+        command = alcove("inspect", path("frame.0002.exr"), "--camera", path("written.json")).splitlines()[-1].split()
+        self.assertEqual(self.facts["proposed radius"], float(command[command.index("--radius") + 1]))
+        self.assertEqual(self.facts["shown radius"], self.facts["proposed radius"])
+
     def test_nothing_of_the_users_changes(self):
         self.assertTrue(self.facts["output is the user's"])
         self.assertTrue(self.facts["the compositor that was there stays"])

@@ -82,6 +82,22 @@ TEST_F(Inspect, the_command_it_gives_runs_and_guesses_nothing) {
   run_well(joined(arguments, {"--strict"}));
 }
 
+TEST_F(Inspect, the_command_it_gives_has_the_settings_that_were_given) {
+  FrameFile lit = wall_frame();
+  add_beauty(lit);
+  const std::string beauty = folder / "beauty.exr";
+  lit.write(beauty);
+  const std::string command =
+      seen({"--beauty", beauty, "--preset", "draft", "--radius", "0.4", "--set", "intensity=0.5"})["command"];
+  EXPECT_THAT(command, AllOf(HasSubstr(" --beauty " + beauty), HasSubstr(" --composite composite.exr"),
+                             HasSubstr(" --preset draft --radius 0.4 --set intensity=0.5")));
+  EXPECT_EQ(command.find("--radius"), command.rfind("--radius"));
+  Options arguments = typed(command);
+  arguments.erase(arguments.begin());
+  run_well(arguments, {.folder = folder.path()});
+  EXPECT_TRUE(fs::exists(folder / "composite.exr"));
+}
+
 TEST_F(Inspect, the_command_it_gives_has_no_option_that_does_not_apply) {
   EXPECT_THAT(seen({"--set", "device-range=-1..1", "--set", "log-constant=2"})["command"],
               Not(testing::AnyOf(HasSubstr("--set device-range"), HasSubstr("--set log-constant"))))
@@ -246,6 +262,19 @@ TEST_F(InspectSequence, follows_the_camera) {
   EXPECT_NEAR(moves["largest_turn"].get<double>(), 0, 1e-6);
   EXPECT_NEAR(moves["widest"].get<double>(), 56.145, 1e-3);
   EXPECT_LT(moves["narrowest"].get<double>(), 30);
+}
+
+TEST_F(InspectSequence, a_camera_whose_matrix_is_rounded_stands_still) {
+  json cameras = wall_camera();
+  // No exact rotation, as a header in single precision has it; and once a last bit differs.
+  const auto rows = [](double turned) {
+    return json{{0.9999999, turned, 0, 0.5}, {0, 0, 0.9999999, -2}, {0, -0.9999999, 0, 3}, {0, 0, 0, 1}};
+  };
+  for (const int number : {1, 2, 3, 4, 7, 8})
+    cameras["frames"].push_back({{"frame", number}, {"world_to_camera", rows(number == 3 ? 0x1p-24 : 0)}});
+  write_bytes(camera, cameras.dump());
+  EXPECT_EQ(sequence()["camera"]["largest_turn"], 0);
+  EXPECT_THAT(inspect_all({}).out, HasSubstr("wide in all frames, stands still\n"));
 }
 
 TEST_F(InspectSequence, says_what_changes_and_what_does_not) {

@@ -120,10 +120,42 @@ TEST_F(Compare, ao_is_not_paired_with_a_component_of_a_normal) {
   const std::map<std::string, Plane> normal{{"N.X", box}, {"N.Y", box}, {"N.Z", box}};
   expect_error(3, {exr("n.exr", normal), ao}, {"share no channel", "N.Y", "--channel"});
   const auto hidden = exr("h.exr", {{"Y", ramp}, {"hidden1.Z", box}});
-  expect_error(3, {hidden, exr("o.exr", {{"AO", ramp}})}, {"share no channel", "such as --channel Y=AO"});
+  EXPECT_EQ(measured({hidden, exr("o.exr", {{"AO", ramp}})})["channels"], json::array({"Y"}));
   EXPECT_EQ(measured({folder / "n.exr", ao, "--channel", "N.Y=Y"})["count"], ramp.size());
   EXPECT_EQ(measured({folder / "n.exr", exr("m.exr", {{"X", box}, {"Y", box}, {"Z", box}})})["rmse"], 0);
   EXPECT_EQ(measured({exr("l.exr", {{"L.Y", ramp}, {"L.A", box}}), ao})["rmse"], 0) << "it is no vector";
+}
+
+TEST_F(Compare, the_only_ao_layer_of_a_renderer_is_found_and_said) {
+  const auto ao = exr("ao.exr", {{"Y", box}});
+  const std::map<std::string, Plane> others{{"ViewLayer.Combined.R", ramp}, {"ViewLayer.Combined.G", ramp},
+                                            {"ViewLayer.Combined.B", ramp}, {"ViewLayer.Depth.Z", ramp},
+                                            {"ViewLayer.Normal.X", ramp},   {"ViewLayer.Normal.Y", ramp},
+                                            {"ViewLayer.Normal.Z", ramp}};
+  const auto with = [&](const std::string& file, const std::vector<std::string>& layers) {
+    auto planes = others;
+    for (const auto& layer : layers)
+      for (const char* color : {".R", ".G", ".B"}) planes[layer + color] = box;
+    return exr(file, planes);
+  };
+  for (const char* layer : {"AO", "ViewLayer.AO", "ViewLayer.Ambient Occlusion", "view.ambient_occlusion", "ao"}) {
+    const Finished finished = compare({ao, with("layers.exr", {layer})});
+    EXPECT_EQ(finished.code, 0) << finished;
+    EXPECT_THAT(finished.out, HasSubstr("rmse 0.0000"));
+    EXPECT_EQ(finished.err, fmt::format("alcove: note: Y against {}.R of the reference, by the name; --channel chooses "
+                                        "others [ao-layer]\n",
+                                        layer));
+  }
+  // Of two renderers' files all colours count, and no alpha.
+  auto other = others;
+  for (const char* color : {"AO.R", "AO.G", "AO.B"}) other[color] = box;
+  other["AO.A"] = ramp;
+  std::erase_if(other, [](const auto& plane) { return plane.first.starts_with("ViewLayer"); });
+  EXPECT_EQ(measured({exr("other.exr", other), with("layers.exr", {"left.AO"})})["channels"],
+            json::array({"AO.B", "AO.G", "AO.R"}));
+  // A depth beside it, and two layers, decide nothing.
+  expect_error(3, {ao, with("two.exr", {"ViewLayer.AO", "Other.AO"})},
+               {"share no channel", "ViewLayer.AO (B, G, R)", "Other.AO (B, G, R)", "ViewLayer.Depth.Z"});
 }
 
 TEST_F(Compare, no_common_channel_is_an_error_that_lists_both) {
@@ -384,8 +416,9 @@ TEST_F(Compare, sky_that_is_0_in_one_and_1_in_the_other_is_said_with_what_leaves
   const auto depth = exr("depth.exr", {{"ViewLayer.Depth.Z", far}});
   const Finished finished = compare({result, reference});
   EXPECT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(finished.err, AllOf(HasSubstr("warning: "), HasSubstr("50.0 % of the pixels are 0 in " + reference),
-                                  HasSubstr("1 in " + result), HasSubstr("0.1000"), HasSubstr("--depth")));
+  EXPECT_THAT(finished.err, AllOf(StartsWith("alcove: warning: "), HasSubstr(" [sky-differs]"),
+                                  HasSubstr("50.0 % of the pixels are 0 in " + reference), HasSubstr("1 in " + result),
+                                  HasSubstr("0.1000"), HasSubstr("--depth")));
   const json j = measured({result, reference});
   EXPECT_EQ(j["sky_differs"]["count"], kWindow.pixels() / 2);
   EXPECT_NEAR(j["sky_differs"]["rmse_without"].get<double>(), 0.1, 1e-6);
@@ -465,8 +498,11 @@ TEST_F(Compare, files_of_one_name_are_told_apart_on_the_page) {
   EXPECT_THAT(read_bytes(page), AllOf(HasSubstr("\"title\": \"" + a + " against " + b), HasSubstr("\"name\": \"" + a)));
 }
 
-TEST_F(CompareSequence, a_page_that_cannot_be_written_ends_with_4_before_any_work) {
-  expect_error(4, {result, reference, "--report", folder / "none/page.html"}, {"none/page.html", "--report"});
+TEST_F(CompareSequence, folders_of_a_page_are_made_and_one_that_cannot_be_ends_with_4_before_any_work) {
+  EXPECT_EQ(compare({result, reference, "--report", folder / "some/new/page.html"}).code, 0);
+  EXPECT_TRUE(fs::exists(folder / "some/new/page.html"));
+  write_bytes(folder / "file", "");
+  expect_error(4, {result, reference, "--report", folder / "file/page.html"}, {"file/page.html", "--report"});
 }
 
 }  // namespace

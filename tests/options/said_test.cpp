@@ -231,8 +231,8 @@ TEST_F(Said, what_a_preset_says_without_effect_stays_where_another_one_gives_it_
 TEST_F(Said, of_a_pair_only_one_may_be_typed) {
   for (const auto& [one, other] : pairs())
     for (const auto& words : {joined(set(one), set(other)), joined(set(other), set(one))})
-      EXPECT_THAT(refusal(words), AllOf(HasSubstr(row_of_key(one.key).long_name()),
-                                        HasSubstr(row_of_key(other.key).long_name()), HasSubstr("only one of them")));
+      EXPECT_THAT(refusal(words), AllOf(HasSubstr(row_of_key(one.key).key()), HasSubstr(row_of_key(other.key).key()),
+                                        HasSubstr("only one of them")));
 }
 
 TEST_F(Said, of_a_pair_what_is_typed_beats_a_preset_and_a_later_preset_an_earlier_one) {
@@ -319,6 +319,12 @@ TEST_F(Said, settings_are_set_by_key_and_value) {
   for (const auto& [words, said] :
        {std::pair("--set stride", "--set: stride is not KEY=VALUE: stride takes auto|1|2|4|8|16"),
         {"--set strid=4", "there is no setting strid (did you mean stride"},
+        {"--set zzzz=4", "there is no setting zzzz; alcove run --help-markdown lists all"},
+        {"--set samples=12", "--set samples has no effect: it is for --estimator crytek"},
+        {"--set samples=few", "--set samples: few is not a number"},
+        {"--set steps=4 --search exact", "--set steps has no effect: it is for --search steps"},
+        {"--steps 4 --search exact", "--steps has no effect: it is for --search steps"},
+        {"--focal 50", "--focal has no effect: there is no --aperture: add it"},
         {"--set stride=3", "--set stride: 3 is none of"},
         {"--set dry-run=true", "dry-run is an option of the command line only"},
         {"--set stride=4 --set stride=2", "is given more than once"},

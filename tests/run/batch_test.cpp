@@ -214,6 +214,31 @@ TEST_F(Batch, progress_for_farms_goes_to_the_standard_output) {
   EXPECT_EQ(*std::prev(at("openjd_status: frame 4")), "openjd_progress: 100.0");
 }
 
+TEST_F(Batch, resume_says_why_frames_are_computed_again_and_no_pace_of_those_that_are_kept) {
+  write_frames(1, 3);
+  EXPECT_THAT(run().err, Not(HasSubstr("computed-again")));
+  const Finished kept = run({"--resume"});
+  EXPECT_THAT(kept.err, AllOf(HasSubstr("whole, kept (1 of 3)"), Not(HasSubstr("frames/s")),
+                              Not(HasSubstr("no device")), Not(HasSubstr("computed-again"))));
+  const auto expect_said = [&](const Options& more, const std::string& why) {
+    const std::string text = "--resume computes again " + why + " [computed-again]";
+    EXPECT_THAT(run(joined(more, {"--resume", "--dry-run"})).out, HasSubstr(text));
+    EXPECT_THAT(lines_of(run(joined(more, {"--resume"})).err),
+                Contains("alcove: note: " + in + "/f.%04d.exr: " + text));
+  };
+  write_bytes(output(2), read_bytes(output(2)).substr(0, 300));
+  fs::remove(output(3));  // which is not made again
+  expect_said({}, "frame 2: --output is no whole file of Alcove");
+  expect_said({"--set", "intensity=0.5"}, "frames 1-3: other settings made them");
+  expect_said({"--radius", "0.5"}, "frames 1-3: other settings made them, with the radius 1 and not 0.5");
+}
+
+TEST_F(Batch, a_dry_run_says_how_many_frames_there_are_at_once_and_why) {
+  write_frames(1, 3);
+  EXPECT_THAT(run({"--dry-run", "--threads", "2"}).out, HasSubstr(": 2 at once on a CPU, one per thread (--threads)"));
+  EXPECT_THAT(run({"--dry-run", "--threads", "9"}).out, HasSubstr(": 3 at once, since there are no more"));
+}
+
 TEST_F(Batch, plain_progress_is_whole_lines_and_a_summary_at_the_end) {
   write_frames(1, 3);
   const Finished finished = run();

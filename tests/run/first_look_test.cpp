@@ -216,6 +216,30 @@ TEST_F(Missing, is_all_listed_at_once_with_the_command_that_would_do) {
               HasSubstr(" --radius " + *(std::ranges::find(arguments, "--radius") + 1)));
 }
 
+TEST_F(Missing, of_a_camera_for_normals_in_world_space_is_said_and_the_proposal_does_without) {
+  EXPECT_THAT(
+      run_program({"run", frame}).err,
+      AllOf(HasSubstr("a camera: --camera FILE.json with world_to_camera, since the normals are in world space"),
+            HasSubstr("each with --normal none"), HasSubstr(" --camera CAMERA.json")));
+  const Finished lens = run_program({"run", frame, "--fov", "60"});
+  EXPECT_EQ(lens.code, 2);
+  EXPECT_THAT(lens.err, AllOf(HasSubstr("\n  world_to_camera, since "), Not(HasSubstr("a frame to look at"))));
+  const std::string program = "alcove ", proposed = lines_of(lens.err).back();
+  ASSERT_THAT(proposed, StartsWith(program));
+  const Options arguments = typed(proposed.substr(program.size()));
+  EXPECT_THAT(arguments, IsSupersetOf({"--fov", "60", "--normal", "none"}));
+  EXPECT_EQ(run_program(arguments, {.folder = folder.path()}).code, 0) << proposed;
+}
+
+TEST_F(Missing, is_said_once_each) {
+  FrameFile file = wall_frame();
+  file.erase("Depth");
+  file.write(frame);
+  const std::string said = run_program({"run", frame}).err, words = "no depth channel found";
+  EXPECT_EQ(said.find(words), said.rfind(words)) << said;
+  EXPECT_THAT(said, HasSubstr(words));
+}
+
 TEST_F(Missing, of_a_frame_that_cannot_be_read_is_listed_too) {
   const Finished finished = run_program({"run", folder / "none.exr"});
   EXPECT_EQ(finished.code, 2);
