@@ -242,14 +242,14 @@ void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw
   }
 }
 
-/// Samples of a side beyond the border, where all of its reach lies there.
+/// Samples of a side beyond the border.
 const int kStepsBeyond = 6;
 
 /// Adds what goes on beyond the border where occluders are endless.
-void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, int count,
+void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border,
                              float gap) {
   Sample last = border;
-  for (int k = 0; k < count; k++) {
+  for (int k = 0; k < kStepsBeyond; k++) {
     const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
     const bool joins = both(both(s.above, last.above), same_surface(r, reach, s.z, last.z, s.offset - last.offset));
     const vec2 slopes = slopes_of(s, both(joins, s.within != last.within), mix(s.slope, last.slope, 0.5));
@@ -262,17 +262,17 @@ void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach rea
 
 /// Adds the runs that go on beyond the border. Their samples are far apart, and on average a gap between two of them is
 /// a part of a run.
-void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, int count,
+void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border,
                           float gap) {
   Sample last = border;
   const vec2 at_border = slopes_of(border, false, 0.0);
   Run run = Run(border.place, border.place, at_border.x, at_border.y);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
-  for (int k = 0; k < count + (kHard ? 1 : 0); k++) {  // one more ends the last run
+  for (int k = 0; k < kStepsBeyond + (kHard ? 1 : 0); k++) {  // one more ends the last run
     const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
     const bool joins =
-        both(both(k < count, both(s.above, last.above)), same_surface(r, reach, s.z, last.z, s.offset - last.offset));
+        both(both(k < kStepsBeyond, both(s.above, last.above)), same_surface(r, reach, s.z, last.z, s.offset - last.offset));
     IF_ANY (kHard && !joins) {
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
       found.completed.sectors |= joins ? 0u : sectors_of(r, reach, run, true, thickness, draw.shift);
@@ -297,13 +297,12 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
 /// Adds what goes on beyond the image's border.
 void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
   const Sample border = sample_at(r, side, reach, floor(side.reach));
-  const float most = min(side.whole_reach, side.reach + float(reach.width)), rest = most - border.offset;
-  const int count = int(ceil(float(kStepsBeyond) * rest / most));
-  const float gap = rest / float(count);
+  const float most = min(side.whole_reach, side.reach + float(reach.width));
+  const float gap = (most - border.offset) / float(kStepsBeyond);
   if (kThickness == kThicknessEndless)
-    complete_endless_beyond(found, r, side, reach, draw, border, count, gap);
+    complete_endless_beyond(found, r, side, reach, draw, border, gap);
   else
-    complete_runs_beyond(found, r, side, reach, draw, border, count, gap);
+    complete_runs_beyond(found, r, side, reach, draw, border, gap);
 }
 
 /// The solids at the last sample, where occluders are endless otherwise.

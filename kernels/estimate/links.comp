@@ -1,5 +1,5 @@
-// Says of every pixel whether it and its neighbours are one surface, and makes the surfaces on a lattice and on the
-// image's border sites.
+// Says of every pixel whether it and its neighbours are one surface, and makes the surfaces on a lattice and, if it
+// is adaptive, on the image's border sites.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals.
@@ -100,7 +100,8 @@ void main() {
     if (y > 0) rows[words + y - 1] = word | below << kBelowByte;
     if (y > 0 && kAdaptive != 0u) flat_rows[words + y - 1] = flat_word | flat_below << kBelowByte;
     const uint lattice = lattice_row(first + ivec2(0, y) + params.origin, kSpacing);
-    const uint site = surface & (lattice | border_sites(first + ivec2(0, y)));
+    const uint border = kAdaptive != 0u ? border_sites(first + ivec2(0, y)) : 0u;
+    const uint site = surface & (lattice | border);
     word = right | surface << kSurfaceByte | site << kSiteByte;
     flat_word = flat_right;
   }
