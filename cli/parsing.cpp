@@ -46,8 +46,8 @@ struct Parser {
       option->description(row.sentence + (range.empty() ? "" : " (" + range + ")"));
       if (!row.group.empty()) option->group(row.group);
       if (!shows_all && !row.is_common && row.name.starts_with('-')) option->group("");
-      if (!row.is_flag()) option->type_name(row.value);
-      if (!row.default_text.empty()) option->default_str(row.default_text);
+      // Releases of CLI11 show defaults each in a way of their own.
+      if (!row.is_flag()) option->option_text(row.value + (row.default_text.empty() ? "" : "=" + row.default_text));
     }
   }
 };

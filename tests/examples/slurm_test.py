@@ -83,6 +83,8 @@ class Cluster:
         path = folder / "slurm.conf"
         path.write_text("".join(f"{key}={value}\n" for key, value in config.items()))
         self.environment = {**os.environ, "SLURM_CONF": str(path), "ALCOVE": PROGRAM}
+        if int(self.run("slurmd", "-V").split()[1].split(".")[0]) >= 24:  # would not start in a container or chroot; 22 has no such plugin
+            (folder / "cgroup.conf").write_text("CgroupPlugin=disabled\n")
         self.start("slurmctld", "-D", "-f", path)
         self.start("slurmd", "-D", "-f", path, "-N", self.host)
         wait_until(lambda: "idle" in self.run("sinfo", "-h", "-o", "%T", check=False), "slurmd")

@@ -19,11 +19,18 @@ gpu::DeviceOptions options() {
   return options;
 }
 
+/// Both end with the last test: at the end of the program, when statics go, the validation layer has lost what it keeps
+/// per thread.
+std::optional<gpu::Device> shared_device;
+std::optional<gpu::Recorder> shared_recorder;
+
 /// Fails the program when any test made the validation layer speak.
 class SilentValidation : public testing::Environment {
  public:
   void TearDown() override {
     if (options().validate) EXPECT_EQ(device().validation_messages(), 0);
+    shared_recorder.reset();
+    shared_device.reset();
   }
 };
 const auto* const kSilentValidation = testing::AddGlobalTestEnvironment(new SilentValidation);
@@ -31,13 +38,13 @@ const auto* const kSilentValidation = testing::AddGlobalTestEnvironment(new Sile
 }  // namespace
 
 gpu::Device& device() {
-  static gpu::Device device(options());
-  return device;
+  if (!shared_device) shared_device.emplace(options());
+  return *shared_device;
 }
 
 gpu::Recorder& recorder() {
-  static gpu::Recorder recorder(device());
-  return recorder;
+  if (!shared_recorder) shared_recorder.emplace(device());
+  return *shared_recorder;
 }
 
 EstimatorSettings plain_settings() {
