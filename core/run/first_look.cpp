@@ -203,12 +203,14 @@ std::vector<std::string> MissingOptions::sentences() const {
   std::vector<std::string> sentences;
   if (input) sentences.emplace_back("INPUT, an EXR with depth and normals, or --depth FILE, or --position FILE");
   if (output) sentences.emplace_back("-o FILE.exr, the AO");
+  const std::string why = no_camera.empty() ? "" : no_camera + "; ";
   if (camera && turns_normals)
-    sentences.emplace_back(
-        "a camera: --camera FILE.json with world_to_camera, since the normals are in world space; or --fov DEGREES, or "
-        "--focal MM with --aperture MM, or --ortho-width UNITS, each with --normal none");
+    sentences.push_back(fmt::format(
+        "a camera: {}--camera FILE.json with world_to_camera, since the normals are in world space; or --fov DEGREES, "
+        "or --focal MM with --aperture MM, or --ortho-width UNITS, each with --normal none",
+        why));
   else if (camera)
-    sentences.push_back(fmt::format("a camera: {}{}", no_camera.empty() ? "" : no_camera + "; ", kCameraOptions));
+    sentences.push_back(fmt::format("a camera: {}{}", why, kCameraOptions));
   if (lacks_matrix)
     sentences.emplace_back(
         "world_to_camera, since the normals are in world space: --camera FILE.json with it, or --normal none, which "
