@@ -208,7 +208,8 @@ ChannelMatch match_channels(const Picture& result, const Picture& reference, con
     });
   }
   if (pairs.empty())
-    fail(ErrorKind::input, "the pictures share no channel: {}; say what to compare with --channel RESULT=REFERENCE",
+    fail(ErrorKind::input,
+         "the pictures share no channel: {}; say what to compare with --channel RESULT=REFERENCE, such as Y=AO.R",
          both_lists(result, reference));
   std::vector<std::size_t> seen_result, seen_reference;
   for (const auto& pair : pairs) {

@@ -151,9 +151,8 @@ InputIdentities::Identity InputIdentities::all_of(int frame) {
 
 namespace {
 
-/// Why an output is made again; "" if it is not there, nothing if it is whole, made with the options of this digest
-/// from inputs of this identity, and no older than the newest of them. Reads headers and the table of chunks; never
-/// fails.
+/// Why an output is made again; "" if it is not there. Nothing if it is whole, no older than the newest input, and made
+/// with the options of this digest from inputs of this identity. Reads headers and the table of chunks; never fails.
 std::optional<std::string> reason_to_make(const OutputFile& output, const Settings& frame,
                                           const std::string& options_digest, const std::string& inputs,
                                           fs::file_time_type newest_input) {

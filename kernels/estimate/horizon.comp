@@ -272,7 +272,8 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
   for (int k = 0; k < kStepsBeyond + (kHard ? 1 : 0); k++) {  // one more ends the last run
     const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
     const bool joins =
-        both(both(k < kStepsBeyond, both(s.above, last.above)), same_surface(r, reach, s.z, last.z, s.offset - last.offset));
+        both(both(k < kStepsBeyond, both(s.above, last.above)),
+             same_surface(r, reach, s.z, last.z, s.offset - last.offset));
     IF_ANY (kHard && !joins) {
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
       found.completed.sectors |= joins ? 0u : sectors_of(r, reach, run, true, thickness, draw.shift);

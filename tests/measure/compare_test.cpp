@@ -118,7 +118,7 @@ TEST_F(Compare, channels_match_by_name_then_by_its_last_part) {
 TEST_F(Compare, ao_is_not_paired_with_a_component_of_a_normal) {
   const auto ao = exr("ao.exr", {{"Y", ramp}});
   const std::map<std::string, Plane> normal{{"N.X", box}, {"N.Y", box}, {"N.Z", box}};
-  expect_error(3, {exr("n.exr", normal), ao}, {"share no channel", "N.Y", "--channel"});
+  expect_error(3, {exr("n.exr", normal), ao}, {"share no channel", "N (X, Y, Z)", "--channel"});
   const auto hidden = exr("h.exr", {{"Y", ramp}, {"hidden1.Z", box}});
   EXPECT_EQ(measured({hidden, exr("o.exr", {{"AO", ramp}})})["channels"], json::array({"Y"}));
   EXPECT_EQ(measured({folder / "n.exr", ao, "--channel", "N.Y=Y"})["count"], ramp.size());

@@ -362,7 +362,7 @@ def check_pictures(browser, report):
     browser.wait(lambda: source("right") == stored(FRAMES[2], "production")["result"], "the second candidate is not shown")
     browser.choose("#viewer-right", "truth")
     assert not browser.run("return document.getElementById('legend').checkVisibility()")
-    browser.click("#viewer-show label:nth-child(2)")
+    browser.click("#viewer-show label:nth-child(3)")
     browser.wait(lambda: source("left") == stored(FRAMES[2], HOSTILE)["error"], "the signed error is not shown")
     assert source("right") is None and browser.run("return document.getElementById('legend').checkVisibility()")
     assert "RMSE" in browser.text("#viewer-numbers")
