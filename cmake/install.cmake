@@ -4,7 +4,7 @@
 # Man pages and completions, which the program prints itself.
 set(texts ${CMAKE_BINARY_DIR}/generated/share)
 add_custom_command(OUTPUT ${texts}/man/man1/alcove.1.gz
-  COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:alcove> -DFOLDER=${texts} -DCOMMANDS=run,inspect,compare,bench,presets,devices,doctor
+  COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:alcove> -DFOLDER=${texts} -DCOMMANDS=run,wedge,inspect,compare,bench,presets,devices,doctor
     -P ${CMAKE_SOURCE_DIR}/cmake/generate_texts.cmake
   DEPENDS alcove ${CMAKE_SOURCE_DIR}/cmake/generate_texts.cmake COMMENT "Writing man pages and completions" VERBATIM)
 add_custom_target(alcove_texts ALL DEPENDS ${texts}/man/man1/alcove.1.gz)

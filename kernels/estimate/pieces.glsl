@@ -156,7 +156,8 @@ Sample sample_beyond(Receiver r, Side side, Reach reach, float offset) {
   const int index = nearest.y * reach.width + nearest.x;
   const vec3 n = octahedral_direction(unpackSnorm2x16(normal[index]));
   const vec2 from = tangent_of(params.view, vec2(nearest) + 0.5);
-  const vec2 to = tangent_of(params.view, vec2(r.pixel) + 0.5 + beside);
+  // Not by the point's place on the image, which rounds otherwise in a part of the frame.
+  const vec2 to = r.tangent + params.view.tangent_per_pixel * beside;
   const float z =
       depth_beyond(params.view, from, occluder_depth[index], n, tangent_of(params.view, vec2(mirrored) + 0.5),
                    occluder_depth[mirrored.y * reach.width + mirrored.x], to, kLeastFacingToGoOn);

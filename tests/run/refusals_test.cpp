@@ -294,10 +294,10 @@ TEST_F(Suites, of_the_wrong_types_are_refused_by_file_table_and_key) {
   }
   const std::pair<const char*, Options> candidates[] = {
       {"slcies = 2", {"slcies", "did you mean slices"}},
-      {"slices = 65", {"--slices", "65"}},
+      {"slices = 65", {"slices", "65"}},
       {"preset = \"drat\"", {"drat", "did you mean draft"}},
       {"help = true", {"alcove run"}},
-      {"tolerance = 0.1\nestimator = \"hbao\"", {"--tolerance", "gtao"}},
+      {"tolerance = 0.1\nestimator = \"hbao\"", {"tolerance", "gtao"}},
       {"radius = \"auto\"", {"--radius auto", "of its truth"}},
       {"stride = \"4\"\ndenoise = \"none\"", {"--set stride", "--denoise bilateral"}}};
   for (const auto& [text, texts] : candidates)
