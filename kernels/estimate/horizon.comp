@@ -262,8 +262,7 @@ void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach rea
 
 /// Adds the runs that go on beyond the border. Their samples are far apart, and on average a gap between two of them is
 /// a part of a run.
-void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border,
-                          float gap) {
+void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, float gap) {
   Sample last = border;
   const vec2 at_border = slopes_of(border, false, 0.0);
   Run run = Run(border.place, border.place, at_border.x, at_border.y);
@@ -271,9 +270,8 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
   bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
   for (int k = 0; k < kStepsBeyond + (kHard ? 1 : 0); k++) {  // one more ends the last run
     const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
-    const bool joins =
-        both(both(k < kStepsBeyond, both(s.above, last.above)),
-             same_surface(r, reach, s.z, last.z, s.offset - last.offset));
+    const bool joins = both(both(k < kStepsBeyond, both(s.above, last.above)),
+                            same_surface(r, reach, s.z, last.z, s.offset - last.offset));
     IF_ANY (kHard && !joins) {
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
       found.completed.sectors |= joins ? 0u : sectors_of(r, reach, run, true, thickness, draw.shift);

@@ -20,9 +20,8 @@ constexpr int kSpacings[] = {16, 8, 4, 2, 1};
 Picture chosen_slowly(Picture picture, const SiteRule& rule) {
   for (int y = 0; y < picture.height; y++)
     for (int x = 0; x < picture.width; x++)
-      picture.at(x, y).is_site =
-          picture.at(x, y).is_surface &&
-          (picture.is_on_lattice(x, y, rule.spacing) || (rule.is_adaptive && picture.is_on_border(x, y)));
+      picture.at(x, y).is_site = picture.at(x, y).is_surface && (picture.is_on_lattice(x, y, rule.spacing) ||
+                                                                 (rule.is_adaptive && picture.is_on_border(x, y)));
   for (int spacing = rule.spacing / 2; rule.is_adaptive && spacing > 0; spacing /= 2) {
     const Picture wider = picture;
     for (int y = 0; y < picture.height; y++)
