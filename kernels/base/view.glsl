@@ -35,10 +35,13 @@ bool inside(View view, ivec2 pixel) {
 
 int index_of(View view, ivec2 pixel) { return pixel.y * view.size.x + pixel.x; }
 
-/// Steps of `direction` that stay on the image, from `pixel`.
+/// What is added to a number of pixels that would be whole but for rounding, so that every device counts as many.
+const float kWholePixels = 0.01;
+
+/// Steps of `direction` that stay on the image, from `pixel`, and kWholePixels.
 float steps_to_border(View view, ivec2 pixel, vec2 direction) {
   const vec2 room = mix(vec2(pixel), vec2(view.size - 1 - pixel), greaterThan(direction, vec2(0)));
-  const vec2 steps = room / max(abs(direction), 1e-6);
+  const vec2 steps = (room + kWholePixels) / max(abs(direction), 1e-6);
   return min(steps.x, steps.y);
 }
 
@@ -48,6 +51,9 @@ const float kMostChange = 2.0;
 /// The sine of the angle below a border pixel's tangent plane from which on what is seen is another surface: a smooth
 /// one bends less, and a normal map leans less.
 const float kMostBend = 0.55;
+
+/// Places less than this part of the depth apart are one.
+const float kRounding = 1e-6;
 
 /// The depth at which the plane of a border pixel's surface goes on at an image point beyond the border; kSkyDepth: it
 /// does not. It goes on no farther than it is seen inside: where the pixel as far inside, the mirrored one, shows
@@ -63,6 +69,7 @@ float depth_beyond(View view, vec2 from, float z, vec3 n, vec2 mirrored, float m
   const float there = perspective ? z * facing_from / facing_to : z + dot(n.xy, to - from) / facing_to;
   const bool faces = min(facing_from, facing_to) > least_facing;
   const vec3 inward = vec3(perspective ? mirrored_z * mirrored - z * from : mirrored - from, z - mirrored_z);
-  const bool goes_on = mirrored_z < kSkyDepth && dot(n, inward) >= -kMostBend * length(inward);
+  // The mirrored pixel may be the border's own: then `inward` is nothing but rounding.
+  const bool goes_on = mirrored_z < kSkyDepth && dot(n, inward) >= -kMostBend * length(inward) - kRounding * z;
   return z < kSkyDepth && faces && goes_on && there > z / kMostChange && there < z * kMostChange ? there : kSkyDepth;
 }

@@ -166,7 +166,7 @@ float change_across(View view, Lines lines, int rows, int column, int across, in
   const bool known = other < kSkyDepth && beside != across;
   const bool same = known && connected(perspective, view.tangent_per_pixel.x, nearest, other);
   float change = same ? value_of(perspective, other) - value_of(perspective, nearest) : 0.0;
-  IF_ANY (!same && nearest < kSkyDepth)
+  if (!same && nearest < kSkyDepth)
     change = change_behind(view, lines, rows, column, across, side, nearest, other, known);
   return change;
 }
@@ -276,12 +276,12 @@ void draw(inout Run run, View view, Lines lines, LinePlane plane, ivec2 steps, S
   const bool fits = goes_on && kEveryPixel == 0u && slope >= run.low && slope <= run.high &&
                     (kSurfaces == 1u || fits_thickness(run, here)) &&
                     ((t - 1 + lines.origin.x) & (kProfileRestart - 1)) != 0;
-  IF_ANY (run.is_pending && !fits) {
+  if (run.is_pending && !fits) {
     emit_vertex(run, last);
     run.is_pending = false;
   }
-  IF_ANY (run.is_open && !goes_on) close_run(run, last, thickness_of(view, plane, steps, run.start, last));
-  IF_ANY (here.is_surface && !goes_on) begin_run(run, here);
+  if (run.is_open && !goes_on) close_run(run, last, thickness_of(view, plane, steps, run.start, last));
+  if (here.is_surface && !goes_on) begin_run(run, here);
   if (goes_on) {
     const float reach = tolerance * (perspective ? here.value : 1.0);
     const float length_px = float(t - run.anchor);
@@ -376,7 +376,7 @@ void main() {
       bool goes = true;  // the first one may be no occluder
       for (uint k = 1u; k < kSlots; k++) {
         surfaces[k] = none;
-        IF_ANY (goes) surfaces[k] = step_at(view, lines, plane, extent.y, line, t, steps.y, k);
+        if (goes) surfaces[k] = step_at(view, lines, plane, extent.y, line, t, steps.y, k);
         goes = surfaces[k].is_surface;
       }
       for (uint slot = 0u; slot < kSlots; slot++) {

@@ -22,7 +22,7 @@ void main() {
   const int index = pixel.y * size.x + pixel.x;
   const int plane = size.x * size.y;
   const int count = int(params.count);
-  float sum = 0.0;
-  for (int p = 0; p < count; p++) sum += scales[index + p * plane];
-  ao[index] = sum / float(count);
+  float blocked = 0.0;  // where all is open the mean is exactly 1: n / n need not be
+  for (int p = 0; p < count; p++) blocked += 1.0 - scales[index + p * plane];
+  ao[index] = 1.0 - blocked / float(count);
 }

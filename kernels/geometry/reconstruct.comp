@@ -28,9 +28,8 @@ buffer Counts { FrameCounts counts; };
 const float kNearness = 0.1;
 
 /// Two sides are the same surface if their changes of 1/z differ by no more than so many errors of the better one, plus
-/// this part of 1/z for rounding, and if both changes are less than this part of 1/z. Tuned on rendered scenes.
+/// kRounding of 1/z, and if both changes are less than this part of 1/z. Tuned on rendered scenes.
 const float kSameSurface = 4.0;
-const float kRounding = 1e-6;
 const float kOneSurface = 0.01;
 
 /// The value that an affine function over the image would have here, by the two neighbours on one side; orthographic

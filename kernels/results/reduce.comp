@@ -21,14 +21,15 @@ int place(int plane, ivec2 pixel) { return (plane * params.size.y + pixel.y) * p
 float filtered(int plane, ivec2 corner) {
   const ivec2 first = corner + params.first;
   const ivec2 begin = max(first, ivec2(0)), end = min(first + params.count, params.size);
+  const float start = planes[place(plane, begin)];  // what is constant stays exactly so
   float sum = 0, weight = 0;
   for (int y = begin.y; y < end.y; y++)
     for (int x = begin.x; x < end.x; x++) {
       const float w = weights[x - first.x] * weights[y - first.y];
-      sum += w * planes[place(plane, ivec2(x, y))];
+      sum += w * (planes[place(plane, ivec2(x, y))] - start);
       weight += w;
     }
-  return sum / weight;
+  return start + sum / weight;
 }
 
 void main() {

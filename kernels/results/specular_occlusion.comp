@@ -68,5 +68,6 @@ void main() {
   const float cos_lobe = exp2(-3.32193 * roughness * roughness);
   const float seen =
       shared_solid_angle(sqrt(max(0.0, 1.0 - visibility)), cos_lobe, dot(unpack_normal(bent[index]), mirror));
-  result[index] = min(1.0, seen / shared_solid_angle(0.0, cos_lobe, dot(n, mirror)));
+  const float open = shared_solid_angle(0.0, cos_lobe, dot(n, mirror));
+  result[index] = seen < open ? seen / open : 1.0;  // where all is open exactly 1: a / a need not be
 }
