@@ -157,7 +157,6 @@ FrameOutputs downloaded(gpu::Recorder& gpu, const FrameOutputs& out) {
 FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings,
                        const Wanted& wanted) {
   if (is_open_sky(frame, settings, wanted)) return open_sky(gpu, frame, settings);
-  upload(gpu, frame);
   const Surfaces surfaces = surfaces_of(gpu, frame, settings);
   const Seen seen = visibility_of(gpu, frame, surfaces, settings, wanted);
   return downloaded(

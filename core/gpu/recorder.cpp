@@ -173,6 +173,7 @@ void Recorder::begin() {
   check(vkResetCommandPool(device_->handle(), pool_, 0), "vkResetCommandPool");
   used_ = 0;
   touched_.clear();
+  uploaded_.clear();
   recorded_.clear();
   next_submission();
   recording_ = true;
@@ -290,6 +291,8 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
          kernel.reflection().parameter_bytes, params.size());
   const auto buffers = buffers_of(kernel, bindings, absent);
   recorded_.push_back({pass_of(kernel, buffers), &kernel});
+  for (const Buffer* buffer : buffers)
+    if (buffer->use() == Use::upload && uploaded_.insert(buffer->handle()).second) upload(*buffer);
 
   const auto& group = kernel.reflection().group;
   const auto groups = [](std::uint32_t count, std::uint32_t size) { return (count + size - 1) / size; };

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -85,7 +86,8 @@ class Recorder {
     static_assert(sizeof(T) % 4 == 0, "Vulkan updates whole words");
     write_bytes(buffer, std::as_bytes(std::span(&value, 1)));
   }
-  /// Copies the host's bytes to the kernels' memory; does nothing for mapped buffers.
+  /// Copies the host's bytes of a buffer that kernels wrote first to their memory. What the host writes first, with
+  /// Use::upload, is copied before the first pass of the recording that takes it. Does nothing for mapped buffers.
   void upload(const Buffer& buffer);
   /// Copies the kernels' bytes to host() after run(); does nothing for mapped buffers.
   void download(const Buffer& buffer);
@@ -168,6 +170,7 @@ class Recorder {
   bool is_short_ = false;          // memory ran out once, so no buffer may be larger than it must be
   std::uint64_t recordings_ = 0;   // run or abandoned so far
   std::vector<VkBuffer> touched_;  // since the last barrier
+  std::set<VkBuffer> uploaded_;    // by the recording
   std::vector<RecordedPass> recorded_;
   std::vector<PassTime> passes_;
   std::map<const Kernel*, double> ms_per_byte_;  // the largest measured

@@ -104,7 +104,6 @@ std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen,
     inputs.others.push_back(filled(gpu, *witness, {}, seen.camera, inputs.others.size()));
   const std::vector<OtherView> by = inputs.others;
   const OtherView view = inputs.others.emplace_back(filled(gpu, seen, {}, seen.camera, by.size()));
-  upload(gpu, inputs);
   const gpu::Buffer& moving = gpu.buffer("other moves", seen.depth.size() * sizeof(std::uint32_t));
   surfels(gpu, view, by, moving);
   gpu.download(moving);
@@ -197,7 +196,6 @@ SeenFrame SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, 
   require_place(source, frame, option);
   if (settled_) settle_like(source, *settled_);
   const FrameInputs inputs = load_frame(gpu, source, source.reading.data, settings, frame);
-  upload(gpu, inputs);
   const GBuffer gbuffer = reconstruct(gpu, alcove::prepare(gpu, inputs, "other "));
   gpu.download(*gbuffer.depth);
   gpu.download(*gbuffer.normal);

@@ -117,5 +117,5 @@ void main() {
     const bool above = clear && hit_height * hit_height > kLeastElevation * kLeastElevation * dot(offset, offset);
     if (above && deeper > params.bias) blocked += range_weight(hit_z - z);
   }
-  ao[ao_index] = valid > 0.0 ? 1.0 - blocked / valid : 1.0;
+  ao[ao_index] = valid > 0.0 ? max(0.0, 1.0 - blocked / valid) : 1.0;  // a / a may be more than 1
 }

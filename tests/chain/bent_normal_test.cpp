@@ -345,7 +345,6 @@ TEST(BentNormals, fall_back_to_the_normal_where_nothing_is_open) {
   const Rendering room = furnished_room(40, 30);
   gpu::Recorder& gpu = recorder();
   const FrameInputs inputs = upload(gpu, room.frame);
-  upload(gpu, inputs);
   const GBuffer gbuffer = prepare(gpu, inputs);
   gpu::Buffer& closed = gpu.buffer("closed", 3 * room.frame.depth.size() * sizeof(float), gpu::Use::upload);
   std::ranges::fill(closed.as<float>(), 0.5f);

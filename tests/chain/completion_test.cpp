@@ -43,7 +43,6 @@ class CompletedPlanes : public testing::Test {
     frame.camera.cx += 3;
     frame.camera.cy += 5;
     inputs = upload(recorder(), frame);
-    upload(recorder(), inputs);
     gbuffer = reconstruct(recorder(), prepare(recorder(), inputs));
   }
 

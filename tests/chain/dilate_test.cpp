@@ -37,7 +37,6 @@ struct Filter {
 std::vector<float> run(const Filter& filter, const std::vector<float>& before, bool listed) {
   gpu::Recorder gpu(device());
   const FrameInputs inputs = upload(gpu, filter.frame);
-  upload(gpu, inputs);
   const GBuffer gbuffer = prepare(gpu, inputs);
   const GBuffer low = downsample(gpu, gbuffer, block_grid(inputs, int(filter.settings.resolution)));
   const Denoiser denoiser = denoiser_of(filter.settings);

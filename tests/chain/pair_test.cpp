@@ -26,7 +26,6 @@ Polygon plate(double y, double half_width, double half_height, double x = 0) {
 std::vector<float> hidden_of(const HostFrame& frame, int kept = 3) {
   gpu::Recorder& gpu = recorder();
   const FrameInputs inputs = upload(gpu, frame);
-  upload(gpu, inputs);
   const GBuffer gbuffer = layers(gpu, prepare(gpu, inputs), inputs, {kept, -1});
   gpu.download(*gbuffer.hidden);
   gpu.run();

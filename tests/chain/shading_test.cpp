@@ -22,7 +22,6 @@ Planes pass(const HostFrame& frame, const std::function<gpu::Buffer&(const GBuff
             FrameCounts* counts = nullptr) {
   gpu::Recorder& gpu = recorder();
   FrameInputs inputs = upload(gpu, frame);
-  upload(gpu, inputs);
   const GBuffer gbuffer = prepare(gpu, inputs);
   reconstruct(gpu, gbuffer);
   const gpu::Buffer& result = record(gbuffer, inputs);

@@ -183,7 +183,6 @@ struct TiledFloor {
   /// Takes the buffers of the next recording. Nothing is blocked, so the visibility is 1.
   void begin() {
     const FrameInputs inputs = upload(gpu, frame);
-    upload(gpu, inputs);
     gbuffer = prepare(gpu, inputs);
     const std::size_t bytes = sizeof(float) * frame.data.pixels();
     whole = &gpu.buffer("whole arcs", bytes, gpu::Use::device);

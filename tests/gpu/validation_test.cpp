@@ -48,7 +48,6 @@ void run_chain_of(gpu::Recorder& gpu, std::set<std::string>& kernels, const Esti
 /// The same of a room that another frame of it sees, from where it stands, with a margin for what that shows.
 void run_views(gpu::Recorder& gpu, std::set<std::string>& kernels, const EstimatorSettings& settings) {
   FrameInputs other = upload(gpu, room());
-  upload(gpu, other);
   const GBuffer seen = prepare(gpu, other, "other ");
   OtherView view;
   view.view = seen.view;

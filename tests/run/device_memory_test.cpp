@@ -56,6 +56,19 @@ TEST_F(DeviceMemory, decides_how_many_frames_are_computed_at_once) {
   EXPECT_GT(poorest["frames"][0]["parts"], 1);
 }
 
+TEST_F(DeviceMemory, that_the_host_does_not_see_keeps_what_is_as_in_the_frame_before) {
+  const Window window{0, 0, 320, 180};
+  for (int i = 1; i <= kFrames; i++) {
+    FrameFile frame = wall_frame(window, window);
+    for (int x = 0; x < 20; x++) frame.planes.at("ViewLayer.Depth.Z")[std::size_t(320 * 90 + 30 * i + x)] *= 0.9f;
+    frame.write(input(i));
+  }
+  const Options options = typed("--threads 1 --radius 0.1");
+  expect_whole(with(kRich, kRich), joined(options, {"--no-skip"}));
+  const json frames = expect_whole(with(kRich, kRich), options)["frames"];
+  EXPECT_GT(frames[kFrames - 1]["tiles"]["kept"], 0);
+}
+
 TEST_F(DeviceMemory, that_runs_out_halves_the_frames_at_once_and_then_the_tiles) {
   expect_whole(with(kRich, kRich));
   const json fewer = expect_whole(with(6, kRich));

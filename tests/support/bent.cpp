@@ -28,7 +28,6 @@ std::vector<Vec3> bent_normals(const HostFrame& frame, const EstimatorSettings& 
 std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& settings) {
   gpu::Recorder& gpu = recorder();
   const FrameInputs inputs = upload(gpu, frame);
-  upload(gpu, inputs);
   const GBuffer gbuffer = prepare(gpu, inputs);
   reconstruct(gpu, gbuffer);
   const Estimate result = estimate(gpu, gbuffer, sites(gpu, gbuffer, site_rule_of(settings)), inputs, settings, true);

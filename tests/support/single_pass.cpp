@@ -19,7 +19,6 @@ gpu::Buffer& visibility(const std::vector<float>& values) {
 
 FrameInputs uploaded(const HostFrame& frame) {
   const FrameInputs inputs = upload(recorder(), frame);
-  upload(recorder(), inputs);
   return inputs;
 }
 

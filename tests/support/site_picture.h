@@ -90,7 +90,6 @@ struct Prepared {
 
 inline Prepared prepared(const HostFrame& frame) {
   Prepared result{upload(recorder(), frame), {}};
-  upload(recorder(), result.inputs);
   result.gbuffer = reconstruct(recorder(), prepare(recorder(), result.inputs));
   return result;
 }

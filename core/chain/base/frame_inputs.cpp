@@ -71,16 +71,4 @@ FrameInputs inputs_of(const Reading& reading, const RawPlaneArray<gpu::Buffer*>&
   return inputs;
 }
 
-void upload(gpu::Recorder& gpu, const FrameInputs& frame) {
-  for (const auto* plane : frame.planes.entries)
-    if (plane) gpu.upload(*plane);
-  for (const auto& other : frame.others)
-    for (const auto* plane : {other.depth, other.normal, other.moving})
-      if (plane) gpu.upload(*plane);
-  for (const auto* plane : {frame.estimates.depth, frame.estimates.normal, frame.estimates.values})
-    if (plane) gpu.upload(*plane);
-  for (const auto& group : frame.estimates.groups)
-    for (const auto* part : {group.planes, group.frames}) gpu.upload(*part);
-}
-
 }  // namespace alcove

@@ -101,7 +101,4 @@ struct FrameInputs {
 /// Gives the terms of kernels for planes that are read so. The host must still see the depth.
 FrameInputs inputs_of(const Reading& reading, const RawPlaneArray<gpu::Buffer*>& planes, int frame);
 
-/// Records the upload of every plane, those of others too.
-void upload(gpu::Recorder& gpu, const FrameInputs& frame);
-
 }  // namespace alcove

@@ -30,7 +30,6 @@ Matte matte(gpu::Recorder& gpu, const FrameInputs& frame, RawPlane which) {
   gpu::Buffer& objects =
       gpu.buffer(prefix + "matte objects", std::max<std::size_t>(1, wanted.size()) * sizeof(uint), gpu::Use::upload);
   std::ranges::partial_sort_copy(wanted, objects.as<uint>());
-  gpu.upload(objects);
   gpu::Buffer& result = gpu.buffer(prefix + "matte", plane_bytes(frame.view));
   const bool is_ranked = reading.kind == MatteKind::ranked;
   gpu.dispatch("matte", MatteParams{frame.view.size, uint(wanted.size())},

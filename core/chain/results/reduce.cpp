@@ -64,7 +64,6 @@ FrameOutputs reduce(gpu::Recorder& gpu, const FrameInputs& frame, const PixelFil
   const FilterWeights along = filter_weights(filter, factor);
   gpu::Buffer& weights = gpu.buffer("filter weights", along.weights.size() * sizeof(float), gpu::Use::upload);
   std::ranges::copy(along.weights, weights.as<float>().begin());
-  gpu.upload(weights);
   const auto within = [&](int place) { return (place % factor + factor) % factor; };
   ReduceParams params{};
   params.size = frame.view.size;

@@ -96,7 +96,6 @@ gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Bu
   std::ranges::transform(frame.ambient, lights.as<AmbientLight>().begin(), [](const AmbientReading& reading) {
     return AmbientLight{float(reading.weight), reading.color};
   });
-  gpu.upload(lights);
   CompositeParams params{};
   params.view = frame.view;
   params.has_alpha = planes_in(beauty, frame.view) == 4 ? 1 : 0;

@@ -148,7 +148,6 @@ TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
         ASSERT_EQ(spacing_of(settings), 1) << variant.name << ": every pixel is to be written";
         gpu::Recorder& gpu = recorder();
         const FrameInputs inputs = upload(gpu, made.frame);
-        upload(gpu, inputs);
         const GBuffer gbuffer = prepare(gpu, inputs);
         reconstruct(gpu, gbuffer);
         const std::size_t pixels = made.frame.data.pixels();
