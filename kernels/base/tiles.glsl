@@ -63,9 +63,12 @@ ListedPlace listed_place(uvec2 group, uint invocation) {
   return ListedPlace(place / kTilePixels, place % kTilePixels);
 }
 
-/// Packs a site: such a pixel in one word.
+/// Packs a site: such a pixel in one word, and whether it is of the widest lattice.
+const uint kWideSite = 0x80000000u;
 uint pack_site(uint tile, uint pixel) { return tile * kTilePixels + pixel; }
-ListedPlace unpack_site(uint site) { return ListedPlace(site / kTilePixels, site % kTilePixels); }
+ListedPlace unpack_site(uint site) {
+  return ListedPlace((site & ~kWideSite) / kTilePixels, site % kTilePixels);
+}
 
 /// Packs a run of pixels that an invocation of a filter computes in each of kGroupX lines: the number of these lines,
 /// and the number of the run in them.

@@ -52,7 +52,8 @@ layout(constant_id = 2) const uint kMode = kFalloffNone;  // one of kFalloff* of
 // one of kThickness*, of what is not connected to the receiver, kCompletes* and kInSectors or not, and
 // kHiddenSurface times as many surfaces as a pixel may have behind the first
 layout(constant_id = 4) const uint kSolid = kThicknessWidth;
-layout(constant_id = 3) const uint kSparse = 0;  // 1: only the sites of the list are estimated
+// 1: only the sites of the list are estimated; 2: and those of the widest lattice by half as many slices again
+layout(constant_id = 3) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
 // one float per pixel, depth of the first surfaces that may block
@@ -582,7 +583,7 @@ void write_bent(int index, int plane, vec3 b) {
 }
 
 /// Writes the visibility of a pixel and, where it is asked for, its mean open direction.
-void estimate(ivec2 pixel) {
+void estimate(ivec2 pixel, uint slices) {
   const View view = params.view;
   const int index = index_of(view, pixel);
   const int plane = view.size.x * view.size.y;
@@ -601,8 +602,8 @@ void estimate(ivec2 pixel) {
   float whole = 0.0;
   float completed_arcs = 0.0;
   vec3 bent_blocked = vec3(0);
-  for (uint s = 0u; s < kSlices; s++) {
-    const Slice slice = slice_at(view, r, s, kSlices, noise.x);  // 1. and 2.
+  for (uint s = 0u; s < slices; s++) {
+    const Slice slice = slice_at(view, r, s, slices, noise.x);  // 1. and 2.
     if (slice.weight < kLeastWeight) continue;
     whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);  // both sides' whole_arc()
     for (int sign = -1; sign <= 1; sign += 2) {
@@ -622,5 +623,6 @@ void estimate(ivec2 pixel) {
 
 void main() {
   const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-  if (both(here.exists, is_mine(list[here.tile]))) estimate(here.pixel);
+  if (both(here.exists, is_mine(list[here.tile])))
+    estimate(here.pixel, kSparse == 2u && here.is_wide ? kSlices + kSlices / 2u : kSlices);
 }

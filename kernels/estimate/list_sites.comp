@@ -16,11 +16,12 @@ readonly buffer TileCountsBuffer { TileCounts tile_counts; };
 writeonly buffer List { uint list[]; };  // one uint per site of a listed tile, see pack_site; in no order of tiles
 buffer Counts { SiteCounts counts; };    // zeros before
 
-/// The number of sites that the workgroup lists, their first place in the list, and the number of each lattice.
-shared uint listed_here, begin, of_lattice[kLattices];
+/// The number of sites that the workgroup lists, their first place in the list, and the number of each lattice. Those of
+/// the widest lattice come first, so that neighbours in the list take as many slices.
+shared uint wide_here, others_here, begin, of_lattice[kLattices];
 
 void main() {
-  if (gl_LocalInvocationIndex == 0u) listed_here = 0u;
+  if (gl_LocalInvocationIndex == 0u) wide_here = others_here = 0u;
   if (gl_LocalInvocationIndex < kLattices) of_lattice[gl_LocalInvocationIndex] = 0u;
   barrier();
   const uint number =
@@ -28,20 +29,24 @@ void main() {
   const bool is_listed = number < tile_counts.listed;
   const ivec2 tile = is_listed ? unpack_tile(tiles[number]) : ivec2(0);
   const int words = words_of_tile(tile, tiles_of(params.size));
-  uint site[2] = uint[2](0u, 0u), within[kLattices];
+  uint wide[2] = uint[2](0u, 0u), others[2] = uint[2](0u, 0u), within[kLattices];
   for (uint k = 0u; k < kLattices; k++) within[k] = 0u;
   for (int y = 0; y < kTile && is_listed; y++) {
     const uint row = rows[words + y] >> kSiteByte;
-    site[y / 4] |= row << uint(y % 4 * kTile);
-    for (uint k = 0u; k < kLattices; k++)
-      within[k] += bitCount(row & lattice_row(tile * kTile + ivec2(0, y) + params.origin, 16 >> k));
+    const ivec2 first = tile * kTile + ivec2(0, y) + params.origin;
+    const uint widest = row & lattice_row(first, 16), shift = uint(y % 4 * kTile);
+    wide[y / 4] |= widest << shift;
+    others[y / 4] |= (row & ~widest) << shift;
+    for (uint k = 0u; k < kLattices; k++) within[k] += bitCount(row & lattice_row(first, 16 >> k));
   }
-  uint at = 0u;
-  if (is_listed) at = atomicAdd(listed_here, within[kLattices - 1u]);
+  uint at_wide = 0u, at_others = 0u;
+  if (is_listed) at_wide = atomicAdd(wide_here, within[0]);
+  if (is_listed) at_others = atomicAdd(others_here, within[kLattices - 1u] - within[0]);
   for (uint k = 0u; k < kLattices; k++)
     if (is_listed) atomicAdd(of_lattice[k], within[k] - (k > 0u ? within[k - 1u] : 0u));
   barrier();
   if (gl_LocalInvocationIndex == 0u) {
+    const uint listed_here = wide_here + others_here;
     begin = atomicAdd(counts.listed, listed_here);
     const uvec2 groups = dispatch_of((begin + listed_here + kGroupX * kGroupY - 1u) / (kGroupX * kGroupY));
     atomicMax(counts.groups.x, groups.x);
@@ -51,8 +56,12 @@ void main() {
   if (gl_LocalInvocationIndex < kLattices)
     atomicAdd(counts.of_lattice[gl_LocalInvocationIndex], of_lattice[gl_LocalInvocationIndex]);
   barrier();
-  at += begin;
-  for (uint half_tile = 0u; half_tile < 2u; half_tile++)
-    for (uint left = site[half_tile]; left != 0u; left &= left - 1u)
-      list[at++] = pack_site(number, 32u * half_tile + uint(findLSB(left)));
+  at_wide += begin;
+  at_others += begin + wide_here;
+  for (uint half_tile = 0u; half_tile < 2u; half_tile++) {
+    const uint first = pack_site(number, 32u * half_tile);
+    for (uint left = wide[half_tile]; left != 0u; left &= left - 1u)
+      list[at_wide++] = kWideSite | first + uint(findLSB(left));
+    for (uint left = others[half_tile]; left != 0u; left &= left - 1u) list[at_others++] = first + uint(findLSB(left));
+  }
 }

@@ -9,17 +9,20 @@ struct ListedPixel {
   bool exists;
   uint tile;  // in the list
   ivec2 pixel;
+  bool is_wide;  // a site of the widest lattice
 };
 
 ListedPixel listed_pixel(uvec2 group, uint invocation) {
   ListedPlace place = listed_place(group, invocation);
-  bool exists = place.tile < counts.listed;
+  bool exists = place.tile < counts.listed, is_wide = false;
   if (kSparse != 0u) {
     const uint at = pack_site(place.tile, place.pixel);
     exists = at < site_counts.listed;
-    if (exists) place = unpack_site(sites[at]);
+    const uint site = exists ? sites[at] : 0u;
+    if (exists) place = unpack_site(site);
+    is_wide = (site & kWideSite) != 0u;
   }
-  if (!exists) return ListedPixel(false, 0u, ivec2(0));
+  if (!exists) return ListedPixel(false, 0u, ivec2(0), false);
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile]), place.pixel);
-  return ListedPixel(inside(params.view, pixel), place.tile, pixel);
+  return ListedPixel(inside(params.view, pixel), place.tile, pixel, is_wide);
 }

@@ -33,10 +33,23 @@ struct DenoiseParams {
   float weight[9];    // by the distance in pixels, 0 to the radius; of any sum
 };
 
+ALCOVE_CONSTANT int kLatticeStep = 4;  // px between the sites of the widest lattice
+ALCOVE_CONSTANT int kFitReach = 12;    // px in x and in y from which a site takes others' estimates
+
+ALCOVE_CONSTANT int kFitRun = 4;       // sites in a row that one invocation computes
+
+struct FitSitesParams {
+  View view;
+  ivec2 first;  // px: the lattice's first pixel; it may lie beside the image
+  ivec2 sites;  // in x and y
+  float reach;  // px that the radius is wide at unit depth (orthographic: at any)
+};
+
 ALCOVE_CONSTANT uint kInterpolateColumns = 1;  // columns, after rows; else rows
 ALCOVE_CONSTANT uint kInterpolateListed = 2;   // only the runs of the list, not all
 ALCOVE_CONSTANT uint kInterpolateByDepth = 4;  // weighs by depth_sigma instead of by plane distance
 ALCOVE_CONSTANT uint kInterpolateLooksUp = 8;  // weighs by `weight` instead of by the parabola
+ALCOVE_CONSTANT uint kInterpolateFitted = 16;  // the sites of the lattice have the values of fit_sites
 
 // Sites in reach weigh at least this part of what they weigh at the pixel itself: they may be all that there is.
 ALCOVE_NUMBER kLeastWindow = 1e-6;
@@ -46,8 +59,10 @@ struct InterpolateParams {
   ivec2 axis;         // (1, 0): along rows; (0, 1): along columns
   float depth_sigma;  // of the depth: a step by this part of it weighs 1/e
   float missing;      // what a pixel gets that no site is in reach of: 1, or the middle of what a plane holds
-  float narrowness;   // of a parabola: at d pixels 1 - d^2 times this of what it is at 0; at least kLeastWindow
-  float weight[9];    // by the distance in pixels, 0 to the radius; from the radius to the radius their sum is 1
+  float reach;        // px, of the parabola at unit depth (orthographic: at any): from so far a site counts, in the
+                      // limits of the kernel
+  ivec2 first, sites;  // of the lattice, as FitSitesParams has them
+  float weight[9];     // by the distance in pixels, 0 to the radius; from the radius to the radius their sum is 1
 };
 
 struct UpsampleParams {

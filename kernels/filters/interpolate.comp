@@ -17,6 +17,7 @@
 // One invocation computes a run of pixels, and goes over the sites in reach of it. A subgroup goes on as long as one of
 // its lanes has any: so those beside each other take rows that lie 4 apart, on which a wide lattice has as many.
 #version 450
+#define ALC_RAW .4
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/filters/filters.h"
 #include "kernels/base/view.glsl"
@@ -28,6 +29,7 @@ layout(constant_id = 0) const int kRadius = 8;  // pixels to each side, 1 to kDe
 layout(constant_id = 1) const uint kMode = 0;   // bits of kInterpolate*
 layout(constant_id = 2) const int kPlanes = 1;  // how many planes; they share their weights
 const bool kColumns = (kMode & kInterpolateColumns) != 0u;
+const bool kFitted = (kMode & kInterpolateFitted) != 0u && !kColumns;
 const uint kByDepth = kMode & kInterpolateByDepth;
 layout(scalar, push_constant) uniform Push { InterpolateParams params; };
 // planes of floats in [0, 1], visibility or the like, at sites; of columns: what rows have made, see pack_blocked
@@ -39,12 +41,16 @@ readonly buffer List { uint list[]; };       // one uint per run, from dilate; o
 readonly buffer Counts { RunCounts counts; };
 // a word for each run of a row and 32 rows, with a bit for each that is written; zeros before the rows
 buffer Runs { uint runs[]; };
+readonly buffer Fitted { float fitted[]; };  // planes of the lattice's pixels, from fit_sites; only where fitted
 readonly buffer Sites { uint rows[]; };  // 8 words per tile, see tiles.glsl; not read along columns
 
 #include "kernels/filters/likeness.glsl"
 
 /// Pixels that one invocation looks at.
 const int kCount = kDenoiseRun + 2 * kRadius;
+
+/// A pixel takes sites from so many pixels away, however small the radius is: it has some there, see sites.comp.
+const int kLeastReach = 3;
 
 /// The slope of the line is held back by this, px^2: a spread of the sites this wide halves it. It keeps few sites, and
 /// noisy ones, from a slope of their own.
@@ -79,37 +85,51 @@ uint sites_of_row(ivec2 first) {
   return bits;
 }
 
-/// 2. How a site weighs at a pixel so far away. It depends on nothing but the distance, not even by rounding, so that a
-/// pixel gets the same bits wherever its run begins. A kernel of the user's is looked up.
-float window_at(float away) {
+/// 2. How a site weighs at a pixel so far away. It depends on nothing but the pixel and the distance, not even by
+/// rounding, so that a pixel gets the same bits wherever its run begins. A kernel of the user's is looked up.
+float window_at(float away, float narrowness) {
   if ((kMode & kInterpolateLooksUp) != 0u) return params.weight[min(int(abs(away)), kRadius)];
-  return params.weight[0] * max(kLeastWindow, 1.0 - params.narrowness * (away * away));
+  precise const float window = 1.0 - narrowness * (away * away);
+  return params.weight[0] * max(kLeastWindow, window);
+}
+
+/// The narrowness of a pixel's parabola, which is 0 a pixel beyond its reach: no contact is smeared over more than a part
+/// of the radius.
+float narrowness_of(Tap tap) {
+  const float end = 1.0 + clamp(params.reach / tap.scale, float(min(kLeastReach, kRadius)), float(kRadius));
+  return 1.0 / (end * end);
 }
 
 /// Makes the pixels of a run from these bits of those that the invocation looks at.
 void interpolate(ivec2 first, uint sites, int plane) {
   Tap taps[kDenoiseRun];
   Sums sums[kDenoiseRun];
+  float narrowness[kDenoiseRun];
   float value[kPlanes * kDenoiseRun], slope[kPlanes * kDenoiseRun];  // sums of what is blocked, and times the distance
   for (int i = 0; i < kDenoiseRun; i++) {
     taps[i] = tap_at(first + i * params.axis);
     sums[i] = Sums(0.0, 0.0, 0.0);
+    narrowness[i] = narrowness_of(taps[i]);
     for (int p = 0; p < kPlanes; p++) value[p * kDenoiseRun + i] = slope[p * kDenoiseRun + i] = 0.0;
   }
   for (uint left = sites; left != 0u; left &= left - 1u) {
     const int j = findLSB(left) - kRadius;
     const ivec2 site = first + j * params.axis;
     const int index = index_of(params.view, site);
-    const float weight = kColumns ? square(unpackUnorm2x16(ao[index]).y) : 1.0;
+    const ivec2 beside = site - params.first;
+    const bool is_of_lattice = kFitted && ((beside.x | beside.y) & (kLatticeStep - 1)) == 0;
+    const int of_lattice = (beside.y / kLatticeStep) * params.sites.x + beside.x / kLatticeStep;
+    const float weight = kColumns ? square(unpackUnorm2x16(ao[index]).y) : kFitted && !is_of_lattice ? ALC_RAW : 1.0;
     const Tap tap = tap_at(site);
     float blocked[kPlanes];
     for (int p = 0; p < kPlanes; p++) {
       const uint word = ao[index + p * plane];
       blocked[p] = kColumns ? unpackUnorm2x16(word).x : 1.0 - uintBitsToFloat(word);
+      if (kFitted && is_of_lattice) blocked[p] = 1.0 - fitted[of_lattice + p * params.sites.x * params.sites.y];
     }
     for (int i = 0; i < kDenoiseRun; i++) {
       const float away = float(j - i);
-      const float at = window_at(away);
+      const float at = window_at(away, narrowness[i]);
       const float alike = similarity(taps[i], tap, away, kLeastSimilarity);
       const float share = abs(away) <= float(kRadius) ? weight * at * alike : 0.0;
       // 3.

@@ -275,7 +275,8 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   buffers.insert(buffers.end(), {{"Bent", gpu::Optional(out.bent)}, {"Completed", gpu::Optional(out.completed)}});
   const uint mode = uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
-  std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, out.listed.sites ? 1u : 0u, solid};
+  std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode,
+                              out.listed.sites ? 2u : 0u, solid};
   gpu.dispatch("horizon", params, buffers, estimate_extent(out.listed), constants);
   if (gbuffer.surfaces == 1) return;
   buffers.push_back({"Hidden", occluder_hidden_of(gbuffer)});

@@ -24,6 +24,9 @@ std::vector<double> gaussian(int radius) {
   return weights;
 }
 
+/// Filters reach no farther than this part of the radius.
+constexpr double kFilteredPart = 0.4;
+
 /// The narrowness of interpolate's parabola that is 0 a pixel beyond the radius.
 double narrowness_of(const EstimatorSettings& settings) {
   const double end = denoise_radius_of(settings) + 1;
@@ -85,9 +88,14 @@ gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& liste
 
 }  // namespace
 
+bool fits_sites(const EstimatorSettings& settings) {
+  return settings.denoise == Denoise::bilateral && settings.denoise_kernel.empty() &&
+         settings.denoise_depth_sigma == 0 && spacing_of(settings) == kLatticeStep * kLatticeStep && is_adaptive(settings);
+}
+
 int denoise_radius_of(const EstimatorSettings& settings) {
   if (settings.denoise_radius > 0) return settings.denoise_radius;
-  return spacing_of(settings) > 1 ? 8 : 4;
+  return spacing_of(settings) > 1 && !fits_sites(settings) ? 8 : 4;
 }
 
 int denoise_reach_of(const EstimatorSettings& settings) {
@@ -110,14 +118,19 @@ Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& e
 }
 
 int filter_reach_of(const EstimatorSettings& settings) {
-  const int denoised = denoise_reach_of(settings);
+  const int denoised = denoiser_of(settings).reach();
   const int refined = settings.tolerance > 0 ? kRefineReach : 0;
   return int(settings.resolution) * (denoised + refined + (settings.resolution == Resolution::full ? 0 : 2));
 }
 
 Denoiser denoiser_of(const EstimatorSettings& settings) {
   return {weights_of(settings), settings.denoise_depth_sigma,
-          settings.denoise_kernel.empty() ? narrowness_of(settings) : 0};
+          !settings.denoise_kernel.empty(), fits_sites(settings),
+          is_adaptive(settings) ? kFilteredPart * std::ranges::min(radii_of(settings)) : HUGE_VAL};
+}
+
+int Denoiser::reach() const {
+  return weights.empty() ? 0 : int(weights.size()) - 1 + (fits_sites ? kFitReach : 0);
 }
 
 FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const Denoiser& denoiser) {
@@ -126,7 +139,7 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
   const BlockGrid& grid = gbuffer.grid;
   const bool denoises = !denoiser.weights.empty();
   const bool upsamples = grid.factor > 1;
-  const int radius = denoises ? int(denoiser.weights.size()) - 1 : 0;
+  const int radius = denoiser.reach();
   const int width = gbuffer.view.size.x;
   const int height = gbuffer.view.size.y;
   if (!denoises && !upsamples) return {};
@@ -183,18 +196,52 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& pl
   return result;
 }
 
+/// The lattice of the widest sites.
+struct Lattice {
+  ivec2 first, sites;
+};
+Lattice lattice_of(const GBuffer& gbuffer, const Sites& sites) {
+  const ivec2 shifted{gbuffer.grid.origin.x + sites.shift.x, gbuffer.grid.origin.y + sites.shift.y};
+  const ivec2 first{-(shifted.x & (kLatticeStep - 1)), -(shifted.y & (kLatticeStep - 1))};
+  return {first,
+          {int(groups_of(gbuffer.view.size.x - first.x, uint(kLatticeStep))),
+           int(groups_of(gbuffer.view.size.y - first.y, uint(kLatticeStep)))}};
+}
+
+/// The values of the lattice's sites, smoothed among themselves; null: they are not.
+const gpu::Buffer* fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& planes, const Sites& sites,
+                             const Denoiser& denoiser, const std::string& prefix) {
+  if (!denoiser.fits_sites) return nullptr;
+  const Lattice lattice = lattice_of(gbuffer, sites);
+  const uint count = planes_in(planes, gbuffer.view);
+  const gpu::Buffer& fitted = gpu.buffer(prefix + "fitted sites", sizeof(float) * count * std::size_t(lattice.sites.x) *
+                                                                      std::size_t(lattice.sites.y));
+  gpu.dispatch("fit_sites",
+               FitSitesParams{gbuffer.view, lattice.first, lattice.sites,
+                              float(denoiser.within / double(gbuffer.view.tangent_per_pixel.x))},
+               {{"Ao", planes}, {"Depth", gbuffer.depth}, {"Normal", gbuffer.normal}, {"Result", fitted}},
+               {groups_of(lattice.sites.x, uint(kFitRun)), uint(lattice.sites.y)}, {count});
+  return &fitted;
+}
+
 gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
                          const Denoiser& denoiser, const std::string& prefix, const FilterRuns& runs) {
+  const gpu::Buffer* fitted = fit_sites(gpu, gbuffer, planes, sites, denoiser, prefix);
   const auto radius = uint(denoiser.weights.size() - 1);
   InterpolateParams params = filter_params<InterpolateParams>(gbuffer, denoiser);
   const gpu::Buffer& written =
       gpu.buffer(prefix + "written rows",
                  sizeof(uint) * groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32));
   gpu.clear(written);
-  params.narrowness = float(denoiser.narrowness);
+  params.reach = float(denoiser.within / double(gbuffer.view.tangent_per_pixel.x));
+  if (fitted) {
+    const Lattice lattice = lattice_of(gbuffer, sites);
+    params.first = lattice.first;
+    params.sites = lattice.sites;
+  }
   params.missing = prefix == kBentPrefix ? 0.5f : 1.0f;
   const uint mode =
-      (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.narrowness > 0 ? 0 : kInterpolateLooksUp);
+      (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.looks_up ? kInterpolateLooksUp : 0);
   gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
   gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
   const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
@@ -207,9 +254,10 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
                   {"List", gpu::Optional(listed.runs)},
                   {"Counts", gpu::Optional(listed.counts)},
                   {"Runs", written},
+                  {"Fitted", gpu::Optional(fitted)},
                   {"Sites", sites.rows}},
                  runs_extent(gbuffer, axis, listed),
-                 {radius, mode | (axis.y ? kInterpolateColumns : 0) | (listed.runs ? kInterpolateListed : 0),
+                 {radius, mode | (axis.y ? kInterpolateColumns : fitted ? kInterpolateFitted : 0) | (listed.runs ? kInterpolateListed : 0),
                   planes_in(planes, gbuffer.view)});
   };
   along({1, 0}, runs.rows, planes, rows);

@@ -1,0 +1,126 @@
+// Smooths the visibility of the sites of the widest lattice among themselves, each surface by itself.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planes of visibility at sites, depth, normals.
+// Out: as many planes of the lattice's pixels. Where all is open it stays exactly 1.
+//
+// A site takes its own place on the plane, over the image, that fits the sites about it best (W. S. Cleveland, "Robust
+// Locally Weighted Regression and Smoothing Scatterplots", 1979): a mean alone would be pulled to that side of an edge
+// on which there are sites. They count as far as they show one surface (likeness.glsl), by a parabola of their distance,
+// and no further than the radius is wide in pixels. Of 29 sites a sixth of the noise is left, which as many pixels'
+// own estimates would pay for with twenty times the samples.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "kernels/filters/filters.h"
+#include "kernels/base/view.glsl"
+#include "kernels/base/normal.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(constant_id = 0) const int kPlanes = 1;  // how many planes; they share their weights
+layout(scalar, push_constant) uniform Push { FitSitesParams params; };
+readonly buffer Ao { float ao[]; };          // planes of floats in [0, 1], visibility or the like, at sites
+readonly buffer Depth { float depth[]; };    // one float per pixel, of the G-buffer of that visibility
+readonly buffer Normal { uint normal[]; };   // one uint per pixel, of the same
+writeonly buffer Result { float result[]; }; // as many planes, one float per pixel of the lattice
+
+const bool kByDepth = false;
+
+/// Sites to each side.
+const int kReach = kFitReach / kLatticeStep;
+
+/// The slopes of the plane are held back by this, px^2: a spread of the sites this wide halves them.
+const float kLeastSpread = 4.0;
+
+struct Tap {
+  float z, scale, ahead;
+  vec2 across;
+};
+
+Tap tap_at(View view, ivec2 pixel) {
+  const int index = index_of(view, pixel);
+  Tap tap = Tap(depth[index], 1.0, kSkyDepth, vec2(0));
+  const bool perspective = view.orthographic == 0;
+  tap.scale = perspective ? tap.z : 1.0;
+  const vec3 n = unpack_normal(normal[index]);
+  const float sigmas = 1.0 / (abs(view.tangent_per_pixel.x) * tap.scale);
+  if (tap.z < kSkyDepth) tap.ahead = ((perspective ? dot(n.xy, tangent_of(view, vec2(pixel) + 0.5)) : 0.0) - n.z) * sigmas;
+  tap.across = n.xy * view.tangent_per_pixel * sigmas;
+  return tap;
+}
+
+float similarity(Tap a, Tap b, vec2 pixels) {
+  const float further = b.z - a.z;
+  const float above_b = a.ahead * further + dot(a.across, pixels) * b.scale;
+  const float above_a = b.ahead * further + dot(b.across, pixels) * a.scale;
+  return max(0.0, 1.0 - max(above_a * above_a, above_b * above_b));
+}
+
+/// Sums over the sites about one: of their weights, times their distance, times its products; of what they block, and
+/// that times the distance.
+struct Sums {
+  float whole, xx, xy, yy;
+  vec2 along, slope[kPlanes];
+  float value[kPlanes];
+};
+
+void write(ivec2 site, Sums s) {
+  const float over = s.whole > 0.0 ? 1.0 / s.whole : 0.0;
+  const vec2 middle = s.along * over;
+  const float xx = s.xx + kLeastSpread * s.whole - s.along.x * middle.x;
+  const float yy = s.yy + kLeastSpread * s.whole - s.along.y * middle.y;
+  const float xy = s.xy - s.along.x * middle.y;
+  const float scale = 1.0 / max(xx * yy - xy * xy, 1e-30);
+  for (int p = 0; p < kPlanes; p++) {
+    const float mean = s.value[p] * over;
+    const vec2 rise = s.slope[p] - s.along * mean;
+    const vec2 slope = scale * vec2(yy * rise.x - xy * rise.y, xx * rise.y - xy * rise.x);
+    result[(p * params.sites.y + site.y) * params.sites.x + site.x] = 1.0 - clamp(mean - dot(slope, middle), 0.0, 1.0);
+  }
+}
+
+void main() {
+  const View view = params.view;
+  const ivec2 site = ivec2(gl_GlobalInvocationID.xy) * ivec2(kFitRun, 1), sites = params.sites;
+  if (any(greaterThanEqual(site, sites))) return;
+  const ivec2 pixel = site * kLatticeStep + params.first, most = view.size - 1;
+  const int plane = view.size.x * view.size.y;
+  Tap here[kFitRun];
+  float narrowness[kFitRun];
+  Sums sums[kFitRun];
+  for (int i = 0; i < kFitRun; i++) {
+    here[i] = tap_at(view, clamp(pixel + ivec2(i * kLatticeStep, 0), ivec2(0), most));
+    const float end = min(float(kFitReach), params.reach / here[i].scale) + 0.5 * float(kLatticeStep);
+    narrowness[i] = 1.0 / (end * end);
+    sums[i].whole = sums[i].xx = sums[i].xy = sums[i].yy = 0.0;
+    sums[i].along = vec2(0);
+    for (int p = 0; p < kPlanes; p++) {
+      sums[i].value[p] = 0.0;
+      sums[i].slope[p] = vec2(0);
+    }
+  }
+  for (int y = -kReach; y <= kReach; y++)
+    for (int x = -kReach; x < kReach + kFitRun; x++) {
+      const ivec2 other = pixel + kLatticeStep * ivec2(x, y), nearest = clamp(other, ivec2(0), most);
+      const Tap tap = tap_at(view, nearest);
+      const bool is_site = other == nearest ? tap.z < kSkyDepth : false;
+      const float exists = is_site ? 1.0 : 0.0;
+      float blocked[kPlanes];  // what is no site was never written: 0 times it need not be 0
+      for (int p = 0; p < kPlanes; p++) blocked[p] = is_site ? 1.0 - ao[index_of(view, nearest) + p * plane] : 0.0;
+      for (int i = 0; i < kFitRun; i++) {
+        const vec2 away = float(kLatticeStep) * vec2(x - i, y);
+        const float window = max(0.0, exists - narrowness[i] * dot(away, away));
+        const float share = window * similarity(here[i], tap, away);
+        sums[i].whole += share;
+        sums[i].along += share * away;
+        sums[i].xx += share * away.x * away.x;
+        sums[i].xy += share * away.x * away.y;
+        sums[i].yy += share * away.y * away.y;
+        for (int p = 0; p < kPlanes; p++) {
+          sums[i].value[p] += share * blocked[p];
+          sums[i].slope[p] += share * blocked[p] * away;
+        }
+      }
+    }
+  for (int i = 0; i < kFitRun; i++)
+    if (site.x + i < sites.x) write(site + ivec2(i, 0), sums[i]);
+}
