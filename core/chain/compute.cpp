@@ -58,8 +58,8 @@ HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const Estimato
   gpu.run();
   const auto ao = outputs.ao->as<float>();
   const auto& counts = outputs.counts->as<FrameCounts>()[0];
-  const std::uint32_t estimates = outputs.sites ? outputs.sites->as<SiteCounts>()[0].listed : 0;
-  return {{ao.begin(), ao.end()},  counts.sky,           estimates, counts.repaired_depth,
+  const SiteCounts sites = outputs.sites ? outputs.sites->as<SiteCounts>()[0] : SiteCounts{};
+  return {{ao.begin(), ao.end()},  counts.sky,           sites.listed, sites.of_lattice[0], counts.repaired_depth,
           counts.repaired_normals, counts.turned_normals};
 }
 

@@ -66,9 +66,7 @@ ListedPlace listed_place(uvec2 group, uint invocation) {
 /// Packs a site: such a pixel in one word, and whether it is of the widest lattice.
 const uint kWideSite = 0x80000000u;
 uint pack_site(uint tile, uint pixel) { return tile * kTilePixels + pixel; }
-ListedPlace unpack_site(uint site) {
-  return ListedPlace((site & ~kWideSite) / kTilePixels, site % kTilePixels);
-}
+ListedPlace unpack_site(uint site) { return ListedPlace((site & ~kWideSite) / kTilePixels, site % kTilePixels); }
 
 /// Packs a run of pixels that an invocation of a filter computes in each of kGroupX lines: the number of these lines,
 /// and the number of the run in them.

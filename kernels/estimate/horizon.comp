@@ -8,16 +8,16 @@
 //
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016. Lines are those of the listing
 // of its algorithm in the edition of 2019 (Technical Memo ATVI-TR-19-01). The steps have their numbers at the code:
-//  1. A receiver takes kSlices slices (lines 4 to 10). They are even in azimuth about the view ray, not on the screen,
-//     so that no Jacobian is owed off axis.
+//  1. A receiver takes kSlices slices (lines 4 to 10), and half as many again where it stands for the pixels about it.
+//     They are even in azimuth about the view ray, not on the screen, so that no Jacobian is owed off axis.
 //  2. The normal is projected into the slice: its angle gamma, and its length, which is the slice's weight (lines 11 to
 //     15).
 //  3. Each side of the slice is searched (line 17) as far as the exact image of the sphere of the radius reaches. The
 //     image's border cuts it: nothing is known beyond.
 //  4. A side takes up to kSteps samples (lines 19 to 23).
-//  5. Samples of a side form runs of one surface. The receiver's own surface is what goes on from the receiver, or from
-//     any place below its tangent plane. It blocks all below its horizon (line 24). A sample below the tangent plane
-//     says nothing else.
+//  5. Samples of a side form runs of one surface, by what is seen in the middle between two of them, too. The
+//     receiver's own surface is what goes on from the receiver, or from any place below its tangent plane. It blocks
+//     all below its horizon (line 24). A sample below the tangent plane says nothing else.
 //  6. Every other run blocks from its front to its back, and nothing beyond the radius. The back lies further along the
 //     eye's ray by the run's width ("width as thickness": a blade of grass is as thin as it is narrow, a column as
 //     thick as it is broad), or by what the user says. A front before the sphere blocks by the part of its solid
@@ -52,7 +52,7 @@ layout(constant_id = 2) const uint kMode = kFalloffNone;  // one of kFalloff* of
 // one of kThickness*, of what is not connected to the receiver, kCompletes* and kInSectors or not, and
 // kHiddenSurface times as many surfaces as a pixel may have behind the first
 layout(constant_id = 4) const uint kSolid = kThicknessWidth;
-// 1: only the sites of the list are estimated; 2: and those of the widest lattice by half as many slices again
+// 1: only the sites of the list are estimated; 2: those of the widest lattice by half as many slices again
 layout(constant_id = 3) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
@@ -84,9 +84,11 @@ const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
 const bool kBehindOthers = (kSolid & kCompletesHidden) != 0u;
 const bool kAllInSectors = (kSolid & kInSectors) != 0u;
 
-/// A run is so many times as thick as it is wide: its outer samples are a pixel nearer together than its edges, and on
-/// average the gaps to the samples before and behind it are a part of it too.
+/// A run is so many times as thick as it is wide.
 const float kThicknessPerWidth = 1.25;
+
+/// A run reaches on average so far into the gaps to the samples before and behind it: up to their middles at most.
+const float kGapPart = 1.0 / 3.0;
 
 /// All that is endless is one surface. Two samples of it on either side of the sphere are neighbours if their squared
 /// distances are within this factor of its.
@@ -102,6 +104,7 @@ const float kSameSurface = 1.44;
 struct Run {
   vec2 start, end;  // its outer samples
   float near, far;  // largest and smallest of the samples that block
+  float gap;        // steps from the sample before it
 };
 
 /// The blocked directions: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors
@@ -139,11 +142,12 @@ vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
   return own + arcs_of(side, others);
 }
 
-/// How thick a run is, in scene units: with `auto` per_width times as wide. It is `wider` pixels wider than its outer
-/// samples are apart. z: depth of its last sample.
-float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width, float wider) {
+/// How thick a run is, in scene units: with `auto` per_width times as wide. Its outer samples are a pixel nearer
+/// together than its edges, and parts of the gaps beside it are its own. z: depth of its last sample. gap: steps from
+/// that to the next sample; 0: there is none.
+float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width, float gap) {
   if (kThickness != kThicknessWidth) return reach.thickness;
-  const float pixel = reach.pixel_size * (r.perspective ? z : 1.0);
+  const float pixel = reach.pixel_size * (r.perspective ? z : 1.0), wider = 1.0 + kGapPart * (run.gap + gap);
   return levelled(per_width * (length(run.end - run.start) + wider * pixel), kWidestRun * reach.radius);
 }
 
@@ -266,7 +270,7 @@ void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach rea
 void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, float gap) {
   Sample last = border;
   const vec2 at_border = slopes_of(border, false, 0.0);
-  Run run = Run(border.place, border.place, at_border.x, at_border.y);
+  Run run = Run(border.place, border.place, at_border.x, at_border.y, 0.0);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
   for (int k = 0; k < kStepsBeyond + (kHard ? 1 : 0); k++) {  // one more ends the last run
@@ -279,7 +283,7 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
       take_before(before, run, both(!joins, is_before), thickness);
     }
     is_before = joins ? is_before : false;
-    run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0);
+    run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0, gap);
     const vec2 slopes = slopes_of(s, kHard && both(joins, s.within != last.within), mix(s.slope, last.slope, 0.5));
     run.near = max(run.near, slopes.x);
     run.far = min(run.far, slopes.y);
@@ -372,14 +376,15 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
 void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   bool own = true;
   Sample last = receiver_sample(r);
-  Run run = Run(vec2(0), vec2(0), -1.0, 1.0);
+  Run run = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = false;  // the run has samples before the sphere
   for (int k = 0; k < count; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
     const float gap = s.offset - last.offset;
-    const bool connected = same_surface(r, reach, s.z, last.z, gap);
+    const float middle_z = occluder_depth[index_between(r, side, reach, last.offset, s.offset)];
+    const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
     // A run that crosses the sphere between two samples blocks half way to the one beyond.
     const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
     const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
@@ -387,12 +392,12 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     if (connected) run.end = s.place;
     if (!connected || !s.above) {
       if (kHard) {
-        const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 1.0);
+        const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
         found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
         take_before(before, run, is_before, thickness);
       }
       is_before = false;
-      run = Run(s.place, s.place, -1.0, 1.0);
+      run = Run(s.place, s.place, -1.0, 1.0, gap);
       own = !s.above;
     }
     if (own) {
@@ -403,7 +408,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       is_before = s.above && is_before_sphere(r, reach, s.place) ? true : is_before;
     }
     if (!kHard) {
-      const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 1.0);
+      const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 0.0);
       found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
       add_faded(found, side, reach, draw, s.place);
     }
@@ -414,7 +419,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     }
   }
   if (kHard) {
-    const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 1.0);
+    const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 0.0);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
     take_before(before, run, is_before, thickness);
     found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
@@ -449,20 +454,21 @@ Slot chosen(Slot a, Slot b, bool second) {
   s.run.end = second ? b.run.end : a.run.end;
   s.run.near = second ? b.run.near : a.run.near;
   s.run.far = second ? b.run.far : a.run.far;
+  s.run.gap = second ? b.run.gap : a.run.gap;
   return s;
 }
 
-float thickness_of(Receiver r, Reach reach, Slot slot) {
+float thickness_of(Receiver r, Reach reach, Slot slot, float gap) {
   const float per_width = (slot.bits & kSlotKnows) != 0u ? kKnownThicknessPerWidth : kThicknessPerWidth;
-  return thickness_of(r, reach, slot.run, slot.z, per_width, 1.0);
+  return thickness_of(r, reach, slot.run, slot.z, per_width, gap);
 }
 
 /// Ends the runs of those slots whose bits are set; most of the time it is none or one.
 void end_runs(inout Found found, inout Before before, Receiver r, Reach reach, Slot slots[kMostSurfaces], uint ending,
-              float shift) {
+              float gap, float shift) {
   for (int j = 0; j < kSurfaces; j++) {
     const bool ends = (ending >> j & 1u) != 0u;
-    const float thickness = thickness_of(r, reach, slots[j]);
+    const float thickness = thickness_of(r, reach, slots[j], gap);
     const bool is_open = (slots[j].bits & kSlotOpen) != 0u;
     found.blocked.sectors |= ends ? sectors_of(r, reach, slots[j].run, is_open, thickness, shift) : 0u;
     take_before(before, slots[j].run, both(ends, (slots[j].bits & kSlotBefore) != 0u), thickness);
@@ -473,7 +479,7 @@ void end_runs(inout Found found, inout Before before, Receiver r, Reach reach, S
 void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
-  const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0);
+  const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0);
   Slot slots[kMostSurfaces];
   for (int i = 0; i < kSurfaces; i++)
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
@@ -484,10 +490,15 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
     const Surfaces here = surfaces_at(r, side, reach, offset, plane);
     float last_z[kMostSurfaces];
     for (int j = 0; j < kSurfaces; j++) last_z[j] = slots[j].z;
-    const int from[kMostSurfaces] = links_of(r, reach, here, last_z, gap);
+    const int between = index_between(r, side, reach, last.offset, offset);
+    float middle_z[kMostSurfaces];
+    for (int i = 0; i < kSurfaces; i++)
+      middle_z[i] = i == 0 ? occluder_depth[between] : abs(hidden[between + (i - 1) * plane]);
+    const int from[kMostSurfaces] = links_of(r, reach, here, middle_z, last_z, gap);
     if (kBehindOthers) {
       const bool goes_on = here.at[0].z > last.z ? from[0] >= 0 : is_taken(from, 0);
-      take_down(interrupted, k, here.at[0], last, same_surface(r, reach, here.at[0].z, last.z, gap), goes_on, reach);
+      const bool connected = is_through(r, reach, here.at[0].z, middle_z[0], last.z, gap);
+      take_down(interrupted, k, here.at[0], last, connected, goes_on, reach);
     }
     // Runs end that no surface continues, and those of surfaces that sink below the tangent plane.
     uint ending = 0u;
@@ -500,7 +511,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       }
       ending |= ends ? 1u << j : 0u;
     }
-    end_runs(found, before, r, reach, slots, ending, draw.shift);
+    end_runs(found, before, r, reach, slots, ending, gap, draw.shift);
     Slot now[kMostSurfaces];
     for (int i = 0; i < kSurfaces; i++) {
       const Sample s = here.at[i];
@@ -515,6 +526,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       slot.run.start = begins ? s.place : slot.run.start;
       slot.run.near = begins ? -1.0 : slot.run.near;
       slot.run.far = begins ? 1.0 : slot.run.far;
+      slot.run.gap = begins ? gap : slot.run.gap;
       slot.run.end = s.place;
       const bool own = begins ? !s.above : (slot.bits & kSlotOwn) != 0u;
       const bool counts = both(here.exists[i], !own);
@@ -531,7 +543,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       slot.slope = s.slope;
       now[i] = slot;
       if (!kHard && here.exists[i]) {
-        const float thickness = thickness_of(r, reach, slot);
+        const float thickness = thickness_of(r, reach, slot, 0.0);
         found.blocked.sectors |= sectors_of(r, reach, slot.run, (slot.bits & kSlotOpen) != 0u, thickness, draw.shift);
         add_faded(found, side, reach, draw, s.place);
       }
@@ -543,7 +555,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       interrupted = Interruptions(k + 1, 0u, 0u);
     }
   }
-  if (kHard) end_runs(found, before, r, reach, slots, (1u << kSurfaces) - 1u, draw.shift);
+  if (kHard) end_runs(found, before, r, reach, slots, (1u << kSurfaces) - 1u, 0.0, draw.shift);
   if (kHard) found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }

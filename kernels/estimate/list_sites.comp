@@ -16,8 +16,8 @@ readonly buffer TileCountsBuffer { TileCounts tile_counts; };
 writeonly buffer List { uint list[]; };  // one uint per site of a listed tile, see pack_site; in no order of tiles
 buffer Counts { SiteCounts counts; };    // zeros before
 
-/// The number of sites that the workgroup lists, their first place in the list, and the number of each lattice. Those of
-/// the widest lattice come first, so that neighbours in the list take as many slices.
+/// The numbers of sites that the workgroup lists, their first place in the list, and the number of each lattice. Those
+/// of the widest lattice come first, so that neighbours in the list take as many slices.
 shared uint wide_here, others_here, begin, of_lattice[kLattices];
 
 void main() {

@@ -97,6 +97,12 @@ Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
   return sample_of(r, side, reach, offset, beside, occluder_depth[hit.y * reach.width + hit.x]);
 }
 
+/// The index of the pixel in the middle between two samples.
+int index_between(Receiver r, Side side, Reach reach, float from, float to) {
+  const ivec2 pixel = r.pixel + ivec2(round(side.direction_px * (0.5 * (from + to))));
+  return pixel.y * reach.width + pixel.x;
+}
+
 /// The sample before the first one.
 Sample receiver_sample(Receiver r) { return Sample(0.0, r.z, 1.0, vec2(0), 0.0, kNone, true, true); }
 

@@ -251,6 +251,17 @@ bool same_surface(Receiver r, Reach reach, float z, float last_z, float gap) {
   return abs(z - last_z) < kRunSlope * reach.pixel_size * gap * (r.perspective ? min(z, last_z) : 1.0);
 }
 
+/// Of the tolerance for two samples the part, beside that of a pixel, that the pixel in their middle has to each: more
+/// than half, since slopes change.
+const float kHalfGap = 0.53;
+
+/// Whether two samples of depths z and last_z are one surface by the depth of the pixel in their middle, too. Else two
+/// wires before a wall would be one thing, as wide as they are apart.
+bool is_through(Receiver r, Reach reach, float z, float middle_z, float last_z, float gap) {
+  const float tolerance = mix(1.0, gap, kHalfGap);
+  return both(same_surface(r, reach, z, middle_z, tolerance), same_surface(r, reach, middle_z, last_z, tolerance));
+}
+
 /// The arc integral of a whole side, down to the tangent plane: (cos(n) + 2 h sin(n) - cos(2 h - n)) / 4 of Jimenez et
 /// al., 2016 (equation 7, one side of it), at h = n + pi/2, where n is gamma.
 float whole_arc(Side side) { return 0.5 * (side.cos_gamma + (side.gamma + kHalfPi) * side.sin_gamma); }

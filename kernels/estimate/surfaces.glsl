@@ -52,8 +52,9 @@ Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, int plane
 }
 
 /// For each surface the one at the last sample from which it goes on, the nearest in depth of those that are one
-/// surface with it (same_surface()); -1: it begins.
-int[kMostSurfaces] links_of(Receiver r, Reach reach, Surfaces found, float last_z[kMostSurfaces], float gap) {
+/// surface with it (same_surface()), if some surface of the pixel in the middle is one with both; -1: it begins.
+int[kMostSurfaces] links_of(Receiver r, Reach reach, Surfaces found, float middle_z[kMostSurfaces],
+                            float last_z[kMostSurfaces], float gap) {
   int from[kMostSurfaces];
   float left[kMostSurfaces], limit[kMostSurfaces];
   const float slope = kRunSlope * reach.pixel_size * gap;
@@ -71,6 +72,11 @@ int[kMostSurfaces] links_of(Receiver r, Reach reach, Surfaces found, float last_
       least = goes_on ? apart : least;
       from[i] = goes_on ? j : from[i];
     }
+    bool through = false;
+    for (int j = 0; j < kSurfaces; j++)
+      for (int m = 0; m < kSurfaces; m++)
+        through = both(from[i] == j, is_through(r, reach, z, middle_z[m], last_z[j], gap)) ? true : through;
+    from[i] = through ? from[i] : -1;
     for (int j = 0; j < kSurfaces; j++) left[j] = from[i] == j ? kNoLastSurface : left[j];
   }
   return from;

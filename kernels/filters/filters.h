@@ -36,7 +36,7 @@ struct DenoiseParams {
 ALCOVE_CONSTANT int kLatticeStep = 4;  // px between the sites of the widest lattice
 ALCOVE_CONSTANT int kFitReach = 12;    // px in x and in y from which a site takes others' estimates
 
-ALCOVE_CONSTANT int kFitRun = 4;       // sites in a row that one invocation computes
+ALCOVE_CONSTANT int kFitRun = 4;  // sites in a row that one invocation computes
 
 struct FitSitesParams {
   View view;
@@ -56,11 +56,11 @@ ALCOVE_NUMBER kLeastWindow = 1e-6;
 
 struct InterpolateParams {
   View view;
-  ivec2 axis;         // (1, 0): along rows; (0, 1): along columns
-  float depth_sigma;  // of the depth: a step by this part of it weighs 1/e
-  float missing;      // what a pixel gets that no site is in reach of: 1, or the middle of what a plane holds
-  float reach;        // px, of the parabola at unit depth (orthographic: at any): from so far a site counts, in the
-                      // limits of the kernel
+  ivec2 axis;          // (1, 0): along rows; (0, 1): along columns
+  float depth_sigma;   // of the depth: a step by this part of it weighs 1/e
+  float missing;       // what a pixel gets that no site is in reach of: 1, or the middle of what a plane holds
+  float reach;         // px, of the parabola at unit depth (orthographic: at any): from so far a site counts, in the
+                       // limits of the kernel
   ivec2 first, sites;  // of the lattice, as FitSitesParams has them
   float weight[9];     // by the distance in pixels, 0 to the radius; from the radius to the radius their sum is 1
 };

@@ -6,9 +6,9 @@
 //
 // A site takes its own place on the plane, over the image, that fits the sites about it best (W. S. Cleveland, "Robust
 // Locally Weighted Regression and Smoothing Scatterplots", 1979): a mean alone would be pulled to that side of an edge
-// on which there are sites. They count as far as they show one surface (likeness.glsl), by a parabola of their distance,
-// and no further than the radius is wide in pixels. Of 29 sites a sixth of the noise is left, which as many pixels'
-// own estimates would pay for with twenty times the samples.
+// on which there are sites. They count as far as they show one surface (likeness.glsl), by a parabola of their
+// distance, and no farther than a part of the radius. One invocation computes some in a row, which share what they
+// load.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/filters/filters.h"
@@ -18,12 +18,10 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const int kPlanes = 1;  // how many planes; they share their weights
 layout(scalar, push_constant) uniform Push { FitSitesParams params; };
-readonly buffer Ao { float ao[]; };          // planes of floats in [0, 1], visibility or the like, at sites
-readonly buffer Depth { float depth[]; };    // one float per pixel, of the G-buffer of that visibility
-readonly buffer Normal { uint normal[]; };   // one uint per pixel, of the same
-writeonly buffer Result { float result[]; }; // as many planes, one float per pixel of the lattice
-
-const bool kByDepth = false;
+readonly buffer Ao { float ao[]; };           // planes of floats in [0, 1], visibility or the like, at sites
+readonly buffer Depth { float depth[]; };     // one float per pixel, of the G-buffer of that visibility
+readonly buffer Normal { uint normal[]; };    // one uint per pixel, of the same
+writeonly buffer Result { float result[]; };  // as many planes, one float per pixel of the lattice
 
 /// Sites to each side.
 const int kReach = kFitReach / kLatticeStep;
@@ -31,6 +29,7 @@ const int kReach = kFitReach / kLatticeStep;
 /// The slopes of the plane are held back by this, px^2: a spread of the sites this wide halves them.
 const float kLeastSpread = 4.0;
 
+/// See likeness.glsl, with both axes of the image.
 struct Tap {
   float z, scale, ahead;
   vec2 across;
@@ -43,7 +42,8 @@ Tap tap_at(View view, ivec2 pixel) {
   tap.scale = perspective ? tap.z : 1.0;
   const vec3 n = unpack_normal(normal[index]);
   const float sigmas = 1.0 / (abs(view.tangent_per_pixel.x) * tap.scale);
-  if (tap.z < kSkyDepth) tap.ahead = ((perspective ? dot(n.xy, tangent_of(view, vec2(pixel) + 0.5)) : 0.0) - n.z) * sigmas;
+  if (tap.z < kSkyDepth)
+    tap.ahead = ((perspective ? dot(n.xy, tangent_of(view, vec2(pixel) + 0.5)) : 0.0) - n.z) * sigmas;
   tap.across = n.xy * view.tangent_per_pixel * sigmas;
   return tap;
 }
@@ -55,8 +55,8 @@ float similarity(Tap a, Tap b, vec2 pixels) {
   return max(0.0, 1.0 - max(above_a * above_a, above_b * above_b));
 }
 
-/// Sums over the sites about one: of their weights, times their distance, times its products; of what they block, and
-/// that times the distance.
+/// Sums over the sites about one: of their weights, times the distance, and times its products; of what they block, and
+/// of that times the distance.
 struct Sums {
   float whole, xx, xy, yy;
   vec2 along, slope[kPlanes];

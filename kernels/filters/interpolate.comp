@@ -2,7 +2,8 @@
 // separable filter.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planes of visibility at sites, depth, normals, and the words that say which pixels are sites.
+// In: planes of visibility at sites, depth, normals, and the words that say which pixels are sites; those of the widest
+// lattice may have been smoothed among themselves before, see fit_sites.comp.
 // Out: as many planes. Where all is open it stays exactly 1; sky is 1.
 //
 // The steps have their numbers at the code:
@@ -17,7 +18,6 @@
 // One invocation computes a run of pixels, and goes over the sites in reach of it. A subgroup goes on as long as one of
 // its lanes has any: so those beside each other take rows that lie 4 apart, on which a wide lattice has as many.
 #version 450
-#define ALC_RAW .4
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/filters/filters.h"
 #include "kernels/base/view.glsl"
@@ -42,12 +42,15 @@ readonly buffer Counts { RunCounts counts; };
 // a word for each run of a row and 32 rows, with a bit for each that is written; zeros before the rows
 buffer Runs { uint runs[]; };
 readonly buffer Fitted { float fitted[]; };  // planes of the lattice's pixels, from fit_sites; only where fitted
-readonly buffer Sites { uint rows[]; };  // 8 words per tile, see tiles.glsl; not read along columns
+readonly buffer Sites { uint rows[]; };      // 8 words per tile, see tiles.glsl; not read along columns
 
 #include "kernels/filters/likeness.glsl"
 
 /// Pixels that one invocation looks at.
 const int kCount = kDenoiseRun + 2 * kRadius;
+
+/// A site that was not smoothed weighs so much beside one that was.
+const float kNoisySite = 0.4;
 
 /// A pixel takes sites from so many pixels away, however small the radius is: it has some there, see sites.comp.
 const int kLeastReach = 3;
@@ -93,10 +96,11 @@ float window_at(float away, float narrowness) {
   return params.weight[0] * max(kLeastWindow, window);
 }
 
-/// The narrowness of a pixel's parabola, which is 0 a pixel beyond its reach: no contact is smeared over more than a part
-/// of the radius.
+/// The narrowness of a pixel's parabola, which is 0 a pixel beyond its reach: no contact is smeared over more than a
+/// part of the radius.
 float narrowness_of(Tap tap) {
-  const float end = 1.0 + clamp(params.reach / tap.scale, float(min(kLeastReach, kRadius)), float(kRadius));
+  const float end = 1.0 + clamp(params.reach / (params.view.orthographic != 0 ? 1.0 : tap.z),
+                                float(min(kLeastReach, kRadius)), float(kRadius));
   return 1.0 / (end * end);
 }
 
@@ -119,7 +123,7 @@ void interpolate(ivec2 first, uint sites, int plane) {
     const ivec2 beside = site - params.first;
     const bool is_of_lattice = kFitted && ((beside.x | beside.y) & (kLatticeStep - 1)) == 0;
     const int of_lattice = (beside.y / kLatticeStep) * params.sites.x + beside.x / kLatticeStep;
-    const float weight = kColumns ? square(unpackUnorm2x16(ao[index]).y) : kFitted && !is_of_lattice ? ALC_RAW : 1.0;
+    const float weight = kColumns ? square(unpackUnorm2x16(ao[index]).y) : kFitted && !is_of_lattice ? kNoisySite : 1.0;
     const Tap tap = tap_at(site);
     float blocked[kPlanes];
     for (int p = 0; p < kPlanes; p++) {

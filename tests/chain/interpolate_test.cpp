@@ -35,7 +35,8 @@ EstimatorSettings by_depth(int spacing, double sigma) {
 
 /// Each with a site in reach of every pixel.
 std::vector<EstimatorSettings> all_filters() {
-  return {filter(16, 8),
+  return {filter(16, 0),
+          filter(16, 8),
           filter(16, 4),
           filter(16, 8, Density::uniform),
           filter(8, 5),
@@ -136,6 +137,54 @@ double similarity(const Geometry& geometry, const Denoiser& denoiser, int x, int
   return std::max(1e-4 / (1 + apart * apart), 1 - apart * apart);
 }
 
+/// How far a site shows the surface of a pixel, whichever way it lies.
+double similarity_around(const Geometry& geometry, int x, int y, int u, int v) {
+  const Vec3 away = geometry.point(u, v) - geometry.point(x, y);
+  const double width = std::abs(geometry.view.tangent_per_pixel.x);
+  const double own = width * (geometry.view.orthographic ? 1 : geometry.depth[geometry.index(x, y)]);
+  const double other = width * (geometry.view.orthographic ? 1 : geometry.depth[geometry.index(u, v)]);
+  const double apart = std::max(std::abs(dot(geometry.normal_of(x, y), away)) / own,
+                                std::abs(dot(geometry.normal_of(u, v), away)) / other);
+  return std::max(0.0, 1 - apart * apart);
+}
+
+/// How far filters reach at a pixel: a part of the radius, in pixels.
+double reach_at(const Geometry& geometry, const Denoiser& denoiser, int x, int y) {
+  const double scale = geometry.view.orthographic ? 1 : geometry.depth[geometry.index(x, y)];
+  return denoiser.within / (std::abs(geometry.view.tangent_per_pixel.x) * scale);
+}
+
+/// A site's place on the plane that fits those of the lattice around it best, its slopes held back as by a spread of
+/// 4 px^2 more.
+double fitted_site(const Geometry& geometry, const Denoiser& denoiser, const std::vector<float>& ao, int x, int y) {
+  const double end = std::min(12.0, reach_at(geometry, denoiser, x, y)) + 2;
+  struct Site {
+    double x, y, blocked, weight;
+  };
+  std::vector<Site> sites;
+  double whole = 0;
+  Vec3 mean{};  // of places and what is blocked
+  for (int v = -12; v <= 12; v += 4)
+    for (int u = -12; u <= 12; u += 4) {
+      if (x + u < 0 || y + v < 0 || !geometry.is_surface(x + u, y + v)) continue;
+      const double weight =
+          std::max(0.0, 1 - (u * u + v * v) / (end * end)) * similarity_around(geometry, x, y, x + u, y + v);
+      if (weight == 0) continue;
+      sites.push_back({double(u), double(v), 1.0 - ao[geometry.index(x + u, y + v)], weight});
+      whole += weight;
+      mean = mean + Vec3{u * weight, v * weight, sites.back().blocked * weight};
+    }
+  mean = (1 / whole) * mean;
+  double xx = 4, xy = 0, yy = 4, xz = 0, yz = 0;
+  for (const Site& site : sites) {
+    const double part = site.weight / whole, dx = site.x - mean.x, dy = site.y - mean.y, dz = site.blocked - mean.z;
+    xx += part * dx * dx, xy += part * dx * dy, yy += part * dy * dy, xz += part * dx * dz, yz += part * dy * dz;
+  }
+  const double scale = 1 / (xx * yy - xy * xy);
+  const double slope_x = scale * (yy * xz - xy * yz), slope_y = scale * (xx * yz - xy * xz);
+  return std::clamp(mean.z - slope_x * mean.x - slope_y * mean.y, 0.0, 1.0);
+}
+
 /// What a word of two numbers of 16 bits keeps of one.
 double rounded(double x) { return std::round(x * 65535) / 65535; }
 double rounded_weight(double weight) { return std::pow(std::max(rounded(std::sqrt(weight)), 1.0 / 65535), 2); }
@@ -147,7 +196,11 @@ std::vector<double> interpolated_slowly(const Sparse& sparse, const std::vector<
   const int radius = int(denoiser.weights.size()) - 1, width = sparse.picture.width, height = sparse.picture.height;
   double sum = -denoiser.weights[0];
   for (const double weight : denoiser.weights) sum += 2 * weight;
-  const auto weight_at = [&](int away) { return denoiser.weights[std::size_t(std::abs(away))] / sum; };
+  const auto weight_at = [&](int away, int x, int y) {
+    if (denoiser.looks_up) return denoiser.weights[std::size_t(std::abs(away))] / sum;
+    const double end = 1 + std::clamp(reach_at(geometry, denoiser, x, y), double(std::min(3, radius)), double(radius));
+    return denoiser.weights[0] / sum * std::max(1e-6, 1 - away * away / (end * end));
+  };
   std::vector<double> blocked(ao.size()), weights(ao.size()), result(ao.size(), 1.0);
   for (int y = 0; y < height; y++)
     for (int x = 0; x < width; x++) {
@@ -155,9 +208,11 @@ std::vector<double> interpolated_slowly(const Sparse& sparse, const std::vector<
       Taps taps;
       for (int u = std::max(x - radius, 0); u <= std::min(x + radius, width - 1); u++) {
         if (!sparse.picture.at(u, y).is_site) continue;
+        const bool is_fitted = denoiser.fits_sites && sparse.picture.is_on_lattice(u, y, 16);
         taps.away.push_back(u - x);
-        taps.value.push_back(1 - ao[geometry.index(u, y)]);
-        taps.weight.push_back(weight_at(u - x) * similarity(geometry, denoiser, x, y, u, y));
+        taps.value.push_back(is_fitted ? fitted_site(geometry, denoiser, ao, u, y) : 1 - ao[geometry.index(u, y)]);
+        taps.weight.push_back((denoiser.fits_sites && !is_fitted ? 0.4 : 1) * weight_at(u - x, x, y) *
+                              similarity(geometry, denoiser, x, y, u, y));
       }
       if (!(taps.whole() > 0)) continue;
       blocked[geometry.index(x, y)] = rounded(taps.fitted().at_pixel);
@@ -171,7 +226,7 @@ std::vector<double> interpolated_slowly(const Sparse& sparse, const std::vector<
         if (!(weights[geometry.index(x, v)] > 0)) continue;
         taps.away.push_back(v - y);
         taps.value.push_back(blocked[geometry.index(x, v)]);
-        taps.weight.push_back(weights[geometry.index(x, v)] * weight_at(v - y) *
+        taps.weight.push_back(weights[geometry.index(x, v)] * weight_at(v - y, x, y) *
                               similarity(geometry, denoiser, x, y, x, v));
       }
       if (taps.whole() > 0) result[geometry.index(x, y)] = 1 - taps.fitted().at_pixel;

@@ -13,6 +13,9 @@ namespace {
 using namespace test;
 using Values = std::vector<float>;
 
+/// Filters reach no farther than a part of the smallest radius, but as far as this in any case.
+constexpr int kSameReach = 3;
+
 EstimatorSettings settings_of(std::vector<double> radii, Estimator estimator = Estimator::gtao) {
   EstimatorSettings settings;  // the default passes
   settings.estimator = estimator;
@@ -38,6 +41,7 @@ TEST(Scales, each_is_the_run_with_that_radius_alone_whatever_the_chain) {
         several.denoise = denoise;
         several.stride = stride;
         several.power = 1.5;
+        several.denoise_radius = kSameReach;
         const Planes result = planes_of(frame, several, "ao,ao-scales");
         ASSERT_EQ(result.scales.size(), 3 * frame.data.pixels());
         EXPECT_TRUE(same_bits(planes_of(frame, several, "ao").ao, result.ao)) << "the scales change the AO";
@@ -101,8 +105,9 @@ TEST(Scales, order_changes_no_bit) {
 
 TEST(Scales, bent_normals_are_those_of_the_largest) {
   const HostFrame frame = furnished_room(61, 47).frame;
-  EXPECT_TRUE(same_bits(planes_of(frame, settings_of({2, 0.1}), "bent-normal").bent,
-                        planes_of(frame, settings_of({2}), "bent-normal").bent));
+  EstimatorSettings both = settings_of({2, 0.1}), alone = settings_of({2});
+  both.denoise_radius = alone.denoise_radius = kSameReach;
+  EXPECT_TRUE(same_bits(planes_of(frame, both, "bent-normal").bent, planes_of(frame, alone, "bent-normal").bent));
 }
 
 TEST(Scales, share_all_passes_but_the_search) {
@@ -115,11 +120,11 @@ TEST(Scales, share_all_passes_but_the_search) {
     EXPECT_EQ(planes_of(frame, settings, aovs).passes, expected);
   };
   const Names sites{"links", "sites", "sites", "sites", "sites"}, search{"classify", "list_sites", "horizon"},
-      dense_search{"classify", "horizon"}, combine{"combine"}, filter{"interpolate"}, denoise{"denoise"};
-  expect_passes(settings_of({0.1, 0.6, 2}), "ao", {sites, search, search, search, combine, filter, filter});
-  expect_passes(settings_of({0.1, 0.6, 2}), "ao,ao-scales",
-                {sites, search, search, search, combine, filter, filter, filter, filter});
-  expect_passes(settings_of({0.6}), "ao,ao-scales", {sites, search, filter, filter});
+      dense_search{"classify", "horizon"}, combine{"combine"}, filter{"fit_sites", "interpolate", "interpolate"},
+      denoise{"denoise"};
+  expect_passes(settings_of({0.1, 0.6, 2}), "ao", {sites, search, search, search, combine, filter});
+  expect_passes(settings_of({0.1, 0.6, 2}), "ao,ao-scales", {sites, search, search, search, combine, filter, filter});
+  expect_passes(settings_of({0.6}), "ao,ao-scales", {sites, search, filter});
   EstimatorSettings dense = settings_of({0.1, 0.6});
   dense.stride = 1;
   expect_passes(dense, "ao,ao-scales", {dense_search, dense_search, combine, denoise, denoise, denoise, denoise});
@@ -140,10 +145,13 @@ class ScaleFiles : public CommandLine {
 };
 
 TEST_F(ScaleFiles, have_a_channel_each_from_the_smallest_radius_on) {
-  const Image both = good({"--type", "float", "--aov", "ao,ao-scales", "--radius", "2", "--radius", "0.5"});
+  const std::string reach = fmt::format("denoise-radius={}", kSameReach);
+  const Image both =
+      good({"--type", "float", "--aov", "ao,ao-scales", "--radius", "2", "--radius", "0.5", "--set", reach});
   EXPECT_THAT(both.names, UnorderedElementsAre("Y", "scale1.Y", "scale2.Y"));
   EXPECT_EQ(text_in(read_header(ao), "alcove/radii"), "0.5 2");
-  const Image small = good({"--type", "float", "--radius", "0.5"}), large = good({"--type", "float", "--radius", "2"});
+  const Image small = good({"--type", "float", "--radius", "0.5", "--set", reach}),
+              large = good({"--type", "float", "--radius", "2", "--set", reach});
   EXPECT_TRUE(std::ranges::equal(both.plane("scale1.Y"), small.plane("Y")));
   EXPECT_TRUE(std::ranges::equal(both.plane("scale2.Y"), large.plane("Y")));
   EXPECT_FALSE(std::ranges::equal(small.plane("Y"), large.plane("Y")));

@@ -155,7 +155,7 @@ TEST(Solids, a_slab_before_a_wall_blocks_as_far_as_it_reaches) {
   for (const auto& [front, most, gain] : {Front{0.6, {0.02, 0.018, 0.018}, {}},
                                           {1.0, {0.03, 0.032, 0.036}, {2.3, 2.3, 2}},
                                           {1.2, {0.045, 0.046, 0.068}, {2, 2, 1.3}},
-                                          {1.4, {0.047, 0.048, 0.083}, {1.5, 1.5, 0}},
+                                          {1.4, {0.047, 0.048, 0.084}, {1.5, 1.5, 0}},
                                           {2.0, {0.002, 0.003, 0.006}, {}}}) {
     Case c{fmt::format("front at {}", front), slab(front), Shot::orthographic({6, 1.5, 0.7}, {0, 0, 0}, 4.4, 80, 80),
            is_near};
@@ -188,7 +188,7 @@ TEST(Solids, nothing_jumps_where_a_front_crosses_the_sphere) {
       last = ao;
     }
     // Kernels count in sectors, the CPU reference in angles.
-    EXPECT_LE(largest, (search == Search::reference ? 6 : 20) * sum) << kNames[int(search)];
+    EXPECT_LE(largest, (search == Search::reference ? 6 : 25) * sum) << kNames[int(search)];
   }
 }
 
@@ -218,6 +218,25 @@ TEST(Solids, what_is_left_out_before_the_sphere_has_the_bits_of_what_is_computed
       EXPECT_LT(*std::ranges::min_element(whole), is_hidden ? 0.995f : 0.97f) << "the board blocks";
       EXPECT_EQ(same_bits(whole, without), !is_hidden);
     }
+}
+
+// Two samples of a search may see two wires, or a wire and the wall: what is seen between them says that they are no
+// slope, and no plate as wide as they are apart.
+TEST(Solids, wires_before_a_wall_are_as_thin_as_they_look) {
+  Scene scene{{kWallX}};
+  for (int i = -6; i <= 6; i++) scene.add(parallelepiped({0.3, 0.4 * i, -9}, {0.04, 0, 0}, {0, 0.04, 0}, {0, 0, 18}));
+  const Rendering rendering = render(scene, Shot::orthographic({6, 0, 0}, {0, 0, 0}, 4, 200, 200));
+  const std::vector<std::size_t> pixels =
+      receivers(rendering, 1, 7, [](const Hit& hit) { return hit.primitive == 0 && std::abs(hit.position.y) < 0.9; });
+  ASSERT_GT(pixels.size(), 60u);
+  double truth = 0;
+  for (const std::size_t pixel : pixels) truth += true_ao(scene, rendering.hits[pixel], 1, 24) / double(pixels.size());
+  EXPECT_LT(truth, 0.95) << "the wires block";
+  EstimatorSettings settings = settings_of(Search::slices, ThicknessKind::automatic, 8);
+  settings.steps = 16;
+  double mean = 0;
+  for (const float ao : ao_at(Search::slices, rendering.frame, settings, pixels)) mean += ao / double(pixels.size());
+  EXPECT_NEAR(mean, truth, 0.07) << "0.19 without";
 }
 
 TEST(Solids, a_wide_plate_far_before_the_sphere_hides_no_board_that_reaches_into_it) {

@@ -122,8 +122,10 @@ bool completes_anywhere(const EstimatorSettings& settings) {
   return searches_slices(settings) && settings.complete != Completion::none;
 }
 
-double samples_per_estimate(const EstimatorSettings& settings) {
-  return searches_exactly(settings) ? 0 : samples_of_a_radius(settings) * double(1 + settings.further_radii.size());
+double samples_of(const EstimatorSettings& settings, double estimates, double wide) {
+  if (searches_exactly(settings)) return 0;
+  const double more = wide * (wide_slices_of(settings) - settings.slices) / settings.slices;
+  return samples_of_a_radius(settings) * double(1 + settings.further_radii.size()) * (estimates + more);
 }
 
 gpu::Extent estimate_extent(const TileList& list) {
@@ -153,7 +155,8 @@ Reach reach_of(const EstimatorSettings& settings, double radius) {
 bool completes_behind(const Reach& reach) { return reach.complete == Completion::all && !std::isinf(reach.thickness); }
 
 Sampling sampling_of(const EstimatorSettings& settings, int frame) {
-  return {settings.slices, settings.steps, noise_shift(settings.noise == Noise::animated ? frame : 0, settings.seed)};
+  return {settings.slices, wide_slices_of(settings), settings.steps,
+          noise_shift(settings.noise == Noise::animated ? frame : 0, settings.seed)};
 }
 
 Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame, const BlockGrid& grid) {
@@ -275,8 +278,8 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   buffers.insert(buffers.end(), {{"Bent", gpu::Optional(out.bent)}, {"Completed", gpu::Optional(out.completed)}});
   const uint mode = uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
-  std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode,
-                              out.listed.sites ? 2u : 0u, solid};
+  const uint sites = !out.listed.sites ? 0 : sampling.wide_slices > sampling.slices ? 2 : 1;
+  std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, sites, solid};
   gpu.dispatch("horizon", params, buffers, estimate_extent(out.listed), constants);
   if (gbuffer.surfaces == 1) return;
   buffers.push_back({"Hidden", occluder_hidden_of(gbuffer)});

@@ -27,8 +27,9 @@ bool completes(const EstimatorSettings& settings);
 /// Whether surfaces are completed anywhere, be it beyond the picture's border alone.
 bool completes_anywhere(const EstimatorSettings& settings);
 
-/// The depth samples that the settings ask for at a pixel with an estimate; 0 for an exact search.
-double samples_per_estimate(const EstimatorSettings& settings);
+/// The depth samples that the settings ask for at so many pixels with an estimate, of which `wide` are sites of the
+/// widest lattice; 0 for an exact search.
+double samples_of(const EstimatorSettings& settings, double estimates, double wide);
 
 /// Tiles of a G-buffer that an estimator has something to do for.
 struct TileList {
@@ -89,6 +90,7 @@ bool completes_behind(const Reach& reach);
 /// The samples' spread over the hemisphere, and over neighbouring pixels.
 struct Sampling {
   int slices;        // directions per pixel
+  int wide_slices;   // of sites of the widest lattice
   int steps;         // samples to each side of a slice
   vec2 noise_shift;  // where the noise pattern begins
 };

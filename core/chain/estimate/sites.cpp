@@ -60,6 +60,16 @@ bool is_adaptive(const EstimatorSettings& settings) {
   return settings.density == Density::adaptive && searches_slices(settings) && spacing_of(settings) > 1;
 }
 
+bool fits_sites(const EstimatorSettings& settings) {
+  constexpr int kWidest = 16;
+  return settings.denoise == Denoise::bilateral && settings.denoise_kernel.empty() && settings.denoise_radius == 0 &&
+         settings.denoise_depth_sigma == 0 && is_adaptive(settings) && spacing_of(settings) == kWidest;
+}
+
+int wide_slices_of(const EstimatorSettings& settings) {
+  return settings.slices + (fits_sites(settings) ? settings.slices / 2 : 0);
+}
+
 int site_reach_of(const EstimatorSettings& settings) {
   return is_adaptive(settings) ? int(settings.resolution) * kSiteReach : 0;
 }

@@ -17,6 +17,13 @@ int spacing_of(const EstimatorSettings& settings);
 /// Whether surfaces that show few pixels have more estimates than spacing_of() says.
 bool is_adaptive(const EstimatorSettings& settings);
 
+/// Whether the sites of the widest lattice are smoothed among themselves before others take their estimates: see
+/// fit_sites.comp.
+bool fits_sites(const EstimatorSettings& settings);
+
+/// The slices of a site of the widest lattice: more than of others, where it stands for the pixels about it.
+int wide_slices_of(const EstimatorSettings& settings);
+
 /// The reach of depths that decide where estimates are made, in px of the frame: see sites.comp.
 int site_reach_of(const EstimatorSettings& settings);
 

@@ -88,11 +88,6 @@ gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& liste
 
 }  // namespace
 
-bool fits_sites(const EstimatorSettings& settings) {
-  return settings.denoise == Denoise::bilateral && settings.denoise_kernel.empty() &&
-         settings.denoise_depth_sigma == 0 && spacing_of(settings) == kLatticeStep * kLatticeStep && is_adaptive(settings);
-}
-
 int denoise_radius_of(const EstimatorSettings& settings) {
   if (settings.denoise_radius > 0) return settings.denoise_radius;
   return spacing_of(settings) > 1 && !fits_sites(settings) ? 8 : 4;
@@ -124,14 +119,11 @@ int filter_reach_of(const EstimatorSettings& settings) {
 }
 
 Denoiser denoiser_of(const EstimatorSettings& settings) {
-  return {weights_of(settings), settings.denoise_depth_sigma,
-          !settings.denoise_kernel.empty(), fits_sites(settings),
-          is_adaptive(settings) ? kFilteredPart * std::ranges::min(radii_of(settings)) : HUGE_VAL};
+  return {weights_of(settings), settings.denoise_depth_sigma, !settings.denoise_kernel.empty(), fits_sites(settings),
+          is_adaptive(settings) && settings.radius ? kFilteredPart * radii_of(settings).front() : HUGE_VAL};
 }
 
-int Denoiser::reach() const {
-  return weights.empty() ? 0 : int(weights.size()) - 1 + (fits_sites ? kFitReach : 0);
-}
+int Denoiser::reach() const { return weights.empty() ? 0 : int(weights.size()) - 1 + (fits_sites ? kFitReach : 0); }
 
 FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const Denoiser& denoiser) {
   // A list costs as much as a twentieth of the filter: it pays where more than sky is left out.
@@ -214,8 +206,8 @@ const gpu::Buffer* fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const g
   if (!denoiser.fits_sites) return nullptr;
   const Lattice lattice = lattice_of(gbuffer, sites);
   const uint count = planes_in(planes, gbuffer.view);
-  const gpu::Buffer& fitted = gpu.buffer(prefix + "fitted sites", sizeof(float) * count * std::size_t(lattice.sites.x) *
-                                                                      std::size_t(lattice.sites.y));
+  const gpu::Buffer& fitted = gpu.buffer(
+      prefix + "fitted sites", sizeof(float) * count * std::size_t(lattice.sites.x) * std::size_t(lattice.sites.y));
   gpu.dispatch("fit_sites",
                FitSitesParams{gbuffer.view, lattice.first, lattice.sites,
                               float(denoiser.within / double(gbuffer.view.tangent_per_pixel.x))},
@@ -257,7 +249,12 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
                   {"Fitted", gpu::Optional(fitted)},
                   {"Sites", sites.rows}},
                  runs_extent(gbuffer, axis, listed),
-                 {radius, mode | (axis.y ? kInterpolateColumns : fitted ? kInterpolateFitted : 0) | (listed.runs ? kInterpolateListed : 0),
+                 {radius,
+                  mode |
+                      (axis.y   ? kInterpolateColumns
+                       : fitted ? kInterpolateFitted
+                                : 0) |
+                      (listed.runs ? kInterpolateListed : 0),
                   planes_in(planes, gbuffer.view)});
   };
   along({1, 0}, runs.rows, planes, rows);

@@ -29,9 +29,9 @@ int filter_reach_of(const EstimatorSettings& settings);
 struct Denoiser {
   std::vector<double> weights;  // from the centre outwards, up to a common factor; empty: there is no filter
   double depth_sigma;           // see EstimatorSettings::denoise_depth_sigma
-  bool looks_up;       // the weights are the user's, else of interpolate's parabola
-  bool fits_sites;     // sites are smoothed among themselves first: see fit_sites.comp
-  double within;       // scene units: how far interpolate and fit_sites reach at most
+  bool looks_up;                // the weights are the user's, else of interpolate's parabola
+  bool fits_sites;              // sites are smoothed among themselves first: see fit_sites.comp
+  double within;                // scene units: how far interpolate and fit_sites reach at most
   /// From how far a pixel takes estimates in all, in px.
   int reach() const;
 };
