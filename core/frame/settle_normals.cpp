@@ -60,7 +60,7 @@ std::vector<float> values_at(std::span<const float> planes, std::size_t pixels, 
 }
 
 /// Names the alteration of signed normals or of 0.5 + 0.5 n if undoing it gives nearly all of them unit length: a
-/// picture's curve, or an exposure. It ends a sentence that begins with "they look like". The normals have three planes.
+/// picture's curve, or an exposure. It ends a sentence that begins with "they look like". Normals have three planes.
 std::optional<std::string> alteration_of(const RawPart& raw, const DepthMap& map) {
   const std::size_t pixels = raw.normal.size() / 3;
   const auto at = within_surfaces(raw.normal, std::size_t(raw.window.width));
