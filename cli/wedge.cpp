@@ -149,7 +149,7 @@ std::set<double> radii_of(const Words& typed, std::optional<double> proposed, bo
   if (proposed && adds_proposed) radii.insert(*proposed);
   if (typed.empty()) radii.insert({0.5 * *proposed, 2 * *proposed});
   for (const auto& word : typed) {
-    const auto number = lower_case(word) == "auto" ? proposed : number_of(word);
+    const auto number = word == "auto" ? proposed : number_of(word);
     if (!number) fail(ErrorKind::usage, "--radius: {} is neither auto nor a number", word);
     radii.insert(*number);
   }
@@ -168,14 +168,14 @@ void check_looks(const std::vector<WedgeLook>& looks) {
   }
 }
 
-/// All combinations of what was typed, with the proposed radius among the radii; and the columns of the sheet.
-std::pair<std::vector<WedgeLook>, std::size_t> looks_of(const Typed& typed) {
+/// All combinations of what was typed, with the proposed radius among the radii.
+std::vector<WedgeLook> looks_of(const Typed& typed) {
   std::vector<Words> arguments = typed.arguments;
   Words given;
   if (std::ranges::count(arguments, Words{"--radius"}) > 1)
     fail(ErrorKind::usage, "--radius is given more than once: its looks are one list, as .1,.2,.5");
   if (const auto at = std::ranges::find(arguments, Words{"--radius"}); at != arguments.end()) {
-    given = at[1];
+    for (const auto& word : at[1]) given.push_back(lower_case(word));
     arguments.erase(at, at + 2);
   }
   const auto with_radii = [&](const Words& radii) {
@@ -192,9 +192,7 @@ std::pair<std::vector<WedgeLook>, std::size_t> looks_of(const Typed& typed) {
     first.prepare();
     proposed = first.plan().settings().estimator.radius;
   } catch (const Error& error) {  // where radii are given, a frame without a surface is no mistake
-    const bool needs_it =
-        given.empty() || std::ranges::any_of(given, [](const auto& word) { return lower_case(word) == "auto"; });
-    if (needs_it || error.kind() != ErrorKind::input) throw;
+    if (given.empty() || has(given, "auto") || error.kind() != ErrorKind::input) throw;
   }
   if (frames > 1 && !names_frames && !is_contact_sheet) {
     arguments.insert(arguments.end(), {{"--frames"}, {std::to_string(first.plan().frames()[frames / 2])}});
@@ -215,17 +213,17 @@ std::pair<std::vector<WedgeLook>, std::size_t> looks_of(const Typed& typed) {
       name += name.find("radius") != name.npos ? " (proposed)" : " (proposed radius)";
   }
   check_looks(looks);
-  return {looks, count > radii.size() ? radii.size() : 0};
+  return looks;
 }
 
 /// Makes the wedge, and says what became of each look. Gives the exit code.
 int make(const Typed& typed) {
-  auto [looks, columns] = looks_of(typed);
+  std::vector<WedgeLook> looks = looks_of(typed);
   for (const auto& [path, option] : {std::pair(typed.page, "--output"), {typed.sheet, "--sheet"}}) {
     require_no_input(path, option, input_files(looks.front().settings.input));
     if (!path.empty()) require_writable(path, option);
   }
-  make_wedge(looks, typed.page, typed.sheet, columns);
+  make_wedge(looks, typed.page, typed.sheet);
   std::set<std::string> told;
   const auto tell = [&](const std::string& line) {
     if (!typed.is_quiet && told.insert(line).second) print_error("{}\n", line);

@@ -7,6 +7,7 @@
 #include <deque>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/base/file.h"
 #include "core/base/system.h"
@@ -171,9 +172,11 @@ class WedgeMaker {
 
 }  // namespace
 
-void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet, std::size_t columns) {
+void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet) {
   WedgeMaker maker(looks, !page.empty());
-  Sheet cells(maker.frames() * looks.size(), columns);
+  std::set<std::optional<double>> radii;
+  for (const auto& look : looks) radii.insert(look.settings.estimator.radius);
+  Sheet cells(maker.frames() * looks.size(), radii.size() < looks.size() ? radii.size() : 0);
   maker.make(sheet.empty() ? nullptr : &cells);
   if (!page.empty()) write_whole(page, maker.page());
   if (!sheet.empty()) cells.write(sheet);
