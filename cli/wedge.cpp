@@ -21,7 +21,11 @@ namespace {
 
 constexpr std::size_t kMostPictures = 64;
 /// Options of run that a wedge has, beside those of groups of its own.
-const Words kOthers{"--frames", "--device", "--memory"};
+const Words kOthers{"--frames", "--device", "--memory", "-q,--quiet"};
+/// Those that no look has.
+const Words kOwn{"-o,--output", "--sheet", "-q,--quiet"};
+
+bool has(const Words& words, const std::string& word) { return std::ranges::find(words, word) != words.end(); }
 
 constexpr const char* kWedge =
     "Shows a frame in many looks: one for each radius, and for each value of every other list. The page has all looks "
@@ -38,10 +42,7 @@ Command wedge_syntax() {
   command.name = "alcove wedge";
   command.description = kWedge;
   static const Words kGroups{"", "Input", "Hidden surfaces", "Estimator"};
-  std::erase_if(command.rows, [](const OptionRow& row) {
-    return std::ranges::find(kGroups, row.group) == kGroups.end() &&
-           std::ranges::find(kOthers, row.name) == kOthers.end();
-  });
+  std::erase_if(command.rows, [](const OptionRow& row) { return !has(kGroups, row.group) && !has(kOthers, row.name); });
   for (auto& row : command.rows) {
     if (row.name == "--frames") row.sentence = "such as 1001,1050; else the middle one of INPUT on the disk";
     if (row.name == "--preset") row.sentence = "settings from presets, a look for each of a list";
@@ -63,20 +64,16 @@ Command wedge_syntax() {
 struct Typed {
   std::vector<Words> arguments;
   std::string input, page, sheet;
-  bool has_composite = true;
+  bool is_quiet = false;
+  std::string no_composite = {};  // why there is none; "" where there may be one
 };
 
-bool takes_whole(const SettingRow& row, const std::string& value) {
-  try {
-    Settings settings;
-    row.read(settings, {value});
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
+/// Whether a setting says how the frame is read, which all looks share.
+bool is_shared(const OptionRow& row) {
+  return row.group == "Input" || row.group == "Hidden surfaces" || has(kOthers, row.name);
 }
 
-/// The values of a list. What the setting takes as one value is one, but for radii, of which run takes the mean.
+/// The values of a list. A setting that takes a list itself has one value, but for radii and presets.
 Words values_in(const SettingRow& row, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (row.name == "--set" && (equals == 0 || equals == text.npos)) return {text};
@@ -85,10 +82,10 @@ Words values_in(const SettingRow& row, const std::string& text) {
     for (auto& value : values) value = text.substr(0, equals + 1) + value;
     return values;
   }
-  if (row.is_key() && row.name != "--radius" && takes_whole(row, text)) return {text};
+  const bool takes_list = row.value.find(',') != text.npos && row.name != "--radius" && row.name != "--preset";
+  if (is_shared(row) || takes_list) return {text};
   Words values = split(text);
-  if (std::ranges::find(values, "") != values.end())
-    fail(ErrorKind::usage, "{} {}: a value of the list is empty", row.long_name(), visible(text));
+  if (has(values, "")) fail(ErrorKind::usage, "{} {}: a value of the list is empty", row.long_name(), visible(text));
   return values;
 }
 
@@ -136,7 +133,8 @@ WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::
     if (arguments[i].size() > 1 || (parts.empty() && i + 1 == arguments.size())) parts.push_back(name + value);
   }
   chosen.insert(chosen.end(), {"-o", usual_output(typed.input, "ao", ".exr")});
-  if (typed.has_composite) chosen.insert(chosen.end(), {"--composite", usual_output(typed.input, "composite", ".exr")});
+  if (typed.no_composite.empty())
+    chosen.insert(chosen.end(), {"--composite", usual_output(typed.input, "composite", ".exr")});
   chosen.insert(chosen.end(), {"--preview", usual_output(typed.input, "preview", ".png")});
   RunOptions options;
   (void)parse_run_options(chosen, options);
@@ -151,7 +149,7 @@ std::set<double> radii_of(const Words& typed, std::optional<double> proposed, bo
   if (proposed && adds_proposed) radii.insert(*proposed);
   if (typed.empty()) radii.insert({0.5 * *proposed, 2 * *proposed});
   for (const auto& word : typed) {
-    const auto number = lower_case(word) == "auto" ? proposed : number_of(word);
+    const auto number = word == "auto" ? proposed : number_of(word);
     if (!number) fail(ErrorKind::usage, "--radius: {} is neither auto nor a number", word);
     radii.insert(*number);
   }
@@ -164,22 +162,20 @@ void check_looks(const std::vector<WedgeLook>& looks) {
   for (const auto& look : looks) {
     if (!names.insert(look.name).second) fail(ErrorKind::usage, "the look {} is there twice", look.name);
     for (const auto& row : option_table())
-      if ((row.group == "Input" || row.group == "Hidden surfaces" ||
-           std::ranges::find(kOthers, row.name) != kOthers.end()) &&
-          row.words(look.settings) != row.words(looks.front().settings))
+      if (is_shared(row) && row.words(look.settings) != row.words(looks.front().settings))
         fail(ErrorKind::usage, "{} differs between the looks {} and {}: a wedge reads its frame once", row.long_name(),
              looks.front().name, look.name);
   }
 }
 
-/// All combinations of what was typed, with the proposed radius among the radii; and the columns of the sheet.
-std::pair<std::vector<WedgeLook>, std::size_t> looks_of(const Typed& typed) {
+/// All combinations of what was typed, with the proposed radius among the radii.
+std::vector<WedgeLook> looks_of(const Typed& typed) {
   std::vector<Words> arguments = typed.arguments;
   Words given;
   if (std::ranges::count(arguments, Words{"--radius"}) > 1)
     fail(ErrorKind::usage, "--radius is given more than once: its looks are one list, as .1,.2,.5");
   if (const auto at = std::ranges::find(arguments, Words{"--radius"}); at != arguments.end()) {
-    given = at[1];
+    for (const auto& word : at[1]) given.push_back(lower_case(word));
     arguments.erase(at, at + 2);
   }
   const auto with_radii = [&](const Words& radii) {
@@ -189,16 +185,14 @@ std::pair<std::vector<WedgeLook>, std::size_t> looks_of(const Typed& typed) {
   };
   FirstLook first(look_of(typed, with_radii({"auto"}), 0).settings);
   std::size_t frames = first.plan().frames().size();
-  const bool names_frames = std::ranges::find(arguments, Words{"--frames"}) != arguments.end();
+  const bool names_frames = std::ranges::count(arguments, Words{"--frames"}) > 0;
   const bool is_contact_sheet = frames > 1 && !names_frames && given.size() == 1 && count_of(arguments) == 1;
   std::optional<double> proposed;
   try {
     first.prepare();
     proposed = first.plan().settings().estimator.radius;
   } catch (const Error& error) {  // where radii are given, a frame without a surface is no mistake
-    const bool needs_it =
-        given.empty() || std::ranges::any_of(given, [](const auto& word) { return lower_case(word) == "auto"; });
-    if (needs_it || error.kind() != ErrorKind::input) throw;
+    if (given.empty() || has(given, "auto") || error.kind() != ErrorKind::input) throw;
   }
   if (frames > 1 && !names_frames && !is_contact_sheet) {
     arguments.insert(arguments.end(), {{"--frames"}, {std::to_string(first.plan().frames()[frames / 2])}});
@@ -219,30 +213,32 @@ std::pair<std::vector<WedgeLook>, std::size_t> looks_of(const Typed& typed) {
       name += name.find("radius") != name.npos ? " (proposed)" : " (proposed radius)";
   }
   check_looks(looks);
-  return {looks, count > radii.size() ? radii.size() : 0};
+  return looks;
 }
 
 /// Makes the wedge, and says what became of each look. Gives the exit code.
 int make(const Typed& typed) {
-  auto [looks, columns] = looks_of(typed);
+  std::vector<WedgeLook> looks = looks_of(typed);
   for (const auto& [path, option] : {std::pair(typed.page, "--output"), {typed.sheet, "--sheet"}}) {
     require_no_input(path, option, input_files(looks.front().settings.input));
     if (!path.empty()) require_writable(path, option);
   }
-  make_wedge(looks, typed.page, typed.sheet, columns);
+  make_wedge(looks, typed.page, typed.sheet);
   std::set<std::string> told;
+  const auto tell = [&](const std::string& line) {
+    if (!typed.is_quiet && told.insert(line).second) print_error("{}\n", line);
+  };
   for (const auto& look : looks) {
-    for (const auto& note : look.notes)
-      if (const std::string line = fmt::format("{}: {}\n", level_of(note), printable(line_of(note, "")));
-          told.insert(line).second)
-        print_error("{}", line);
+    for (const auto& note : look.notes) tell(fmt::format("{}: {}", level_of(note), printable(line_of(note, ""))));
     if (look.error)
       print_error("alcove: error: look {}: {}\n", printable(look.name), printable(look.error->what()));
-    else
+    else if (!typed.is_quiet)
       fmt::print("{:<32} {:>7.0f} ms\n  {}\n", printable(look.name), look.ms, printable(look.command));
   }
   if (const std::string& frames = looks.front().settings.frames.frames; !frames.empty())
-    print_error("note: the commands make the frames {}; for the whole shot leave out --frames\n", printable(frames));
+    tell(
+        fmt::format("note: the commands make the frames {}; for the whole shot leave out --frames", printable(frames)));
+  if (!typed.no_composite.empty()) tell("note: there is no composite: " + printable(typed.no_composite));
   const bool is_whole = std::ranges::none_of(looks, [](const WedgeLook& look) { return look.error.has_value(); });
   return is_whole ? 0 : int(ErrorKind::some_frames_failed);
 }
@@ -260,11 +256,11 @@ int wedge_command(const std::vector<std::string>& arguments) {
     const auto found = std::ranges::find(*options, option, &TypedOption::name);
     return found == options->end() ? std::string() : found->words.front();
   };
-  Typed typed{{}, "", word_of_option("-o,--output"), word_of_option("--sheet")};
+  Typed typed{{}, "", word_of_option("-o,--output"), word_of_option("--sheet"), !word_of_option("-q,--quiet").empty()};
   for (const char* option : {"INPUT", "--depth", "--position"})
     if (typed.input.empty()) typed.input = word_of_option(option);
   const bool has_beauty = !word_of_option("--beauty").empty();
-  std::erase_if(*options, [](const auto& option) { return option.name == "-o,--output" || option.name == "--sheet"; });
+  std::erase_if(*options, [](const auto& option) { return has(kOwn, option.name); });
   with_help(command, [&] {
     if (typed.input.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
     if (typed.page.empty() && typed.sheet.empty())
@@ -277,16 +273,13 @@ int wedge_command(const std::vector<std::string>& arguments) {
     return make(typed);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::input || has_beauty) throw;
-    typed.has_composite = false;
-    int code = 0;
+    typed.no_composite = error.what();
     try {
-      code = make(typed);
+      return make(typed);
     } catch (const Error& without) {  // such as of settings of the composite
       if (without.kind() == ErrorKind::usage) throw error;
       throw;
     }
-    print_error("note: there is no composite: {}\n", printable(error.what()));
-    return code;
   }
 }
 

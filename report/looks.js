@@ -34,9 +34,13 @@ function look_card(look) {
   return card;
 }
 
-/// Called by the viewer, whose choices the cards show.
+/// Called by the viewer, whose choices the cards show. The button that was pressed keeps the focus.
 function fill_looks() {
-  if (report.kind === 'wedge') by_id('looks').replaceChildren(...report.candidates.map(look_card));
+  if (report.kind !== 'wedge') return;
+  const buttons = () => [...document.querySelectorAll('#looks button')];
+  const pressed = buttons().indexOf(document.activeElement);
+  by_id('looks').replaceChildren(...report.candidates.map(look_card));
+  buttons()[pressed]?.focus({ preventScroll: true });
 }
 
 function start_looks() {

@@ -14,8 +14,8 @@ const picture_of = (frame, candidate) => report.images.find((image) => image.fra
 const truth_of = (frame) => report.images.find((image) => image.frame === frame && image.truth)?.truth;
 const showing = () => document.querySelector('#viewer-show input:checked').value;
 const showing_error = () => showing() === 'error';
-/// The picture of an image that is chosen: its result, composite or error.
-const shown_of = (image) => image?.[showing()];
+/// The picture of an image that is chosen: its result, composite or error. A plain beauty has one picture.
+const shown_of = (image) => image?.[showing()] ?? image?.beauty;
 
 /// Only pictures that are inside the page are shown.
 function set_picture(layer, url, text) {

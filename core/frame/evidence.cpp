@@ -62,8 +62,6 @@ void count_value(ValueStatistics& s, float x) {
   s.most = std::max(s.most, double(x));
 }
 
-constexpr double kUnitTolerance = 0.05;  // of a length that is taken for 1
-
 /// Counts a normal as it stands in the file, unless it is zero or not finite. Components beyond `components` are 0.
 void count_normal(NormalStatistics& s, std::vector<double>& lengths, const Vector3& n, std::size_t components) {
   Vector3 unorm{};

@@ -23,6 +23,8 @@ struct ValueStatistics {
 /// Counts every `step`-th value.
 ValueStatistics statistics_of(std::span<const float> values, std::size_t step = 1);
 
+constexpr double kUnitTolerance = 0.05;  // of a length that is taken for 1
+
 /// Statistics of normals as they stand in the file, without those that are not finite or zero.
 struct NormalStatistics {
   std::uint64_t count = 0;

@@ -155,7 +155,8 @@ Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
   const NormalStatistics s = normal_statistics(raw.normal, raw.depth, depth_map_of(source.reading), step);
   const double unit = source.reading.normal_unorm ? s.unorm_unit_share : s.unit_share;
   if (!s.count || unit >= 1 - kMostShortened) return {};
-  if (!source.reading.normal_unorm && s.usual_share > 1 - kMostOfOtherLength)
+  const bool is_scaled = s.usual_share > 1 - kMostOfOtherLength && std::abs(s.usual_length - 1) > kUnitTolerance;
+  if (!source.reading.normal_unorm && is_scaled)
     return {
         {NoteCode::scaled_normals,
          fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO uses their direction only",

@@ -191,7 +191,8 @@ class DepthSettlement : private Settlement {
     float most = 0, next = 0;
     for (std::size_t i = 0; i < raw_.depth.size(); i += step)
       if (const float d = std::abs(raw_.depth[i]); d < limit) most = std::max(most, d);
-    std::size_t count = 0, all = 0, bare = 0, others_bare = 0, blended = 0;
+    std::size_t count = 0, all = 0, bare = 0, others_bare = 0, blended = 0, like_first = 0;
+    std::optional<std::size_t> first;  // pixel of the sky
     const bool has_normals = source_.channels[RawPlane::normal].size() == 3;
     for (std::size_t i = 0; i < raw_.depth.size(); i += step) {
       const float d = std::abs(raw_.depth[i]);
@@ -202,9 +203,13 @@ class DepthSettlement : private Settlement {
         next = std::max(next, d);
       const bool is_bare = has_normals && has_no_normal(i);
       all++, count += is_sky, bare += is_sky && is_bare, others_bare += is_surface && is_bare;
+      if (is_sky && !first) first = i;
+      like_first += is_sky && has_normals && !is_bare && has_same_normal(i, *first);
     }
     const double share = double(count) / double(all);
     if (next == 0 || share < kLeastShare || double(blended) > kBlended * double(count)) return;
+    // A wall that faces the camera has one planar depth and one normal; a dome around it has many normals.
+    if (reading_.depth_kind == DepthKind::planar && like_first == count) return;
     const bool is_shown =
         has_normals && double(bare) >= kAll * double(count) && double(others_bare) <= (1 - kAll) * double(all - count);
     if (is_shown) reading_.found_sky = most;
@@ -214,8 +219,17 @@ class DepthSettlement : private Settlement {
                            "(--sky {:.6g} says it)",
                            most, 100 * share, most)
              : fmt::format("{:.1f} % of the pixels have exactly the depth {:.6g}, and all others end at {:.4g}: if "
-                           "that is the sky, give --sky {:.6g}",
+                           "that is the sky, and no wall, give --sky {:.6g}",
                            100 * share, most, next, most));
+  }
+
+  bool has_same_normal(std::size_t pixel, std::size_t other) const {
+    constexpr float kRounded = 0.01f;  // 8 bits, too
+    for (std::size_t c = 0; c < 3; c++) {
+      const float* const plane = &raw_.normal[c * raw_.depth.size()];
+      if (!(std::abs(plane[pixel] - plane[other]) < kRounded)) return false;
+    }
+    return true;
   }
 
   /// Whether a pixel's normal is NaN, or 0 as a vector or as a colour.

@@ -31,20 +31,40 @@ double curved_of(double v) {
   return std::copysign(a <= 0.0031308 ? a * 12.92 : 1.055 * std::pow(a, 1 / 2.4) - 0.055, v);
 }
 
-/// Every so many pixels of planes.
-std::vector<float> sparse(std::span<const float> planes, std::size_t pixels) {
-  std::vector<float> some;
-  for (std::size_t plane = 0; plane < planes.size(); plane += pixels)
-    for (std::size_t i = 0; i < pixels; i += kSparse) some.push_back(planes[plane + i]);
+/// Neighbours belong to one surface if their normals differ by less, as they stand in the file.
+constexpr double kSameNormal = 0.1;
+
+/// Every so many pixels, of those that lie within a surface: a pixel filter shortens normals at edges only.
+std::vector<std::size_t> within_surfaces(std::span<const float> normal, std::size_t width) {
+  const std::size_t pixels = normal.size() / 3;
+  const auto is_near = [&](std::size_t i, std::size_t k) {
+    double squared = 0;
+    for (const std::size_t plane : {std::size_t(0), pixels, 2 * pixels})
+      squared += std::pow(double(normal[plane + i]) - normal[plane + k], 2);
+    return squared < kSameNormal * kSameNormal;
+  };
+  std::vector<std::size_t> some;
+  for (std::size_t i = 0; i < pixels; i += kSparse)
+    if (i >= width && i + width < pixels && is_near(i, i - 1) && is_near(i, i + 1) && is_near(i, i - width) &&
+        is_near(i, i + width))
+      some.push_back(i);
   return some;
 }
 
+/// These pixels of planes.
+std::vector<float> values_at(std::span<const float> planes, std::size_t pixels, const std::vector<std::size_t>& at) {
+  std::vector<float> values;
+  for (std::size_t plane = 0; plane < planes.size(); plane += pixels)
+    for (const std::size_t i : at) values.push_back(planes[plane + i]);
+  return values;
+}
+
 /// Names the alteration of signed normals or of 0.5 + 0.5 n if undoing it gives nearly all of them unit length: a
-/// picture's curve, or an exposure. It ends a sentence that begins with "they look like". `normal` has three planes.
-std::optional<std::string> alteration_of(std::span<const float> normal, std::span<const float> raw,
-                                         const DepthMap& map) {
-  const std::size_t pixels = normal.size() / 3;
-  const std::vector<float> some = sparse(normal, pixels), depth = sparse(raw, pixels);
+/// picture's curve, or an exposure. It ends a sentence that begins with "they look like". Normals have three planes.
+std::optional<std::string> alteration_of(const RawPart& raw, const DepthMap& map) {
+  const std::size_t pixels = raw.normal.size() / 3;
+  const auto at = within_surfaces(raw.normal, std::size_t(raw.window.width));
+  const std::vector<float> some = values_at(raw.normal, pixels, at), depth = values_at(raw.depth, pixels, at);
   const auto with = [&](const auto& undo) {
     std::vector<float> undone(some.size());
     for (std::size_t i = 0; i < some.size(); i++) undone[i] = float(undo(some[i]));
@@ -55,6 +75,8 @@ std::optional<std::string> alteration_of(std::span<const float> normal, std::spa
     if (s.unit_share > kProven) return fmt::format("vectors that were converted {}", way);
     return std::nullopt;
   };
+  const NormalStatistics unchanged = with([](double v) { return v; });
+  if (std::max(unchanged.unit_share, unchanged.unorm_unit_share) > kProven) return std::nullopt;
   if (auto found = curve(with(curved_of), "from sRGB to linear, as colours are")) return found;
   if (auto found = curve(with(linear_of), "from linear to sRGB, as colours are")) return found;
   for (const double exposure : {0.25, 0.5, 2.0, 4.0})
@@ -314,7 +336,7 @@ class NormalSettlement : private Settlement {
   /// Refuses vectors whose lengths show that they were treated as colours.
   void refuse_altered(const NormalStatistics& n) const {
     if (std::max(n.unit_share, n.unorm_unit_share) > kUnit || n.usual_share > kUnit) return;
-    if (const auto what = alteration_of(raw_.normal, raw_.depth, depth_map_of(reading_)))
+    if (const auto what = alteration_of(raw_, depth_map_of(reading_)))
       fail(ErrorKind::input, "{}: its normals ({}) are of unit length on {:.0f} % only: they look like {}; {}",
            normal_path(), channels(), 100 * n.unit_share, *what, kWithout);
   }

@@ -60,6 +60,8 @@ Notes notes_on_number(const FramePlan& plan) {
   const std::string& camera = settings.camera;
   if (plan.is_sequence() || camera.empty() || !lists_frames(camera)) return {};
   const std::string& input = main_input(settings);
+  std::error_code none;
+  if (!std::filesystem::exists(input, none)) return {};  // opening it says so
   const FrameNumber found = frame_number_in(input);
   if (!found.number)
     fail(ErrorKind::usage,

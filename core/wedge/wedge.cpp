@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <filesystem>
-#include <list>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/base/file.h"
 #include "core/base/system.h"
@@ -70,17 +71,17 @@ class WedgeMaker {
       const std::string file = std::filesystem::path(main_input(looks_.front().settings.input)).filename().string();
       planes_ = {};
       frames_.push_back({{"name", plan().is_sequence() ? std::to_string(frame) : file}, {"scale", nullptr}});
-      auto first = firsts_.begin();
-      for (auto& look : looks_) {
-        const auto shown = look.error ? std::vector<ShownPicture>() : make_look(look, *first, frame);
-        const std::string label = plan().is_sequence() ? fmt::format("{}  {}", frame, look.name) : look.name;
-        const double ms = rows_.empty() ? 0 : rows_.back()["ms"].get<double>();
-        if (sheet) sheet->put(cell_, look.error ? label + "  failed" : fmt::format("{}  {:.0f} ms", label, ms), shown);
-        cell_++;
-        first++;
+      for (std::size_t i = 0; i < looks_.size(); i++, cell_++) {
+        const auto shown = looks_[i].error ? std::vector<ShownPicture>() : make_look(looks_[i], firsts_[i], frame);
+        if (!sheet) continue;
+        const std::string number = plan().is_sequence() ? fmt::format("{}  ", frame) : "";
+        const std::string end = looks_[i].error ? "failed" : fmt::format("{:.0f} ms", rows_.back()["ms"].get<double>());
+        sheet->put(cell_, fmt::format("{}{}  {}", number, looks_[i].name, end), shown);
       }
+      if (beauty_.width) images_.push_back(image_of("beauty", beauty_, "beauty"));
+      beauty_ = {};
     }
-    if (images_.empty()) throw *looks_.front().error;
+    if (rows_.empty()) throw *looks_.front().error;
   }
 
   std::string page() {
@@ -106,6 +107,15 @@ class WedgeMaker {
  private:
   const FramePlan& plan() { return firsts_.front().plan(); }
 
+  /// An image of the page and of this frame, whose picture has that name.
+  Json image_of(const std::string& candidate, const ShownPicture& picture, const char* name) const {
+    return {{"frame", frames_.back()["name"]},
+            {"candidate", candidate},
+            {"width", picture.width},
+            {"height", picture.height},
+            {name, url_of(picture)}};
+  }
+
   /// Gives the AO and the composite, if there is one; nothing where the look fails.
   std::vector<ShownPicture> make_look(WedgeLook& look, FirstLook& first, int frame) {
     const FramePlan& frames = first.plan();
@@ -128,6 +138,7 @@ class WedgeMaker {
       if (outputs.composite) {
         const DisplayTransform transform(output.ocio, output.display, output.view_transform);
         shown.push_back(shown_colors(source, window, outputs.composite, &transform));
+        if (has_page_ && !beauty_.width) beauty_ = shown_colors(source, window, nullptr, &transform);
       }
       Json& scale = frames_.back()["scale"];
       if (has_page_ && scale.is_null()) scale = scale_of(source.reading, shown_plane(source, window, *outputs.depth));
@@ -137,12 +148,10 @@ class WedgeMaker {
       look.error = report.error;
       add_new(look.notes, report.notes);
       if (report.error) return;
-      const Json name = frames_.back()["name"];
-      rows_.push_back({{"frame", name}, {"candidate", look.name}, {"ms", report.compute_ms}});
-      images_.push_back({{"frame", name}, {"candidate", look.name}});
-      images_.back().update({{"width", shown[0].width}, {"height", shown[0].height}});
-      if (has_page_) images_.back()["result"] = url_of(shown[0]);
-      if (has_page_ && shown.size() > 1) images_.back()["composite"] = url_of(shown[1]);
+      rows_.push_back({{"frame", frames_.back()["name"]}, {"candidate", look.name}, {"ms", report.compute_ms}});
+      if (!has_page_) return;
+      images_.push_back(image_of(look.name, shown[0], "result"));
+      if (shown.size() > 1) images_.back()["composite"] = url_of(shown[1]);
     };
     run_pipeline(lanes_, run, room_of_lane(memory_, 1, lanes_.device().info()), std::span(&frame, 1), take, {});
     return shown;
@@ -153,18 +162,21 @@ class WedgeMaker {
   const DeviceSettings& device_ = looks_.front().settings.device;
   Lanes lanes_{{device_.device, device_.require_gpu, device_.validate, !device_.no_pipeline_cache}, 1};
   const RunMemory memory_ = memory_for_frames(device_, lanes_.device().info());
-  std::list<FirstLook> firsts_;         // of each look
+  std::deque<FirstLook> firsts_;        // of each look
   std::optional<FrameSource> settled_;  // as which all are read
   ReadPlanes planes_;                   // of the frame
   std::size_t cell_ = 0;                // of the sheet
+  ShownPicture beauty_;                 // of the frame, where there are composites
   Json rows_ = Json::array(), images_ = Json::array(), frames_ = Json::array();
 };
 
 }  // namespace
 
-void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet, std::size_t columns) {
+void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet) {
   WedgeMaker maker(looks, !page.empty());
-  Sheet cells(maker.frames() * looks.size(), columns);
+  std::set<std::optional<double>> radii;
+  for (const auto& look : looks) radii.insert(look.settings.estimator.radius);
+  Sheet cells(maker.frames() * looks.size(), radii.size() < looks.size() ? radii.size() : 0);
   maker.make(sheet.empty() ? nullptr : &cells);
   if (!page.empty()) write_whole(page, maker.page());
   if (!sheet.empty()) cells.write(sheet);

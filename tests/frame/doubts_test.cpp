@@ -77,6 +77,19 @@ TEST_F(Doubts, a_sky_may_be_blended_with_what_is_before_it_or_filtered_beyond_it
   expect(Reply::noted, {"what lies beyond counts as that, the sky"});
 }
 
+TEST_F(Doubts, a_wall_that_faces_the_camera_far_behind_all_others_is_not_called_the_sky) {
+  give();
+  settings.depth_kind = DepthKind::planar;
+  settings.normal_space = NormalSpace::world;
+  for (const bool is_wall : {true, false}) {
+    write_frame();
+    for (std::size_t i = 0; i < planes["Z"].size(); i++)
+      if (planes["Z"][i] == 1e12f) planes["Z"][i] = 1000, planes[is_wall || i % 2 ? "N.Z" : "N.Y"][i] = 1;
+    write(settings.input);
+    EXPECT_EQ(std::ranges::count(settled().notes, NoteCode::finite_sky, &Note::code), is_wall ? 0 : 1);
+  }
+}
+
 // Depth within 0 to 1.
 
 TEST_F(Doubts, what_depth_may_be_is_told_by_its_values_its_program_and_its_camera_file) {

@@ -9,6 +9,8 @@ namespace {
 
 using namespace test;
 
+constexpr int kFloor = 0, kWall = 1, kBall = 2;  // primitives of the rendering
+
 /// A rendering as a file of Z and N, with a camera that is turned by some degrees within a world of the test's own.
 class NormalFiles : public SettledFile {
  protected:
@@ -35,6 +37,15 @@ class NormalFiles : public SettledFile {
   }
   Vec3 world(Vec3 view) const {
     return view.x * view_from_world[0] + view.y * view_from_world[1] + view.z * view_from_world[2];
+  }
+
+  /// Turns to a world in which all that is seen faces up its axes.
+  void face_axes() {
+    const Shot& shot = rendering.shot;
+    place({Vec3{shot.right.x, shot.right.y, shot.right.z}, Vec3{shot.up.x, shot.up.y, shot.up.z},
+           Vec3{shot.back.x, shot.back.y, shot.back.z}});
+    for (auto& hit : rendering.hits)
+      if (hit.primitive == kBall) hit.primitive = -1;
   }
 
   using Saved = std::function<Vec3(Vec3 view, const test::Hit& hit)>;
@@ -69,8 +80,6 @@ class NormalFiles : public SettledFile {
   std::array<Vec3, 3> view_from_world{};
   std::set<std::string> halves;
 };
-
-constexpr int kFloor = 0, kWall = 1, kBall = 2;  // primitives of the rendering
 
 // Normals of the other side.
 
@@ -195,13 +204,8 @@ TEST_F(NormalFiles, without_signs_are_told_from_those_that_need_none) {
   write([&](Vec3 n, const test::Hit&) { return clamped(n); });
   expect(Reply::refused, {"values below 0 were cut off"});
   EXPECT_THAT(said(), Each(Not(HasSubstr("averaged"))));
-  // A world in which all that is seen faces up its axes.
   settings.normal_space = NormalSpace::automatic;
-  const Shot& shot = rendering.shot;
-  place({Vec3{shot.right.x, shot.right.y, shot.right.z}, Vec3{shot.up.x, shot.up.y, shot.up.z},
-         Vec3{shot.back.x, shot.back.y, shot.back.z}});
-  for (auto& hit : rendering.hits)
-    if (hit.primitive == kBall) hit.primitive = -1;
+  face_axes();
   write([&](Vec3 n, const test::Hit&) { return world(n); });
   EXPECT_THAT(noted(), IsEmpty());
 }
@@ -229,6 +233,20 @@ TEST_F(NormalFiles, that_went_through_a_curve_for_colours_are_refused_with_the_c
     return Vec3{linear(0.5 + 0.5 * w.x), linear(0.5 + 0.5 * w.y), linear(0.5 + 0.5 * w.z)};
   });
   expect(Reply::refused, {"0.5 + 0.5 n that was converted from sRGB to linear", "N.X, N.Y, N.Z", "--normal none"});
+}
+
+// The curve of sRGB makes vectors of averages of two axes, too: (0.5, 0.5, 0) becomes (0.74, 0.74, 0).
+TEST_F(NormalFiles, of_a_room_are_averages_at_edges_and_went_through_no_curve) {
+  face_axes();
+  int number = 0;
+  write([&](Vec3 n, const test::Hit&) {
+    const Vec3 w = world(n);
+    return number++ % 6 ? w : 0.5 * w + 0.5 * Vec3{w.y, w.z, w.x};
+  });
+  EXPECT_THAT(codes_of(noted()), Contains(NoteCode::shortened_normals));
+  number = 0;
+  write([&](Vec3 n, const test::Hit&) { return (number++ % 16 ? 1 : 0.7) * world(n); });
+  EXPECT_THAT(codes_of(noted()), ElementsAre(NoteCode::shortened_normals)) << "most have length 1: they are not scaled";
 }
 
 TEST_F(NormalFiles, are_named_where_they_are_files_of_their_own) {

@@ -108,6 +108,14 @@ facts["the compositor that was there stays"] = links == len(scene.node_tree.link
 bpy.ops.alcove.write_cameras(filepath=os.path.join(folder, "written.json"))
 facts["frame stays"] = scene.frame_current
 
+# A shot that is rendered by hand, with the passes and settings that docs/getting-started.md names.
+scene.cycles.samples = 16
+for name in ("use_pass_z", "use_pass_normal", "use_pass_position", "use_pass_vector"):
+    setattr(scene.view_layers[0], name, True)
+scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+scene.render.filepath, scene.render.use_compositing = os.path.join(folder, "by hand", "shot.####"), False
+bpy.ops.render.render(animation=True)
+
 
 def message_of(change):
     """What an error says where something was changed."""

@@ -106,6 +106,19 @@ class Blender(unittest.TestCase):
         self.assertAlmostEqual(camera["cx"] + camera["fx"] * view[0], 80 * x, delta=1e-3)
         self.assertAlmostEqual(camera["cy"] - camera["fy"] * view[1], 60 * (1 - y), delta=1e-3)
 
+    def test_the_line_for_a_shot_makes_ao_of_its_vectors_and_cameras(self):
+        with open(os.path.join(SOURCE, "docs/getting-started.md"), encoding="utf-8") as file:
+            [line] = [line.split() for line in file if "--accumulate" in line]
+        done = subprocess.run([PROGRAM, *line[1:], "--stats", "stats.json"], cwd=path("by hand"), capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("warning", done.stderr)
+        with open(path("by hand/stats.json"), encoding="utf-8") as file:
+            frames = json.load(file)["frames"]
+        self.assertEqual(len(frames), 5)
+        self.assertGreater(frames[1]["frames_per_pixel"], 1.5, "three frames lie before the cut")
+        for frame in frames:
+            self.assertTrue(os.path.getsize(path("by hand/ao.%04d.exr" % frame["frame"])) > 0)
+
     def test_errors_reach_the_user(self):
         self.assertIn("ao.0006.exr", self.facts["error of the program"])
         self.assertIn("exit code 4", self.facts["error of the program"])

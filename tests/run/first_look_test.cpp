@@ -111,6 +111,9 @@ TEST_F(CameraList, needs_a_frame_where_the_name_tells_none) {
     expect_right(compute(name, {"--frames", "5"}));
   }
   test::expect_refused(compute("shot.0042.exr"), 3, {"no frame 42", "0042 of the name"});
+  for (const char* name : {"no.0042.exr", "no.exr"})
+    test::expect_refused(run_program({"run", folder / name, "-o", ao, "--radius", "1", "--camera", cameras}), 3,
+                         {name, "file not found"});
   EXPECT_EQ(run_program({"run", folder / "shot_v002.exr", "-o", ao, "--radius", "1", "--camera", camera}).code, 0)
       << "one camera is that of every frame";
 }

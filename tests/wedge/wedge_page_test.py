@@ -78,6 +78,20 @@ def check_pointer(browser, report, camera):
     assert abs(width - expected) < 0.02 * expected + 1, f"the circle is {width} px wide instead of {expected}"
 
 
+def check_focus(browser, name):
+    """Who chooses by keys stays at the button that was pressed."""
+    browser.run("document.querySelector('#looks figure:nth-child(3) button').focus()")
+    browser.keys(" ")
+    assert browser.text("#chip-left") == name
+    assert browser.run("const now = document.activeElement; return now === document.querySelector('#looks figure:nth-child(3) button')"), "lost"
+
+
+def check_beauty(browser, report):
+    browser.choose("#viewer-right", "beauty")
+    shown = browser.run("return document.querySelector('#layer-right img').src")
+    assert shown == report["images"][-1]["beauty"], "the plain beauty is not shown"
+
+
 def check_command(browser, program, report, folder):
     """What is copied makes the bits that the page shows."""
     browser.choose("#viewer-left", report["candidates"][2]["name"])
@@ -115,6 +129,8 @@ def main(program, project):
             browser.click("#viewer-show label:nth-child(2)")
             shown = browser.run("return document.querySelector('#layer-left img').src")
             assert shown == report["images"][0]["composite"], "the composite is not shown"
+            check_beauty(browser, report)
+            check_focus(browser, report["candidates"][2]["name"])
             check_command(browser, program, report, folder)
             check_no_overflow(browser)
             check_quiet(browser, page)

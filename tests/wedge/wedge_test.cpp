@@ -60,8 +60,8 @@ class Wedge : public SequenceFolder {
     return grey_picture(kWallWindow.width, kWallWindow.height, pixels);
   }
   void expect_bits_of_commands(const json& report) const {
-    ASSERT_GE(report["images"].size(), 1);
-    for (std::size_t i = 0; i < report["images"].size(); i++)
+    ASSERT_GE(report["images"].size(), report["candidates"].size());
+    for (std::size_t i = 0; i < report["candidates"].size(); i++)
       EXPECT_TRUE(run_command_of(report, i) == report["images"][i]["result"]) << report["candidates"][i];
   }
 
@@ -116,9 +116,13 @@ TEST_F(Wedge, of_a_beauty_shows_composites_and_makes_them) {
   FrameFile with_beauty = wall_frame();
   add_beauty(with_beauty);
   with_beauty.write(frame);
-  const json report = shown(of_frame("--radius 1 --set gain=1,1.5"));
-  for (const auto& image : report["images"])
-    EXPECT_THAT(image["composite"].get<std::string>(), HasSubstr("data:image"));
+  const json report = shown(of_frame("--radius 1 --set intensity=0,1"));
+  const json& images = report["images"];
+  ASSERT_EQ(images.size(), report["candidates"].size() + 1);
+  EXPECT_THAT(images[0]["composite"].get<std::string>(), HasSubstr("data:image"));
+  EXPECT_EQ(images.back()["candidate"], "beauty");
+  EXPECT_TRUE(images.back()["beauty"] == images[0]["composite"]) << "without strength it is the beauty";
+  EXPECT_FALSE(images.back()["beauty"] == images[images.size() - 2]["composite"]);
   EXPECT_THAT(report["candidates"][0]["settings"], HasSubstr("-o ao.exr --composite composite.exr"));
   expect_bits_of_commands(report);
   EXPECT_TRUE(fs::exists(folder / "composite.exr"));
@@ -174,7 +178,7 @@ TEST_F(Wedge, that_makes_no_sense_is_refused) {
   refused("--radius=-1,2", {"--radius", "-1"});
   refused("--set output=x.exr", {"--output", "more than once"});
   refused("--set intensity=1,1", {"intensity=1", "twice"});
-  refused("--depth-kind planar,ray", {"--depth-kind", "reads its frame once"});
+  refused("--depth-kind planar,ray", {"--depth-kind", "planar,ray"});
   refused("--gain 1,2", {"--set gain=1,2"});
   refused("--stats x.json", {"--stats", "no option"});
   refused("--radius 1,2,3,4,5,6,7,8 --set intensity=1,2,3,4,5,6,7,8", {"64", "fewer values"});
@@ -189,8 +193,16 @@ TEST_F(Wedge, tells_which_look_fails_and_shows_the_others) {
   const Finished finished = run(joined(of_frame("--radius auto --set multi-bounce=false,true"), {"--sheet", sheet}));
   EXPECT_EQ(finished.code, 1) << finished;
   EXPECT_THAT(finished.err, AllOf(HasSubstr("look multi-bounce=true"), HasSubstr("albedo")));
-  EXPECT_EQ(report_in(page)["images"].size(), 1);
+  EXPECT_EQ(report_in(page)["images"].size(), 2) << "a look, and the beauty";
   EXPECT_TRUE(fs::exists(sheet));
+}
+
+TEST_F(Wedge, may_say_nothing) {
+  const Finished quiet = run(of_frame("--radius 1 -q"));
+  EXPECT_EQ(quiet.code, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  EXPECT_THAT(report_in(page)["candidates"][0]["settings"], Not(HasSubstr("-q")));
+  EXPECT_THAT(run(of_frame("--radius 1 -q", folder / "none.exr")).err, HasSubstr("none.exr"));
 }
 
 TEST_F(Wedge, of_a_frame_that_cannot_be_read_is_none) {
