@@ -60,8 +60,9 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   const Denoiser denoiser = denoiser_of(settings);
   const Visibility noisy = combine(gpu, work, seen.estimate, wanted.has(&FrameOutputs::scales));
   const FilterRuns runs = dilate(gpu, work, seen.estimate.listed, denoiser);
-  const Visibility smooth =
-      chosen.rows ? interpolate(gpu, work, noisy, chosen, denoiser, runs) : denoise(gpu, work, noisy, denoiser, runs);
+  const Visibility fitted = fit_sites(gpu, work, noisy, chosen, denoiser);
+  const Visibility smooth = chosen.rows ? interpolate(gpu, work, noisy, fitted, chosen, denoiser, runs)
+                                        : denoise(gpu, work, noisy, denoiser, runs);
   seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smooth, runs));
   if (wanted.has(&FrameOutputs::error)) seen.error = cut(gpu, frame, seen.estimate.error, "error");
   seen.stages = {work, noisy.ao, chosen, smooth.ao, seen.estimate.completed, seen.estimate.listed.kinds};

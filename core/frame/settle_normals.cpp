@@ -64,6 +64,7 @@ std::vector<float> values_at(std::span<const float> planes, std::size_t pixels, 
 std::optional<std::string> alteration_of(const RawPart& raw, const DepthMap& map) {
   const std::size_t pixels = raw.normal.size() / 3;
   const auto at = within_surfaces(raw.normal, std::size_t(raw.window.width));
+  if (at.empty()) return std::nullopt;
   const std::vector<float> some = values_at(raw.normal, pixels, at), depth = values_at(raw.depth, pixels, at);
   const auto with = [&](const auto& undo) {
     std::vector<float> undone(some.size());

@@ -43,8 +43,10 @@ std::vector<float> run(const Filter& filter, const std::vector<float>& before, b
   const Sites chosen = sites(gpu, low, site_rule_of(filter.settings));
   EXPECT_EQ(chosen.rows != nullptr, filter.settings.stride > 1);
   const auto filtered = [&](gpu::Buffer& ao, const FilterRuns& runs) {
-    gpu::Buffer& smooth =
-        chosen.rows ? interpolate(gpu, low, ao, chosen, denoiser, "", runs) : denoise(gpu, low, ao, denoiser, "", runs);
+    const bool fits = chosen.rows && denoiser.fits_sites;
+    const gpu::Buffer* fitted = fits ? &fit_sites(gpu, low, ao, chosen, denoiser) : nullptr;
+    gpu::Buffer& smooth = chosen.rows ? interpolate(gpu, low, ao, fitted, chosen, denoiser, "", runs)
+                                      : denoise(gpu, low, ao, denoiser, "", runs);
     return &upsample(gpu, gbuffer, low, smooth, "", runs);
   };
   gpu::Buffer& ao = gpu.buffer("ao", sizeof(float) * filter.ao.size(), gpu::Use::upload);

@@ -82,7 +82,10 @@ struct Sparse {
     gpu::Buffer& buffer = recorder().buffer("visibility of a test", planes.size() * sizeof(float), gpu::Use::upload);
     std::ranges::copy(planes, buffer.as<float>().begin());
     recorder().upload(buffer);
-    return downloaded<float>(interpolate(recorder(), frame.gbuffer, buffer, sites, denoiser_of(settings)));
+    const Denoiser denoiser = denoiser_of(settings);
+    const gpu::Buffer* fitted =
+        denoiser.fits_sites ? &fit_sites(recorder(), frame.gbuffer, buffer, sites, denoiser) : nullptr;
+    return downloaded<float>(interpolate(recorder(), frame.gbuffer, buffer, fitted, sites, denoiser));
   }
 };
 

@@ -120,11 +120,12 @@ TEST(Scales, share_all_passes_but_the_search) {
     EXPECT_EQ(planes_of(frame, settings, aovs).passes, expected);
   };
   const Names sites{"links", "sites", "sites", "sites", "sites"}, search{"classify", "list_sites", "horizon"},
-      dense_search{"classify", "horizon"}, combine{"combine"}, filter{"fit_sites", "interpolate", "interpolate"},
+      dense_search{"classify", "horizon"}, combine{"combine"}, fit{"fit_sites"}, filter{"interpolate", "interpolate"},
       denoise{"denoise"};
-  expect_passes(settings_of({0.1, 0.6, 2}), "ao", {sites, search, search, search, combine, filter});
-  expect_passes(settings_of({0.1, 0.6, 2}), "ao,ao-scales", {sites, search, search, search, combine, filter, filter});
-  expect_passes(settings_of({0.6}), "ao,ao-scales", {sites, search, filter});
+  expect_passes(settings_of({0.1, 0.6, 2}), "ao", {sites, search, search, search, combine, fit, filter});
+  expect_passes(settings_of({0.1, 0.6, 2}), "ao,ao-scales",
+                {sites, search, search, search, combine, fit, fit, filter, filter});
+  expect_passes(settings_of({0.6}), "ao,ao-scales", {sites, search, fit, filter});
   EstimatorSettings dense = settings_of({0.1, 0.6});
   dense.stride = 1;
   expect_passes(dense, "ao,ao-scales", {dense_search, dense_search, combine, denoise, denoise, denoise, denoise});

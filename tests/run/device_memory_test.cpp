@@ -82,7 +82,7 @@ TEST_F(DeviceMemory, that_runs_out_halves_the_frames_at_once_and_then_the_tiles)
 }
 
 TEST_F(DeviceMemory, that_runs_out_for_an_estimate_halves_its_parts) {
-  const Options options = typed("--radius 0.1 --frames 2 --accumulate 1");
+  const Options options = typed("--radius 0.02 --frames 2 --accumulate 1");
   expect_whole({}, options);
   // One of them is the driver's own. The frame fails at once, and once more when it is alone and without the buffers of
   // the first time.

@@ -77,6 +77,18 @@ Params filter_params(const GBuffer& gbuffer, const Denoiser& denoiser) {
   return params;
 }
 
+/// The lattice of the widest sites.
+struct Lattice {
+  ivec2 first, sites;
+};
+Lattice lattice_of(const GBuffer& gbuffer, const Sites& sites) {
+  const ivec2 shifted{gbuffer.grid.origin.x + sites.shift.x, gbuffer.grid.origin.y + sites.shift.y};
+  const ivec2 first{-(shifted.x & (kLatticeStep - 1)), -(shifted.y & (kLatticeStep - 1))};
+  return {first,
+          {int(groups_of(gbuffer.view.size.x - first.x, uint(kLatticeStep))),
+           int(groups_of(gbuffer.view.size.y - first.y, uint(kLatticeStep)))}};
+}
+
 /// The workgroups of a filter along one axis.
 gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& listed) {
   if (listed.counts) return gpu::Extent(*listed.counts);
@@ -188,37 +200,23 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& pl
   return result;
 }
 
-/// The lattice of the widest sites.
-struct Lattice {
-  ivec2 first, sites;
-};
-Lattice lattice_of(const GBuffer& gbuffer, const Sites& sites) {
-  const ivec2 shifted{gbuffer.grid.origin.x + sites.shift.x, gbuffer.grid.origin.y + sites.shift.y};
-  const ivec2 first{-(shifted.x & (kLatticeStep - 1)), -(shifted.y & (kLatticeStep - 1))};
-  return {first,
-          {int(groups_of(gbuffer.view.size.x - first.x, uint(kLatticeStep))),
-           int(groups_of(gbuffer.view.size.y - first.y, uint(kLatticeStep)))}};
-}
-
-/// The values of the lattice's sites, smoothed among themselves; null: they are not.
-const gpu::Buffer* fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& planes, const Sites& sites,
-                             const Denoiser& denoiser, const std::string& prefix) {
-  if (!denoiser.fits_sites) return nullptr;
+gpu::Buffer& fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
+                       const Denoiser& denoiser, const std::string& prefix) {
   const Lattice lattice = lattice_of(gbuffer, sites);
   const uint count = planes_in(planes, gbuffer.view);
-  const gpu::Buffer& fitted = gpu.buffer(
-      prefix + "fitted sites", sizeof(float) * count * std::size_t(lattice.sites.x) * std::size_t(lattice.sites.y));
+  gpu::Buffer& fitted = gpu.buffer(prefix + "fitted sites",
+                                   sizeof(float) * count * std::size_t(lattice.sites.x) * std::size_t(lattice.sites.y));
   gpu.dispatch("fit_sites",
                FitSitesParams{gbuffer.view, lattice.first, lattice.sites,
                               float(denoiser.within / double(gbuffer.view.tangent_per_pixel.x))},
                {{"Ao", planes}, {"Depth", gbuffer.depth}, {"Normal", gbuffer.normal}, {"Result", fitted}},
                {groups_of(lattice.sites.x, uint(kFitRun)), uint(lattice.sites.y)}, {count});
-  return &fitted;
+  return fitted;
 }
 
-gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
-                         const Denoiser& denoiser, const std::string& prefix, const FilterRuns& runs) {
-  const gpu::Buffer* fitted = fit_sites(gpu, gbuffer, planes, sites, denoiser, prefix);
+gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const gpu::Buffer* fitted,
+                         const Sites& sites, const Denoiser& denoiser, const std::string& prefix,
+                         const FilterRuns& runs) {
   const auto radius = uint(denoiser.weights.size() - 1);
   InterpolateParams params = filter_params<InterpolateParams>(gbuffer, denoiser);
   const gpu::Buffer& written =
@@ -284,12 +282,24 @@ Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility&
                   });
 }
 
-Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
-                       const Denoiser& denoiser, const FilterRuns& runs) {
-  return filtered(visibility, runs,
-                  [&](gpu::Buffer& planes, const std::string& prefix, const FilterRuns& listed) -> gpu::Buffer& {
-                    return interpolate(gpu, gbuffer, planes, sites, denoiser, prefix, listed);
+Visibility fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
+                     const Denoiser& denoiser) {
+  if (!sites.rows || !denoiser.fits_sites) return {};
+  return filtered(visibility, {},
+                  [&](gpu::Buffer& planes, const std::string& prefix, const FilterRuns&) -> gpu::Buffer& {
+                    return fit_sites(gpu, gbuffer, planes, sites, denoiser, prefix);
                   });
+}
+
+Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
+                       const Visibility& fitted, const Sites& sites, const Denoiser& denoiser, const FilterRuns& runs) {
+  Visibility result;
+  result.ao = &interpolate(gpu, gbuffer, *visibility.ao, fitted.ao, sites, denoiser, "", runs);
+  if (visibility.scales)
+    result.scales = &interpolate(gpu, gbuffer, *visibility.scales, fitted.scales, sites, denoiser, kScalesPrefix);
+  if (visibility.bent)
+    result.bent = &interpolate(gpu, gbuffer, *visibility.bent, fitted.bent, sites, denoiser, kBentPrefix);
+  return result;
 }
 
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, gpu::Buffer& low_planes,

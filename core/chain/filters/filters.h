@@ -60,11 +60,21 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& pl
 Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Denoiser& denoiser,
                    const FilterRuns& runs = {});
 
-/// Gives every pixel a visibility from the sites about it, where not every pixel is one.
-Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
-                       const Denoiser& denoiser, const FilterRuns& runs = {});
-gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
-                         const Denoiser& denoiser, const std::string& prefix = "", const FilterRuns& runs = {});
+/// Smooths the visibility of the sites of the widest lattice among themselves: planes of the lattice's pixels. The
+/// denoiser must fit sites; without, the whole has no planes.
+Visibility fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
+                     const Denoiser& denoiser);
+gpu::Buffer& fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
+                       const Denoiser& denoiser, const std::string& prefix = "");
+
+/// Gives every pixel a visibility from the sites about it, where not every pixel is one. `fitted`: of fit_sites, for
+/// the same visibility.
+Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
+                       const Visibility& fitted, const Sites& sites, const Denoiser& denoiser,
+                       const FilterRuns& runs = {});
+gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const gpu::Buffer* fitted,
+                         const Sites& sites, const Denoiser& denoiser, const std::string& prefix = "",
+                         const FilterRuns& runs = {});
 
 /// Brings any number of planes from the blocks of `low` to the pixels of `gbuffer`, or returns the input where both are
 /// the same.
