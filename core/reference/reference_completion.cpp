@@ -18,6 +18,8 @@ constexpr double kLeastHeight = 1e-3;
 /// The least facing for which the normal's plane counts: the dot product of the normal and the view ray, which is 1
 /// long along the optical axis. Surfaces seen more nearly edge on have no reliable plane.
 constexpr double kLeastFacing = -0.02;
+/// A surface is seen where it lies less than so many pixels' widths behind what is seen.
+constexpr double kSeenWithin = 0.25;
 /// Beyond the border a surface goes on no nearer and no farther than so many times its depth there, and if it stands so
 /// many radii above the receiver's tangent plane: a floor stays open, whatever its normal map.
 constexpr double kMostChange = 2;
@@ -72,6 +74,13 @@ class Completer {
   /// The nearness of a sample; sky is infinitely far.
   double nearness_of(const ReferenceSample& sample) const {
     return nearness_at(sample.depth > 0 ? sample.depth : INFINITY);
+  }
+
+  /// Whether a nearness is seen at a step, or known not to be there.
+  bool shows(int step, double nearness) const {
+    const double depth = hider(step).depth;
+    const double width = (scene_.orthographic() ? 1 : nearness_of(hider(step))) / scene_.fx();
+    return depth == 0 || nearness >= nearness_at(depth) - kSeenWithin * width;
   }
 
   /// A point on the slice, as an offset from the receiver.
@@ -135,7 +144,7 @@ class Completer {
       if (step == 0) return add(course, 1);
       if (step == steps_) return add(course, step - way);
       const double nearness = course.at(step);
-      if (hider(step).depth == 0 || nearness >= nearness_of(hider(step))) return add(course, step - way);
+      if (shows(step, nearness)) return add(course, step - way);
       if ((way > 0 && step > side_.reach + 1) || has_left(course, nearness, course.slope * way))
         return add_ray(course, way);
     }

@@ -342,31 +342,35 @@ class ReuseOfFrames : public SequenceFolder {
     for (int i = first; i <= last; i++) frame.write(input(i));
   }
 
-  /// Runs, and expects the same files of a run that computes all of each frame. Returns the frames' statistics.
+  /// Runs, and expects the same files of a run that computes all of each frame. Returns the statistics. A GPU computes
+  /// several frames at once: which one a frame comes after is not known there.
   json stats_of(const Options& more) const {
     const Options options = joined(more, typed("--threads 1 --set overwrite=true"));
-    json frames = SequenceFolder::stats_of(options)["frames"];
+    json stats = SequenceFolder::stats_of(options);
     const auto reused = outputs();
     EXPECT_FALSE(reused.empty());
     const json all = SequenceFolder::stats_of(joined(options, {"--no-skip"}));
     for (const auto& frame : all["frames"]) EXPECT_FALSE(frame["passes"].empty());
     for (const auto& [name, bytes] : outputs()) EXPECT_TRUE(reused.at(name) == bytes) << name;
-    return frames;
+    return stats;
   }
 };
 
-TEST_F(ReuseOfFrames, equal_frames_are_computed_once_a_thread) {
+TEST_F(ReuseOfFrames, equal_frames_are_computed_once_for_each_at_once) {
   write_frames(1, 6);
-  const json frames = stats_of({});
-  ASSERT_EQ(frames.size(), 6);
-  EXPECT_FALSE(frames[0]["passes"].empty());
-  for (std::size_t i = 1; i < 6; i++) {
-    EXPECT_TRUE(frames[i]["passes"].empty());
-    EXPECT_EQ(frames[i]["ms"]["compute"], 0);
-    EXPECT_EQ(frames[i]["tiles"]["computed"], 0);
-    EXPECT_EQ(frames[i]["tiles"]["kept"], frames[0]["tiles"]["computed"]);
-    EXPECT_EQ(frames[i]["tiles"]["total"], frames[0]["tiles"]["total"]);
+  const json stats = stats_of({});
+  int computed = 0;
+  for (const auto& frame : stats["frames"]) {
+    const json& tiles = frame["tiles"];
+    const bool is_computed = !frame["passes"].empty();
+    computed += is_computed;
+    EXPECT_EQ(tiles[is_computed ? "computed" : "kept"], tiles["total"]);
+    EXPECT_EQ(tiles[is_computed ? "kept" : "computed"], 0);
+    if (!is_computed) EXPECT_EQ(frame["ms"]["compute"], 0);
   }
+  EXPECT_EQ(stats["frames"].size(), 6);
+  EXPECT_GT(computed, 0);
+  EXPECT_LE(computed, stats["totals"]["at_once"]);
 }
 
 /// Values that are other in the frame of that number.
@@ -396,9 +400,11 @@ TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
     changes[i]();
     frame.write(input(int(i) + 1));
   }
+  const json stats = stats_of({"--composite", out + "/comp.%04d.exr", "--radius", "0.3", "--aov",
+                               "ao,confidence,specular-occlusion,bent-normal"});
+  if (stats["totals"]["at_once"] > 1) GTEST_SKIP() << "which frame a frame comes after is not known";
   std::vector<int> kept, passes;
-  for (const auto& report : stats_of({"--composite", out + "/comp.%04d.exr", "--radius", "0.3", "--aov",
-                                      "ao,confidence,specular-occlusion,bent-normal"})) {
+  for (const auto& report : stats["frames"]) {
     kept.push_back(report["tiles"]["kept"].get<int>());
     passes.push_back(int(report["passes"].size()));
   }

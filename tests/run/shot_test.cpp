@@ -170,11 +170,11 @@ TEST_F(Shots, tell_how_many_frames_memory_has_room_for) {
   for (int frame = 1; frame <= kFrames; frame++) fs::remove(input(frame));
   write_frames(1, kFrames, wall_frame(large, large));
   write_bytes(camera, wall_camera(large).dump());
-  const Finished refused = run(typed("--around all --memory 182M"));
+  const Finished refused = run(typed("--around all --threads 2 --memory 182M"));
   test::expect_refused(refused, 2, {"f.0001.exr", "--around ", "--memory "});
-  EXPECT_EQ(run(typed("--around all --memory 182M --dry-run")).code, 2);
+  EXPECT_EQ(run(typed("--around all --threads 2 --memory 182M --dry-run")).code, 2);
   const std::string enough = refused.err.substr(refused.err.find("or --memory ") + 3);
-  done(joined(typed("--around all --frames 4"), typed(enough.substr(0, enough.find_first_of("\n ", 9)))));
+  done(joined(typed("--around all --threads 2 --frames 4"), typed(enough.substr(0, enough.find_first_of("\n ", 9)))));
 }
 
 /// Adds motion vectors of what stands still, as Blender writes them: to the place in the frame before.
@@ -241,7 +241,7 @@ TEST_F(Shots, refuse_motion_vectors_that_no_camera_agrees_with) {
     add_motion(file, 3.7f);
     file.write(input(frame));
   }
-  expect_refused(3, {"--around", "2", "--threads", "1", "--motion", in + "/f.%04d.exr"},
+  expect_refused(3, {"--around", "2", "--frames", "1", "--motion", in + "/f.%04d.exr"},
                  {"f.000", "--set motion-channels", "--set motion-kind"});
 }
 

@@ -76,8 +76,10 @@ TEST_F(SurroundingsTest, with_a_full_cache_folder_cost_nothing_but_time_and_leav
   write_bytes(home + "/full", std::string(4096, 'x'));
   // Mesa 22.3 maps the index of its own cache before there is room for it, and dies of the first write.
   expect_plain_with({{"XDG_CACHE_HOME", home}, {"MESA_SHADER_CACHE_DISABLE", "true"}});
+  // Drivers have caches of their own beside the program's.
   for (const auto& name : names_in(home))
-    EXPECT_FALSE(name.ends_with(".bin") || name.ends_with(".tmp")) << name << " is no whole cache";
+    EXPECT_FALSE(name.starts_with("alcove/") && (name.ends_with(".bin") || name.ends_with(".tmp")))
+        << name << " is no whole cache";
   unmount(home);
 }
 

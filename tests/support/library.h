@@ -56,7 +56,7 @@ struct Library : testing::Test {
     EXPECT_OK(handle, alcove_camera_json(handle.get(), text.c_str()));
     EXPECT_OK(handle, alcove_set(handle.get(), "radius", "0.35"));
     EXPECT_OK(handle, alcove_set(handle.get(), "normal-space", "world"));
-    EXPECT_OK(handle, alcove_set(handle.get(), "device", "cpu"));
+    EXPECT_OK(handle, alcove_set(handle.get(), "device", device().info().name.c_str()));
     return handle;
   }
   static void give_planes(const Handle& handle) {
