@@ -1,4 +1,4 @@
-// Error sums, percentiles, structural similarity, depth edges, grain.
+// Error sums, percentiles, structural similarity, depth edges, grain, mottle.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/metrics.h"
 
@@ -99,12 +99,12 @@ constexpr std::size_t kPlainSide_px = 2 * kPlainReach_px + 1;
 
 /// Whether 1/z at a pixel and at its two neighbours on a line is that of a straight surface. Sky is NaN, so a line with
 /// sky is never straight.
-bool is_straight(double before, double center, double after) {
-  return std::abs(before + after - 2 * center) < kPlainBend * center;
+bool is_straight(double before, double center, double after, double bend) {
+  return std::abs(before + after - 2 * center) < bend * center;
 }
 
 /// Marks surfaces that count and do not bend with 1.
-std::vector<double> straight_pixels(int width, int height, Values depth, double sky, Mask mask) {
+std::vector<double> straight_pixels(int width, int height, Values depth, double sky, double bend, Mask mask = {}) {
   std::vector<double> inverse(depth.size());
   std::vector<double> straight(depth.size());
   std::ranges::transform(depth, inverse.begin(), [&](float z) {
@@ -114,11 +114,25 @@ std::vector<double> straight_pixels(int width, int height, Values depth, double 
   for (int y = 1; y < height - 1; y++)
     for (int x = 1; x < width - 1; x++) {
       const std::size_t i = std::size_t(y) * row + std::size_t(x);
-      const bool along_x = is_straight(inverse[i - 1], inverse[i], inverse[i + 1]);
-      const bool along_y = is_straight(inverse[i - row], inverse[i], inverse[i + row]);
+      const bool along_x = is_straight(inverse[i - 1], inverse[i], inverse[i + 1], bend);
+      const bool along_y = is_straight(inverse[i - row], inverse[i], inverse[i + row], bend);
       straight[i] = along_x && along_y && counts(mask, i) ? 1 : 0;
     }
   return straight;
+}
+
+/// The sum over the square about each pixel. Beyond the picture, the border's pixels are repeated.
+std::vector<double> sum_of_square(int width, int height, const std::vector<double>& values, int reach_px) {
+  const std::vector<double> ones(std::size_t(2 * reach_px + 1), 1);
+  return convolve(width, height, values, ones, ones);
+}
+
+/// Marks the pixels with 1 whose whole square is marked so.
+std::vector<std::uint8_t> with_whole_square(int width, int height, const std::vector<double>& marks, int reach_px) {
+  const auto marked = sum_of_square(width, height, marks, reach_px);
+  std::vector<std::uint8_t> whole(marks.size());
+  std::ranges::transform(marked, whole.begin(), [&](double count) { return count == std::pow(2 * reach_px + 1, 2); });
+  return whole;
 }
 
 /// The error minus its mean over the square about each pixel.
@@ -248,14 +262,9 @@ EdgeErrors edge_errors(Mask edges, Values result, Values reference, Mask mask, V
 }
 
 std::vector<std::uint8_t> plain_pixels(int width, int height, Values depth, double sky, Mask mask) {
-  static const std::vector<double> ones(kPlainSide_px, 1);
-  const auto straight = straight_pixels(width, height, depth, sky, mask);
-  // Beyond the picture, the border's pixels are repeated, and none of them is straight.
-  const auto straight_in_square = convolve(width, height, straight, ones, ones);
-  std::vector<std::uint8_t> plain(depth.size());
-  std::ranges::transform(straight_in_square, plain.begin(),
-                         [](double count) { return count == kPlainSide_px * kPlainSide_px; });
-  return plain;
+  // No pixel of the border is straight, and beyond the picture these are repeated.
+  const auto straight = straight_pixels(width, height, depth, sky, kPlainBend, mask);
+  return with_whole_square(width, height, straight, kPlainReach_px);
 }
 
 std::optional<double> grain(int width, int height, Mask plain, Values result, Values reference, Values reference_b) {
@@ -275,6 +284,42 @@ std::optional<double> grain(int width, int height, Mask plain, Values result, Va
     }
   }
   return count ? std::optional(std::sqrt(std::max(0.0, sum / double(count)))) : std::nullopt;
+}
+
+std::vector<std::uint8_t> half_shadow(int width, int height, Values depth, double sky, Values normal, Values truth) {
+  const std::size_t pixels = depth.size();
+  auto straight = straight_pixels(width, height, depth, sky, kSmoothBend);
+  const auto turns = [&](std::size_t i, std::size_t before) {
+    double cosine = 0;
+    for (std::size_t c = 0; c < normal.size(); c += pixels) cosine += double(normal[c + i]) * normal[c + before];
+    return !(cosine > kSmoothCosine);
+  };
+  for (std::size_t i = 0; i < pixels && !normal.empty(); i++)
+    if (straight[i] && (turns(i, i - 1) || turns(i, i - std::size_t(width)))) straight[i] = 0;
+  auto half = with_whole_square(width, height, straight, kSmoothReach_px);
+  std::vector<double> light(pixels);
+  for (std::size_t i = 0; i < pixels; i++) light[i] = half[i] ? truth[i] : 0;
+  const auto lights = sum_of_square(width, height, light, kShadowReach_px);
+  const auto smooth = sum_of_square(width, height, {half.begin(), half.end()}, kShadowReach_px);
+  for (std::size_t i = 0; i < pixels; i++)
+    half[i] = half[i] && lights[i] > kShadowFrom * smooth[i] && lights[i] < kShadowTo * smooth[i];
+  return half;
+}
+
+std::optional<double> mottle(Mask half, std::span<const std::vector<float>> results) {
+  const auto n = double(results.size());
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < half.size(); i++) {
+    if (!half[i]) continue;
+    double mean = 0, variance = 0;
+    for (const auto& result : results) mean += result[i] / n;
+    for (const auto& result : results) variance += std::pow(result[i] - mean, 2) / (n - 1);
+    if (!std::isfinite(variance)) continue;
+    sum += variance;
+    count++;
+  }
+  return count ? std::optional(std::sqrt(sum / double(count))) : std::nullopt;
 }
 
 std::vector<double> convolve(int width, int height, std::span<const double> plane, std::span<const double> along_x,

@@ -115,6 +115,23 @@ std::vector<std::uint8_t> plain_pixels(int width, int height, Values depth, doub
 std::optional<double> grain(int width, int height, Mask plain, Values result, Values reference,
                             Values reference_b = {});
 
+/// A smooth pixel is the middle of a square without edges that reaches so far to each side. An edge is no surface, or
+/// bends by this or more, or turns its normal against the left or the upper neighbour's to this cosine or less.
+inline constexpr int kSmoothReach_px = 2;
+inline constexpr double kSmoothBend = 1e-3, kSmoothCosine = 0.98;
+/// In half shadow the truth is between these bounds, as a mean over the smooth pixels up to so far to each side.
+inline constexpr int kShadowReach_px = 4;
+inline constexpr double kShadowFrom = 0.2, kShadowTo = 0.97;
+
+/// Gives 1 at smooth pixels in half shadow. `normal` has planes of x, y and z, of unit length; empty: depth alone tells
+/// edges. Depth, sky and border are as for plain_pixels(). A truth that is not finite leaves out the pixels about it.
+std::vector<std::uint8_t> half_shadow(int width, int height, Values depth, double sky, Values normal, Values truth);
+
+/// The RMS, over the pixels in half shadow, of the standard deviation (n - 1) between results that differ in their
+/// seed: clouds and beads that noise leaves. Pixels with a value that is not finite are left out; nothing where none is
+/// left.
+std::optional<double> mottle(Mask half, std::span<const std::vector<float>> results);
+
 // Separable filters, in double precision.
 
 /// Correlates the plane (width x height, row by row) with `along_x` in its rows, then with `along_y` in its columns.

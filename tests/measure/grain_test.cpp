@@ -1,4 +1,5 @@
-// Grain against closed forms and against its definition, written out slowly; and its limit as scripts see it.
+// Grain and mottle against closed forms and against their definitions, written out slowly; and the limit of grain as
+// scripts see it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/metrics.h"
 #include "tests/support/compare_command.h"
@@ -195,6 +196,82 @@ TEST(Grain, of_several_planes_is_the_root_of_their_mean_square) {
   };
   EXPECT_NEAR(*grain_of(both(constant(0), stripes(0.125, 8, 0)), both(constant(0), constant(0))),
               0.125 / 2 * (1 - damping(8)), 1e-8);
+}
+
+// Mottle.
+
+/// A step of depth, a crease that normals alone show, a hole of sky, and light that falls from 1 to 0.
+struct ShadedFrame {
+  Plane depth = plane_of([](int x, int y) { return x == 40 && y == 20 ? 1e10 : y < 9 ? 5 : 1 / (0.3 + 2e-4 * x * x); });
+  Plane light = plane_of([](int x, int y) { return std::clamp(1.15 - 0.03 * x + 0.002 * (y % 3), 0.0, 1.0); });
+  Plane normal = plane_of([](int, int y) { return y < 30 ? 0 : 0.28; });  // x, y and z
+
+  ShadedFrame() {
+    const Plane z = plane_of([](int, int y) { return y < 30 ? 1 : 0.96; });
+    normal.insert(normal.end(), kWindow.pixels(), 0.0f);
+    normal.insert(normal.end(), z.begin(), z.end());
+  }
+};
+
+bool is_edge_by_definition(const ShadedFrame& frame, const Plane& normal, int x, int y) {
+  if (x < 1 || y < 1 || x >= kSide - 1 || y >= kSide - 1) return true;
+  for (const std::size_t step : {1, kSide}) {
+    const std::size_t i = at(x, y);
+    const auto inverse = [&](std::size_t j) { return frame.depth[j] < kSky ? 1.0 / frame.depth[j] : 0; };
+    if (inverse(i) == 0 || inverse(i - step) == 0 || inverse(i + step) == 0) return true;
+    if (std::abs(inverse(i - step) + inverse(i + step) - 2 * inverse(i)) >= 1e-3 * inverse(i)) return true;
+    double cosine = normal.empty() ? 1 : 0;
+    for (std::size_t c = 0; c < normal.size(); c += frame.depth.size()) cosine += normal[c + i] * normal[c + i - step];
+    if (cosine <= 0.98) return true;
+  }
+  return false;
+}
+
+TEST(Mottle, is_looked_for_where_its_definition_says) {
+  const ShadedFrame frame;
+  for (const Plane& normal : {frame.normal, Plane()}) {
+    const auto is_smooth = [&](int x, int y) {
+      for (int j = y - 2; j <= y + 2; j++)
+        for (int i = x - 2; i <= x + 2; i++)
+          if (is_edge_by_definition(frame, normal, i, j)) return false;
+      return true;
+    };
+    const Bytes half = half_shadow(kSide, kSide, frame.depth, kSky, normal, frame.light);
+    int smooth = 0;
+    for (int y = 0; y < kSide; y++)
+      for (int x = 0; x < kSide; x++) {
+        double sum = 0;
+        int count = 0;
+        for (int j = y - 4; j <= y + 4; j++)
+          for (int i = x - 4; i <= x + 4; i++) {
+            if (!is_smooth(i, j)) continue;
+            sum += frame.light[at(i, j)];
+            count++;
+          }
+        smooth += is_smooth(x, y);
+        ASSERT_EQ(half[at(x, y)], is_smooth(x, y) && sum > 0.2 * count && sum < 0.97 * count) << x << ", " << y;
+      }
+    EXPECT_GT(count_of(half), 200);
+    EXPECT_GT(smooth, count_of(half) + 200) << "light and darkness";
+  }
+}
+
+TEST(Mottle, of_known_deviations_is_their_rms) {
+  // The deviations of -d, 0, d are d, and those of three times the same 0.
+  const Plane deviation = plane_of([](int x, int y) { return y >= 40 ? 100 : x % 2 ? 0.06 : 0.08; });
+  std::vector<Plane> results(3, constant(0.5f));
+  for (std::size_t i = 0; i < deviation.size(); i++) {
+    results[0][i] -= deviation[i];
+    results[2][i] += deviation[i];
+  }
+  Bytes half(kWindow.pixels(), 1);
+  std::fill(half.begin() + 40 * kSide, half.end(), std::uint8_t(0));
+  EXPECT_NEAR(mottle(half, results).value(), std::sqrt((0.06 * 0.06 + 0.08 * 0.08) / 2), 1e-7);
+  for (int x = 1; x < kSide; x += 2)
+    for (int y = 0; y < kSide; y++) results[1][at(x, y)] = kNan;
+  EXPECT_NEAR(mottle(half, results).value(), 0.08, 1e-7) << "without the pixels that are NaN";
+  EXPECT_EQ(mottle(half, std::vector<Plane>(3, deviation)), 0);
+  EXPECT_EQ(mottle(Bytes(half.size(), 0), results), std::nullopt);
 }
 
 // The command.
