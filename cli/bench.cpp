@@ -116,14 +116,15 @@ std::vector<BenchCandidate> candidates_of(const Suite& suite, const std::string&
 }
 
 void print_table(const BenchReport& report) {
-  fmt::print("{:<14} {:<24} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "frame", "candidate", "ms", "yards",
-             "rmse", "bias", "p99", "grain", "estimator", "geometry");
+  fmt::print("{:<14} {:<24} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "frame", "candidate", "ms",
+             "yards", "rmse", "bias", "p99", "grain", "mottle", "estimator", "geometry");
   for (const auto& row : report.rows) {
     const auto& frame = *std::ranges::find(report.frames, row.frame, &BenchFrame::name);
     const auto number = [](std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; };
-    fmt::print("{:<14} {:<24} {:>9.2f} {:>7} {:>8.4f} {:>+8.4f} {:>8.4f} {:>8} {:>9} {:>9}\n", row.frame, row.candidate,
-               row.ms, frame.yardstick_ms ? fmt::format("{:.2f}", row.ms / *frame.yardstick_ms) : "-", row.rmse,
-               row.bias, row.p99, number(row.grain), number(row.estimator_rmse), number(row.geometry_rmse));
+    fmt::print("{:<14} {:<24} {:>9.2f} {:>7} {:>8.4f} {:>+8.4f} {:>8.4f} {:>8} {:>8} {:>9} {:>9}\n", row.frame,
+               row.candidate, row.ms, frame.yardstick_ms ? fmt::format("{:.2f}", row.ms / *frame.yardstick_ms) : "-",
+               row.rmse, row.bias, row.p99, number(row.grain), number(row.mottle), number(row.estimator_rmse),
+               number(row.geometry_rmse));
   }
 }
 

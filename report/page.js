@@ -21,6 +21,7 @@ const kColumns = {
   ssim: { heading: 'SSIM', hint: 'structural similarity; 1: the same', decimals: 4 },
   flip: { heading: 'FLIP', hint: 'mean perceived difference, 0 to 1', decimals: 4 },
   grain: { heading: 'grain', hint: 'stripes and specks on plain surfaces: RMS of the error less its mean over 15 x 15 pixels', decimals: 4 },
+  mottle: { heading: 'mottle', hint: 'clouds on smooth surfaces in half shadow: RMS of the standard deviation between three seeds', decimals: 4 },
   psnr: { heading: 'PSNR', hint: 'peak signal to noise ratio in dB' },
   estimator_rmse: { heading: 'estimator RMSE', hint: 'error against an exact search of the same depth buffer: what sampling costs', decimals: 4 },
   geometry_rmse: { heading: 'geometry RMSE', hint: 'error of that exact search against the truth: what a depth buffer cannot see', decimals: 4 },

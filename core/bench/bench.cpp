@@ -73,13 +73,25 @@ struct LoadedFrame {
   std::vector<float> truth;           // their mean
   std::vector<std::uint8_t> surface;  // 1 where there is no sky: what is measured
   std::vector<float> planar;          // depth in scene units, infinite on sky
+  std::vector<std::uint8_t> half;     // 1 in half shadow: where mottle is measured
 };
+
+/// In the file's own space, of unit length; empty: the frame has none.
+std::vector<float> unit_normals(const HostFrame& host) {
+  const std::size_t pixels = host.data.pixels();
+  std::vector<float> unit(host.normal.empty() ? 0 : 3 * pixels);
+  for (std::size_t i = 0; 3 * i < unit.size(); i++) {
+    const Vector3 n = decoded_normal(host.normal, pixels, i, host.normal_encoding, host.normal_unorm);
+    for (std::size_t c = 0; c < 3; c++) unit[c * pixels + i] = float(n[c] / std::hypot(n[0], n[1], n[2]));
+  }
+  return unit;
+}
 
 LoadedFrame load(const SuiteFrame& frame) {
   InputSettings settings;
   settings.input = frame.input;
   settings.camera = frame.camera;
-  LoadedFrame loaded{read_host_frame(settings, 0), {}, {}, {}, {}};
+  LoadedFrame loaded{read_host_frame(settings, 0), {}, {}, {}, {}, {}};
   const auto& host = loaded.host;
   for (const float z : host.depth) loaded.surface.push_back(std::isfinite(z) && z > 0 && z < host.sky);
   loaded.planar = planar_depths(host.depth, depth_map_of(host), view_of(host.camera, host.data, host.display));
@@ -95,6 +107,8 @@ LoadedFrame load(const SuiteFrame& frame) {
     for (const auto& truth : loaded.truths) loaded.truth[i] += truth[i] / float(loaded.truths.size());
     if (!loaded.surface[i]) loaded.truth[i] = 1;
   }
+  loaded.half = half_shadow(host.data.width, host.data.height, loaded.planar, std::numeric_limits<double>::infinity(),
+                            unit_normals(host), loaded.truth);
   return loaded;
 }
 
@@ -203,6 +217,15 @@ std::optional<double> grain_of(const BenchRow& row, const LoadedFrame& frame) {
   return grain(width, height, plain, values.result, values.reference, values.reference_b);
 }
 
+/// Between three seeds, over the half shadow.
+std::optional<double> mottle_of(gpu::Recorder& gpu, const LoadedFrame& frame, EstimatorSettings settings) {
+  if (std::ranges::find(frame.half, 1) == frame.half.end()) return std::nullopt;
+  std::vector<std::vector<float>> results;
+  for (settings.seed = 1; settings.seed <= 3; settings.seed++)
+    results.push_back(compute_ao(gpu, frame.host, settings).ao);
+  return mottle(frame.half, results);
+}
+
 void measure(BenchRow& row, const LoadedFrame& frame, const EstimatorSettings& settings, References* references) {
   const PlaneErrors errors = against_truth(row.ao, frame);
   row.rmse = errors.rmse;
@@ -253,6 +276,7 @@ BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector
       const double blocks = double(settings.resolution) * double(settings.resolution);
       const double estimates = result.estimates ? result.estimates : (pixels - result.sky_pixels) / blocks;
       row.samples_per_pixel = samples_of(settings, estimates, result.wide) / pixels;
+      row.mottle = mottle_of(gpu, loaded, settings);
       measure(row, loaded, settings, suite.reference_slices ? &references : nullptr);
       report.rows.push_back(std::move(row));
     }

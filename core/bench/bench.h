@@ -39,6 +39,7 @@ struct BenchRow {
   double samples_per_pixel = 0;
   double rmse = 0, mae = 0, bias = 0, p99 = 0;
   std::optional<double> grain;           // nothing where no pixel of the frame is plain
+  std::optional<double> mottle;          // between the seeds 1 to 3; nothing where none is smooth and in half shadow
   std::optional<double> estimator_rmse;  // against the CPU reference at the same radius and falloff
   std::optional<double> geometry_rmse;   // of the CPU reference against the truth
   std::vector<float> ao;                 // the result, for pictures
@@ -79,7 +80,7 @@ std::string bench_csv(const BenchReport& report);
 std::string bench_page(const BenchReport& report);
 
 /// What is above its limit, a sentence each. A limit for a row that was not measured is an Error of kind usage, one for
-/// the grain of a frame where no pixel is plain of kind input.
+/// the grain of a frame where no pixel is plain, or for the mottle of one without half shadow, of kind input.
 std::vector<std::string> broken_limits(const BenchReport& report, const std::vector<Limit>& limits);
 
 /// Everything that a reference of a frame depends on besides the frame; a kept reference has it as the attribute

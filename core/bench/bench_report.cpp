@@ -35,18 +35,19 @@ Json to_json(const BenchRow& row) {
           {"bias", row.bias},
           {"p99", row.p99},
           {"grain", number(row.grain)},
+          {"mottle", number(row.mottle)},
           {"estimator_rmse", number(row.estimator_rmse)},
           {"geometry_rmse", number(row.geometry_rmse)},
           {"passes", passes}};
 }
 
-/// The mean over the frames that have plain pixels.
-std::optional<double> mean_grain(const std::vector<const BenchRow*>& rows) {
+/// The mean over the frames that have the measure.
+std::optional<double> mean_of(const std::vector<const BenchRow*>& rows, std::optional<double> BenchRow::*measure) {
   double sum = 0;
   int count = 0;
   for (const auto* row : rows) {
-    if (!row->grain) continue;
-    sum += *row->grain;
+    if (!(row->*measure)) continue;
+    sum += *(row->*measure);
     count++;
   }
   return count ? std::optional(sum / count) : std::nullopt;
@@ -70,7 +71,8 @@ Json to_json(const BenchCandidate& candidate, const BenchReport& report) {
   mean("mae", &BenchRow::mae);
   mean("bias", &BenchRow::bias);
   mean("p99", &BenchRow::p99);
-  json["grain"] = number(mean_grain(rows));
+  json["grain"] = number(mean_of(rows, &BenchRow::grain));
+  json["mottle"] = number(mean_of(rows, &BenchRow::mottle));
   return json;
 }
 
@@ -95,13 +97,12 @@ std::string field(const std::string& text) {
   return quoted + "\"";
 }
 
-double measured_grain(const BenchRow& row) {
-  if (!row.grain)
-    fail(
-        ErrorKind::input,
-        "{} on {}: grain has a limit and cannot be measured: the frame shows no 15 x 15 pixels of one plane (--limits)",
-        row.candidate, row.frame);
-  return *row.grain;
+/// `lack` says what a frame without the measure does not show.
+double measured(const BenchRow& row, const std::string& measure, std::optional<double> value, const char* lack) {
+  if (!value)
+    fail(ErrorKind::input, "{} on {}: {} has a limit and cannot be measured: the frame shows no {} (--limits)",
+         row.candidate, row.frame, measure, lack);
+  return *value;
 }
 
 double measured(const BenchRow& row, const std::string& measure) {
@@ -109,7 +110,8 @@ double measured(const BenchRow& row, const std::string& measure) {
   if (measure == "mae") return row.mae;
   if (measure == "p99") return row.p99;
   if (measure == "bias") return std::abs(row.bias);
-  if (measure == "grain") return measured_grain(row);
+  if (measure == "grain") return measured(row, measure, row.grain, "15 x 15 pixels of one plane");
+  if (measure == "mottle") return measured(row, measure, row.mottle, "smooth surface in half shadow");
   return row.estimator_rmse.value();  // require_known() has seen to it
 }
 
@@ -120,7 +122,7 @@ std::string bench_json(const BenchReport& report) { return json_text(to_json(rep
 std::string bench_csv(const BenchReport& report) {
   std::string text =
       "frame,candidate,ms,ms_min,ms_max,yardsticks,samples_per_pixel,rmse,mae,bias,p99,estimator_rmse,geometry_rmse,"
-      "bytes_read,bytes_written,grain\n";
+      "bytes_read,bytes_written,grain,mottle\n";
   const auto optional = [](std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; };
   for (const auto& row : report.rows) {
     const auto& frame = *std::ranges::find(report.frames, row.frame, &BenchFrame::name);
@@ -129,11 +131,11 @@ std::string bench_csv(const BenchReport& report) {
       read += pass.bytes_read;
       written += pass.bytes_written;
     }
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", field(row.frame), field(row.candidate), row.ms,
-                    row.ms_min, row.ms_max, frame.yardstick_ms ? fmt::format("{}", row.ms / *frame.yardstick_ms) : "",
-                    row.samples_per_pixel, row.rmse, row.mae, row.bias, row.p99, optional(row.estimator_rmse),
-                    optional(row.geometry_rmse), read, written, optional(row.grain));
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", field(row.frame), field(row.candidate),
+                        row.ms, row.ms_min, row.ms_max,
+                        frame.yardstick_ms ? fmt::format("{}", row.ms / *frame.yardstick_ms) : "",
+                        row.samples_per_pixel, row.rmse, row.mae, row.bias, row.p99, optional(row.estimator_rmse),
+                        optional(row.geometry_rmse), read, written, optional(row.grain), optional(row.mottle));
   }
   return text;
 }

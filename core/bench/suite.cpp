@@ -188,7 +188,7 @@ std::vector<Limit> read_limits(const std::string& path) {
   Table{path, "the limits", root}.require_keys({"limit"});
   std::vector<Limit> limits;
   for_each_table(path, root, "limit", [&](const Table& table) {
-    const std::set<std::string> measures = {"rmse", "mae", "p99", "bias", "grain", "estimator-rmse"};
+    const std::set<std::string> measures = {"rmse", "mae", "p99", "bias", "grain", "mottle", "estimator-rmse"};
     auto known = measures;
     known.insert({"frame", "candidate"});
     table.require_keys(known);

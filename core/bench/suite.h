@@ -43,7 +43,7 @@ Suite read_suite(const std::string& path, const std::string& data);
 /// The most that an error may be for a candidate on a frame.
 struct Limit {
   std::string frame, candidate;
-  std::string measure;  // rmse, mae, p99, bias (its size), grain or estimator-rmse
+  std::string measure;  // rmse, mae, p99, bias (its size), grain, mottle or estimator-rmse
   double most = 0;
 };
 

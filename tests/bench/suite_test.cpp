@@ -1,5 +1,6 @@
-// Suites of the benchmark: at which radius each candidate is measured, and with how much grain.
+// Suites of the benchmark: at which radius each candidate is measured, with how much grain, and with how much mottle.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/measure/metrics.h"
 #include "tests/support/command_line.h"
 
 namespace alcove::suite_test {
@@ -135,9 +136,9 @@ TEST_F(SuiteGrain, of_a_frame_without_plain_pixels_is_nothing_and_in_no_mean) {
   EXPECT_THAT(lines_of(finished.out)[0], HasSubstr("   grain "));
   EXPECT_THAT(lines_of(finished.out)[1], HasSubstr(in_table));
   const auto csv = lines_of(read_bytes(folder / "report.csv"));
-  EXPECT_THAT(csv[0], testing::EndsWith(",grain"));
+  EXPECT_THAT(csv[0], testing::EndsWith(",grain,mottle"));
   EXPECT_THAT(csv[1], HasSubstr("," + digits));
-  EXPECT_THAT(csv[2], testing::EndsWith(","));
+  EXPECT_THAT(csv[2], testing::EndsWith(",,"));
   EXPECT_THAT(read_bytes(folder / "page.html"), HasSubstr("\"grain\": " + digits));
 }
 
@@ -152,6 +153,71 @@ TEST_F(SuiteGrain, has_a_limit_that_holds_breaks_or_cannot_be_checked) {
   EXPECT_EQ(broken.code, 6) << broken;
   EXPECT_THAT(broken.err, StartsWith("alcove: far on wall: grain is "));
   test::expect_refused(limited("small", 1), 3, {"far on small: grain", "--limits"});
+}
+
+class SuiteMottle : public SuiteGrain {
+ protected:
+  /// Between what `alcove run` gives for the seeds 1 to 3.
+  double expected() const {
+    std::vector<std::vector<float>> results;
+    for (const char* seed : {"1", "2", "3"}) results.push_back(written({"--radius", "4", "--seed", seed}).pixels);
+    write_bytes(ao, truth);
+    const auto planes = wall_frame().planes;
+    std::vector<float> normal;
+    for (const char* axis : {"X", "Y", "Z"}) {
+      const auto& plane = planes.at(std::string("ViewLayer.Normal.") + axis);
+      normal.insert(normal.end(), plane.begin(), plane.end());
+    }
+    const auto half =
+        half_shadow(64, 36, planes.at("ViewLayer.Depth.Z"), 1e9, normal, read_exr_image(folder / "ao.exr").pixels);
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < half.size(); i++) {
+      if (!half[i]) continue;
+      const double a = results[0][i], b = results[1][i], c = results[2][i], mean = (a + b + c) / 3;
+      sum += (std::pow(a - mean, 2) + std::pow(b - mean, 2) + std::pow(c - mean, 2)) / 2;
+      count++;
+    }
+    return std::sqrt(sum / count);
+  }
+
+  const std::string truth = read_bytes(ao);
+};
+
+TEST_F(SuiteMottle, is_the_deviation_between_runs_with_three_seeds) {
+  const double deviation = expected();
+  EXPECT_GT(deviation, 1e-3);
+  EXPECT_NEAR(report_of(wall)["rows"][0]["mottle"], deviation, 1e-6);
+}
+
+TEST_F(SuiteMottle, of_a_frame_without_half_shadow_is_nothing_and_in_no_mean) {
+  const auto report = report_of(both);
+  const double value = report["rows"][0]["mottle"];
+  ASSERT_TRUE(report["rows"][1].contains("mottle"));
+  EXPECT_TRUE(report["rows"][1]["mottle"].is_null());
+  EXPECT_EQ(report["candidates"][0]["mottle"], value);
+  const Finished finished = bench(both, {"--csv", folder / "report.csv", "--report", folder / "page.html"});
+  EXPECT_EQ(finished.code, 0) << finished;
+  const std::string digits = fmt::format("{:.10f}", value).substr(0, 6);
+  EXPECT_THAT(lines_of(finished.out)[0], HasSubstr("   mottle "));
+  EXPECT_THAT(lines_of(finished.out)[1], HasSubstr(fmt::format("{:.4f}", value)));
+  EXPECT_THAT(lines_of(read_bytes(folder / "report.csv"))[1], testing::ContainsRegex("," + digits + "[0-9]*$"));
+  EXPECT_THAT(read_bytes(folder / "page.html"),
+              AllOf(HasSubstr("\"mottle\": " + digits), HasSubstr("heading: 'mottle'")));
+}
+
+TEST_F(SuiteMottle, has_a_limit_that_holds_breaks_or_cannot_be_checked) {
+  const auto limited = [&](const std::string& name, double most) {
+    write_bytes(folder / "limits.toml",
+                fmt::format("[[limit]]\nframe = \"{}\"\ncandidate = \"far\"\nmottle = {}\n", name, most));
+    return bench(both, {"--limits", folder / "limits.toml", "-q"});
+  };
+  const double deviation = expected();
+  EXPECT_EQ(limited("wall", deviation + 1e-4).code, 0);
+  const Finished broken = limited("wall", deviation - 1e-4);
+  EXPECT_EQ(broken.code, 6) << broken;
+  EXPECT_THAT(broken.err, StartsWith("alcove: far on wall: mottle is "));
+  test::expect_refused(limited("small", 1), 3, {"far on small: mottle", "half shadow", "--limits"});
 }
 
 }  // namespace
