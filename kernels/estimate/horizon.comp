@@ -376,6 +376,7 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
 void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   bool own = true;
   Sample last = receiver_sample(r);
+  ivec2 last_pixel = r.pixel;
   Run run = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
@@ -383,7 +384,9 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   for (int k = 0; k < count; k++) {
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
     const float gap = s.offset - last.offset;
-    const float middle_z = occluder_depth[index_between(r, side, reach, last.offset, s.offset)];
+    const ivec2 here = pixel_at(r, side, s.offset);
+    const float middle_z = occluder_depth[index_between(reach, last_pixel, here)];
+    last_pixel = here;
     const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
     // A run that crosses the sphere between two samples blocks half way to the one beyond.
     const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
@@ -479,6 +482,7 @@ void end_runs(inout Found found, inout Before before, Receiver r, Reach reach, S
 void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
+  ivec2 last_pixel = r.pixel;
   const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0);
   Slot slots[kMostSurfaces];
   for (int i = 0; i < kSurfaces; i++)
@@ -490,7 +494,9 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
     const Surfaces here = surfaces_at(r, side, reach, offset, plane);
     float last_z[kMostSurfaces];
     for (int j = 0; j < kSurfaces; j++) last_z[j] = slots[j].z;
-    const int between = index_between(r, side, reach, last.offset, offset);
+    const ivec2 pixel = pixel_at(r, side, offset);
+    const int between = index_between(reach, last_pixel, pixel);
+    last_pixel = pixel;
     float middle_z[kMostSurfaces];
     for (int i = 0; i < kSurfaces; i++)
       middle_z[i] = i == 0 ? occluder_depth[between] : abs(hidden[between + (i - 1) * plane]);

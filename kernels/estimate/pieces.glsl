@@ -97,11 +97,13 @@ Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
   return sample_of(r, side, reach, offset, beside, occluder_depth[hit.y * reach.width + hit.x]);
 }
 
-/// The index of the pixel about in the middle between two samples: where these are neighbours, rounding does not decide
-/// which of them it is.
-int index_between(Receiver r, Side side, Reach reach, float from, float to) {
-  const ivec2 pixel = r.pixel + ivec2(round(side.direction_px * mix(from, to, 0.45)));
-  return pixel.y * reach.width + pixel.x;
+/// The pixel of a sample.
+ivec2 pixel_at(Receiver r, Side side, float offset) { return r.pixel + ivec2(round(side.direction_px * offset)); }
+
+/// The index of the pixel in the middle between two.
+int index_between(Reach reach, ivec2 a, ivec2 b) {
+  const ivec2 middle = a + b >> 1;
+  return middle.y * reach.width + middle.x;
 }
 
 /// The sample before the first one.
