@@ -217,9 +217,9 @@ std::optional<double> grain_of(const BenchRow& row, const LoadedFrame& frame) {
   return grain(width, height, plain, values.result, values.reference, values.reference_b);
 }
 
-/// Between three seeds, over the half shadow.
+/// Between three seeds, over the half shadow; an exact search has none.
 std::optional<double> mottle_of(gpu::Recorder& gpu, const LoadedFrame& frame, EstimatorSettings settings) {
-  if (std::ranges::find(frame.half, 1) == frame.half.end()) return std::nullopt;
+  if (searches_exactly(settings) || std::ranges::find(frame.half, 1) == frame.half.end()) return std::nullopt;
   std::vector<std::vector<float>> results;
   for (settings.seed = 1; settings.seed <= 3; settings.seed++)
     results.push_back(compute_ao(gpu, frame.host, settings).ao);

@@ -265,8 +265,7 @@ void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach rea
   }
 }
 
-/// Adds the runs that go on beyond the border. Their samples are far apart, and on average a gap between two of them is
-/// a part of a run.
+/// Adds the runs that go on beyond the border. Their samples are far apart, so that most of a run's width is gaps.
 void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, float gap) {
   Sample last = border;
   const vec2 at_border = slopes_of(border, false, 0.0);
@@ -385,7 +384,9 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
     const float gap = s.offset - last.offset;
     const ivec2 here = pixel_at(r, side, s.offset);
-    const float middle_z = occluder_depth[index_between(reach, last_pixel, here)];
+    const ivec2 middle = last_pixel + here >> 1;
+    // The receiver itself need be no occluder.
+    const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
     last_pixel = here;
     const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
     // A run that crosses the sphere between two samples blocks half way to the one beyond.
@@ -495,11 +496,11 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
     float last_z[kMostSurfaces];
     for (int j = 0; j < kSurfaces; j++) last_z[j] = slots[j].z;
     const ivec2 pixel = pixel_at(r, side, offset);
-    const int between = index_between(reach, last_pixel, pixel);
-    last_pixel = pixel;
+    const ivec2 middle = last_pixel + pixel >> 1;
     float middle_z[kMostSurfaces];
     for (int i = 0; i < kSurfaces; i++)
-      middle_z[i] = i == 0 ? occluder_depth[between] : abs(hidden[between + (i - 1) * plane]);
+      middle_z[i] = middle == last_pixel ? last_z[i] : depth_at(r, side, reach, middle, i, plane);
+    last_pixel = pixel;
     const int from[kMostSurfaces] = links_of(r, reach, here, middle_z, last_z, gap);
     if (kBehindOthers) {
       const bool goes_on = here.at[0].z > last.z ? from[0] >= 0 : is_taken(from, 0);

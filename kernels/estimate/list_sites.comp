@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: the words of tiles, see tiles.glsl, and the tiles that classify has listed.
-// Out: the sites, those of a tile one after the other, and how many there are.
+// Out: the sites, of every workgroup's tiles those of the widest lattice first, and how many there are.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"

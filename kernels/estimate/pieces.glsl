@@ -100,12 +100,6 @@ Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
 /// The pixel of a sample.
 ivec2 pixel_at(Receiver r, Side side, float offset) { return r.pixel + ivec2(round(side.direction_px * offset)); }
 
-/// The index of the pixel in the middle between two.
-int index_between(Reach reach, ivec2 a, ivec2 b) {
-  const ivec2 middle = a + b >> 1;
-  return middle.y * reach.width + middle.x;
-}
-
 /// The sample before the first one.
 Sample receiver_sample(Receiver r) { return Sample(0.0, r.z, 1.0, vec2(0), 0.0, kNone, true, true); }
 

@@ -51,6 +51,15 @@ Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, int plane
   return found;
 }
 
+/// The depth of the i-th surface of a pixel of a side; of a hidden one only near the sphere, as in surfaces_at().
+float depth_at(Receiver r, Side side, Reach reach, ivec2 pixel, int i, int plane) {
+  const int index = pixel.y * reach.width + pixel.x;
+  if (i == 0) return occluder_depth[index];
+  const float z = abs(hidden[index + (i - 1) * plane]);
+  const vec2 place = place_of(r, side, vec2(pixel - r.pixel), z, r.perspective ? z : 1.0);
+  return dot(place, place) < reach.front_sq ? z : kNoSurface;
+}
+
 /// For each surface the one at the last sample from which it goes on, the nearest in depth of those that are one
 /// surface with it (same_surface()), if some surface of the pixel in the middle is one with both; -1: it begins.
 int[kMostSurfaces] links_of(Receiver r, Reach reach, Surfaces found, float middle_z[kMostSurfaces],

@@ -61,6 +61,7 @@ struct InterpolateParams {
   float missing;       // what a pixel gets that no site is in reach of: 1, or the middle of what a plane holds
   float reach;         // px, of the parabola at unit depth (orthographic: at any): from so far a site counts, in the
                        // limits of the kernel
+  float most;          // px: the user's radius, from which a site counts at most
   ivec2 first, sites;  // of the lattice, as FitSitesParams has them
   float weight[9];     // by the distance in pixels, 0 to the radius; from the radius to the radius their sum is 1
 };

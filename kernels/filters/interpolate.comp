@@ -100,7 +100,7 @@ float window_at(float away, float narrowness) {
 /// part of the radius.
 float narrowness_of(Tap tap) {
   const float end = 1.0 + clamp(params.reach / (params.view.orthographic != 0 ? 1.0 : tap.z),
-                                float(min(kLeastReach, kRadius)), float(kRadius));
+                                min(float(kLeastReach), params.most), params.most);
   return 1.0 / (end * end);
 }
 

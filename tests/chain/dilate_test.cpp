@@ -84,7 +84,7 @@ TEST(Dilate, what_is_left_out_is_1_or_as_it_was) {
   std::mt19937 random(8);
   const auto whole = [&](int least, int most) { return std::uniform_int_distribution(least, most)(random); };
   for (int round = 0; round < 240 && !HasFailure(); round++) {
-    const EstimatorSettings settings = filtering(whole(1, 8), 1 << whole(0, 4), Density(round / 4 % 2));
+    const EstimatorSettings settings = filtering(whole(0, 8), 1 << whole(0, 4), Density(round / 4 % 2));
     Filter filter{floor_of(whole(1, 120), whole(1, 120)), settings, {}, {}};
     if (round % 4 >= 2) {
       filter.settings.stride = 1;

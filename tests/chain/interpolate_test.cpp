@@ -41,6 +41,8 @@ std::vector<EstimatorSettings> all_filters() {
           filter(16, 8, Density::uniform),
           filter(8, 5),
           filter(4, 3, Density::uniform),
+          filter(4, 1, Density::uniform),
+          filter(8, 1),
           filter(2, 3),
           by_kernel(16, {5, 4, 4, 3, 3, 1}),
           by_kernel(4, {1, 0, 0.5, 2, 1}),
@@ -201,7 +203,8 @@ std::vector<double> interpolated_slowly(const Sparse& sparse, const std::vector<
   for (const double weight : denoiser.weights) sum += 2 * weight;
   const auto weight_at = [&](int away, int x, int y) {
     if (denoiser.looks_up) return denoiser.weights[std::size_t(std::abs(away))] / sum;
-    const double end = 1 + std::clamp(reach_at(geometry, denoiser, x, y), double(std::min(3, radius)), double(radius));
+    const double most = denoise_radius_of(settings);
+    const double end = 1 + std::clamp(reach_at(geometry, denoiser, x, y), std::min(3.0, most), most);
     return denoiser.weights[0] / sum * std::max(1e-6, 1 - away * away / (end * end));
   };
   std::vector<double> blocked(ao.size()), weights(ao.size()), result(ao.size(), 1.0);

@@ -259,7 +259,7 @@ TEST(SiteRule, follows_the_settings) {
   EXPECT_EQ(EstimatorSettings{}.density, Density::adaptive);
 }
 
-TEST(DenoiseRadius, left_open_is_wide_where_pixels_share_estimates) {
+TEST(DenoiseRadius, left_open_is_wide_where_shared_estimates_are_not_smoothed_before) {
   for (const auto& [radius, stride, density, expected, weights] : {std::tuple{0, 0, Density::adaptive, 4, 5},
                                                                    {0, 2, Density::adaptive, 8, 9},
                                                                    {0, 1, Density::adaptive, 4, 5},

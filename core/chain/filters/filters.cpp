@@ -131,7 +131,11 @@ int filter_reach_of(const EstimatorSettings& settings) {
 }
 
 Denoiser denoiser_of(const EstimatorSettings& settings) {
-  return {weights_of(settings), settings.denoise_depth_sigma, !settings.denoise_kernel.empty(), fits_sites(settings),
+  return {weights_of(settings),
+          settings.denoise_depth_sigma,
+          denoise_radius_of(settings),
+          !settings.denoise_kernel.empty(),
+          fits_sites(settings),
           is_adaptive(settings) && settings.radius ? kFilteredPart * radii_of(settings).front() : HUGE_VAL};
 }
 
@@ -223,6 +227,7 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
       gpu.buffer(prefix + "written rows",
                  sizeof(uint) * groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32));
   gpu.clear(written);
+  params.most = float(denoiser.radius);
   params.reach = float(denoiser.within / double(gbuffer.view.tangent_per_pixel.x));
   if (fitted) {
     const Lattice lattice = lattice_of(gbuffer, sites);

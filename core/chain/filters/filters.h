@@ -13,15 +13,15 @@ namespace alcove {
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales);
 
 /// The reach of the bilateral denoiser to each side, in pixels of the estimate. Where the settings leave it open, it
-/// is 8 if pixels share estimates, and 4 if each has its own.
+/// is 8 if pixels share estimates, and 4 if each has its own or fit_sites smooths them before.
 int denoise_radius_of(const EstimatorSettings& settings);
 
-/// The distance from which a pixel takes estimates of others, in pixels of the estimate: 0 without a denoiser. Where
+/// The distance from which a pixel takes estimates of others, without fit_sites, in pixels of the estimate: 0 without a denoiser. Where
 /// pixels share estimates it is at least 3 px with an adaptive density, in which each pixel then has one, and 8 with a
 /// uniform one, in which small surfaces may have none: these stay open.
 int denoise_reach_of(const EstimatorSettings& settings);
 
-/// The reach of estimates beyond their own pixels, in px of the frame: the denoiser by pixels of the estimate, and
+/// The reach of estimates beyond their own pixels, in px of the frame: fit_sites and the denoiser by pixels of the estimate, and
 /// upsampling by two of them. So does the choice of how many directions a tile takes.
 int filter_reach_of(const EstimatorSettings& settings);
 
@@ -29,6 +29,7 @@ int filter_reach_of(const EstimatorSettings& settings);
 struct Denoiser {
   std::vector<double> weights;  // from the centre outwards, up to a common factor; empty: there is no filter
   double depth_sigma;           // see EstimatorSettings::denoise_depth_sigma
+  int radius;                   // px: see denoise_radius_of()
   bool looks_up;                // the weights are the user's, else of interpolate's parabola
   bool fits_sites;              // sites are smoothed among themselves first: see fit_sites.comp
   double within;                // scene units: how far interpolate and fit_sites reach at most
