@@ -13,10 +13,11 @@ namespace alcove {
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales);
 
 /// The reach of the bilateral denoiser to each side, in pixels of the estimate. Where the settings leave it open, it
-/// is 8 if pixels share estimates, and 4 if each has its own or fit_sites smooths them before.
+/// is 8 if pixels share estimates, and 4 if each has its own or fit_sites smooths them first.
 int denoise_radius_of(const EstimatorSettings& settings);
 
-/// The distance from which a pixel takes estimates of others, without fit_sites, in pixels of the estimate: 0 without a denoiser. Where
+/// The distance from which a pixel takes estimates of others, without fit_sites, in pixels of the estimate: 0 without a
+/// denoiser. Where
 /// pixels share estimates it is at least 3 px with an adaptive density, in which each pixel then has one, and 8 with a
 /// uniform one, in which small surfaces may have none: these stay open.
 int denoise_reach_of(const EstimatorSettings& settings);
