@@ -22,8 +22,8 @@ int denoise_radius_of(const EstimatorSettings& settings);
 /// uniform one, in which small surfaces may have none: these stay open.
 int denoise_reach_of(const EstimatorSettings& settings);
 
-/// The reach of estimates beyond their own pixels, in px of the frame: fit_sites and the denoiser by pixels of the estimate, and
-/// upsampling by two of them. So does the choice of how many directions a tile takes.
+/// The reach of estimates beyond their own pixels, in px of the frame: fit_sites and the denoiser by pixels of the
+/// estimate, and upsampling by two of them. So does the choice of how many directions a tile takes.
 int filter_reach_of(const EstimatorSettings& settings);
 
 /// The parameters of the denoiser.
