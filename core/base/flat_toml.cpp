@@ -24,14 +24,18 @@ std::string typed(const std::string& key, const toml::node& node) {
 
 void require_ascii_keys(const std::string& text) {
   const std::size_t first = text.starts_with("\xef\xbb\xbf") ? 3 : 0;  // a byte order mark
-  std::string closing;  // the end of the string or comment at hand; empty outside of both
-  char last = '\n';     // the last character that is not a blank
+  std::string closing;     // the end of the string or comment at hand; empty outside of both
+  char last = '\n';        // the last character that is not a blank
+  bool has_value = false;  // an = stands before, in this line or since a comma or brace
   int line = 1;
   for (std::size_t i = first; i < text.size(); i++) {
     const char c = text[i];
     line += c == '\n';
     if (closing.empty() && (unsigned char)c >= 0x80)
       fail(ErrorKind::usage, "line {}: letters beyond ASCII stand in quotes only", line);
+    // toml++ goes on within such a value, and takes what is in quotes for letters.
+    if (closing.empty() && c == '=' && has_value) fail(ErrorKind::usage, "line {}: a second = stands in a value", line);
+    if (closing.empty()) has_value = c == '=' || (has_value && c != '\n' && c != ',' && c != '{');
     if (closing.empty() && (c == '"' || c == '\'')) {
       // toml++ takes a quote within a word for a letter, and the text behind it for more letters.
       if (std::string_view("\n=[,{.").find(last) == std::string_view::npos)
