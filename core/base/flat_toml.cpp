@@ -35,7 +35,8 @@ void require_ascii_keys(const std::string& text) {
       fail(ErrorKind::usage, "line {}: letters beyond ASCII stand in quotes only", line);
     // toml++ goes on within such a value, and takes what is in quotes for letters.
     if (closing.empty() && c == '=' && has_value) fail(ErrorKind::usage, "line {}: a second = stands in a value", line);
-    if (closing.empty()) has_value = c == '=' || (has_value && c != '\n' && c != ',' && c != '{');
+    if (closing.empty() && std::string_view("=,{").find(c) != std::string_view::npos) has_value = c == '=';
+    if (closing.size() <= 1 && c == '\n') has_value = false;  // the end of a comment, too
     if (closing.empty() && (c == '"' || c == '\'')) {
       // toml++ takes a quote within a word for a letter, and the text behind it for more letters.
       if (std::string_view("\n=[,{.").find(last) == std::string_view::npos)

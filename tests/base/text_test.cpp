@@ -158,8 +158,11 @@ TEST(Toml, has_letters_beyond_ascii_in_quotes_and_comments_only) {
 
 TEST(Toml, has_no_quotes_within_words) {
   // Found by fuzzing: to toml++ all of it is one word, whose letters beyond ASCII it looks at.
-  for (const char* text : {"a = -&-\"\"\"\xc5\xae\"\"\"", "a = x'\xc5\xae'", "a\"\xc5\xae\" = 1"})
+  for (const char* text :
+       {"a = -&-\"\"\"\xc5\xae\"\"\"", "a = -&=\"\"\"\xc5\xae\"\"\"", "a = x'\xc5\xae'", "a\"\xc5\xae\" = 1"})
     EXPECT_THROW(parse_flat_toml(text), Error) << text;
+  for (const char* text : {"a = 1  # = 2\nb = '='", "a = \"\"\"\n=\n\"\"\"\n\nb = [1,\n 2]", "# a = 1\na = 1\r\nb = 1"})
+    EXPECT_EQ(parse_flat_toml(text).size(), 2) << text;
 }
 
 }  // namespace
