@@ -281,5 +281,14 @@ TEST(DenoiseRadius, left_open_is_wide_where_shared_estimates_are_not_smoothed_be
   }
 }
 
+TEST(DenoiseRadius, ends_at_a_part_of_the_smallest_radius_where_sites_are_near) {
+  EstimatorSettings settings;
+  settings.radius = 2;
+  settings.further_radii = {0.5};
+  EXPECT_DOUBLE_EQ(denoiser_of(settings).within, 0.2);
+  settings.density = Density::uniform;
+  EXPECT_TRUE(std::isinf(denoiser_of(settings).within)) << "surfaces of few pixels may have no site so near";
+}
+
 }  // namespace
 }  // namespace alcove::sites_test
