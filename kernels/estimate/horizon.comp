@@ -52,7 +52,7 @@ layout(constant_id = 2) const uint kMode = kFalloffNone;  // one of kFalloff* of
 // one of kThickness*, of what is not connected to the receiver, kCompletes* and kInSectors or not, and
 // kHiddenSurface times as many surfaces as a pixel may have behind the first
 layout(constant_id = 4) const uint kSolid = kThicknessWidth;
-// 1: only the sites of the list are estimated; 2: those of the widest lattice by half as many slices again
+// 0: all pixels are estimated; else only the sites of the list, and those of the widest lattice by so many slices
 layout(constant_id = 3) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
@@ -642,6 +642,5 @@ void estimate(ivec2 pixel, uint slices) {
 
 void main() {
   const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-  if (both(here.exists, is_mine(list[here.tile])))
-    estimate(here.pixel, kSparse == 2u && here.is_wide ? kSlices + kSlices / 2u : kSlices);
+  if (both(here.exists, is_mine(list[here.tile]))) estimate(here.pixel, here.is_wide ? kSparse : kSlices);
 }

@@ -133,8 +133,7 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
   const vec2 end = is_back ? s.place : last.place, hider = is_back ? last.place : s.place;
   const int first_before = before != 0u ? findMSB(before) : 0, first_after = after != 0u ? findLSB(after) : kWordBits;
   const int other = is_back ? min(found.first + first_before, at - 1) : min(found.first + first_after, behind_last) - 1;
-  const vec2 beside = round(side.direction_px * (is_back ? s.offset : last.offset));
-  const ivec2 hit = r.pixel + ivec2(beside);
+  const ivec2 hit = pixel_at(r, side, is_back ? s.offset : last.offset);
   const vec2 n = normal_in_slice(r, side, normal[hit.y * reach.width + hit.x]);
   const Sample opposite = sample_at(r, side, reach, step_offset(other, int(kSteps), count, side.reach, draw.jitter));
   const bool hides_all = dot(n, opposite.place - end) > 0.0;

@@ -278,7 +278,7 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   buffers.insert(buffers.end(), {{"Bent", gpu::Optional(out.bent)}, {"Completed", gpu::Optional(out.completed)}});
   const uint mode = uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
-  const uint sites = !out.listed.sites ? 0 : sampling.wide_slices > sampling.slices ? 2 : 1;
+  const uint sites = out.listed.sites ? uint(sampling.wide_slices) : 0;
   std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, sites, solid};
   gpu.dispatch("horizon", params, buffers, estimate_extent(out.listed), constants);
   if (gbuffer.surfaces == 1) return;

@@ -47,6 +47,19 @@ std::vector<double> reaching(std::vector<double> weights, int reach) {
   return weights;
 }
 
+/// The distance from which interpolate or denoise takes estimates of others, in pixels of the estimate: 0 without a
+/// denoiser. Where pixels share estimates it is at least 3 px with an adaptive density, in which each pixel then has
+/// one, and 8 with a uniform one, in which small surfaces may have none: these stay open.
+int denoise_reach_of(const EstimatorSettings& settings) {
+  // What has an estimated error is not mixed with its neighbours.
+  if (settings.denoise == Denoise::none || settings.tolerance > 0) return 0;
+  if (settings.denoise == Denoise::box) return 2;
+  const auto& kernel = settings.denoise_kernel;
+  const int radius = kernel.empty() ? denoise_radius_of(settings) : int(kernel.size()) - 1;
+  if (spacing_of(settings) == 1) return radius;
+  return std::max(radius, is_adaptive(settings) ? 3 : 8);
+}
+
 std::vector<double> weights_of(const EstimatorSettings& settings) {
   const auto& kernel = settings.denoise_kernel;
   const int reach = denoise_reach_of(settings);
@@ -89,6 +102,11 @@ Lattice lattice_of(const GBuffer& gbuffer, const Sites& sites) {
            int(groups_of(gbuffer.view.size.y - first.y, uint(kLatticeStep)))}};
 }
 
+/// How many pixels wide Denoiser::within is at unit depth (orthographic: at any).
+float pixels_within(const GBuffer& gbuffer, const Denoiser& denoiser) {
+  return float(denoiser.within / double(gbuffer.view.tangent_per_pixel.x));
+}
+
 /// The workgroups of a filter along one axis.
 gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& listed) {
   if (listed.counts) return gpu::Extent(*listed.counts);
@@ -103,16 +121,6 @@ gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& liste
 int denoise_radius_of(const EstimatorSettings& settings) {
   if (settings.denoise_radius > 0) return settings.denoise_radius;
   return spacing_of(settings) > 1 && !fits_sites(settings) ? 8 : 4;
-}
-
-int denoise_reach_of(const EstimatorSettings& settings) {
-  // What has an estimated error is not mixed with its neighbours.
-  if (settings.denoise == Denoise::none || settings.tolerance > 0) return 0;
-  if (settings.denoise == Denoise::box) return 2;
-  const auto& kernel = settings.denoise_kernel;
-  const int radius = kernel.empty() ? denoise_radius_of(settings) : int(kernel.size()) - 1;
-  if (spacing_of(settings) == 1) return radius;
-  return std::max(radius, is_adaptive(settings) ? 3 : 8);
 }
 
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales) {
@@ -211,8 +219,7 @@ gpu::Buffer& fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& 
   gpu::Buffer& fitted = gpu.buffer(prefix + "fitted sites",
                                    sizeof(float) * count * std::size_t(lattice.sites.x) * std::size_t(lattice.sites.y));
   gpu.dispatch("fit_sites",
-               FitSitesParams{gbuffer.view, lattice.first, lattice.sites,
-                              float(denoiser.within / double(gbuffer.view.tangent_per_pixel.x))},
+               FitSitesParams{gbuffer.view, lattice.first, lattice.sites, pixels_within(gbuffer, denoiser)},
                {{"Ao", planes}, {"Depth", gbuffer.depth}, {"Normal", gbuffer.normal}, {"Result", fitted}},
                {groups_of(lattice.sites.x, uint(kFitRun)), uint(lattice.sites.y)}, {count});
   return fitted;
@@ -228,15 +235,14 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
                  sizeof(uint) * groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32));
   gpu.clear(written);
   params.most = float(denoiser.radius);
-  params.reach = float(denoiser.within / double(gbuffer.view.tangent_per_pixel.x));
-  if (fitted) {
-    const Lattice lattice = lattice_of(gbuffer, sites);
-    params.first = lattice.first;
-    params.sites = lattice.sites;
-  }
+  params.reach = pixels_within(gbuffer, denoiser);
+  const Lattice lattice = lattice_of(gbuffer, sites);
+  params.first = lattice.first;
+  params.sites = lattice.sites;
   params.missing = prefix == kBentPrefix ? 0.5f : 1.0f;
   const uint mode =
       (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.looks_up ? kInterpolateLooksUp : 0);
+  const uint of_rows = fitted ? kInterpolateFitted : 0;
   gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
   gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
   const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
@@ -252,12 +258,7 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
                   {"Fitted", gpu::Optional(fitted)},
                   {"Sites", sites.rows}},
                  runs_extent(gbuffer, axis, listed),
-                 {radius,
-                  mode |
-                      (axis.y   ? kInterpolateColumns
-                       : fitted ? kInterpolateFitted
-                                : 0) |
-                      (listed.runs ? kInterpolateListed : 0),
+                 {radius, mode | (axis.y ? kInterpolateColumns : of_rows) | (listed.runs ? kInterpolateListed : 0),
                   planes_in(planes, gbuffer.view)});
   };
   along({1, 0}, runs.rows, planes, rows);
@@ -267,44 +268,40 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
 
 namespace {
 
-/// Filters all planes of a visibility; only those of the AO have runs.
+/// Filters all planes of a visibility, one member after the other; only those of the AO have runs.
 template <class Filter>
 Visibility filtered(const Visibility& visibility, const FilterRuns& runs, const Filter& filter) {
   Visibility result;
-  result.ao = &filter(*visibility.ao, "", runs);
-  if (visibility.scales) result.scales = &filter(*visibility.scales, kScalesPrefix, FilterRuns{});
-  if (visibility.bent) result.bent = &filter(*visibility.bent, kBentPrefix, FilterRuns{});
+  result.ao = &filter(&Visibility::ao, "", runs);
+  if (visibility.scales) result.scales = &filter(&Visibility::scales, kScalesPrefix, FilterRuns{});
+  if (visibility.bent) result.bent = &filter(&Visibility::bent, kBentPrefix, FilterRuns{});
   return result;
 }
+
+using Planes = gpu::Buffer* Visibility::*;
 
 }  // namespace
 
 Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Denoiser& denoiser,
                    const FilterRuns& runs) {
-  return filtered(visibility, runs,
-                  [&](gpu::Buffer& planes, const std::string& prefix, const FilterRuns& listed) -> gpu::Buffer& {
-                    return denoise(gpu, gbuffer, planes, denoiser, prefix, listed);
-                  });
+  return filtered(visibility, runs, [&](Planes planes, const char* prefix, const FilterRuns& listed) -> gpu::Buffer& {
+    return denoise(gpu, gbuffer, *(visibility.*planes), denoiser, prefix, listed);
+  });
 }
 
 Visibility fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
                      const Denoiser& denoiser) {
   if (!sites.rows || !denoiser.fits_sites) return {};
-  return filtered(visibility, {},
-                  [&](gpu::Buffer& planes, const std::string& prefix, const FilterRuns&) -> gpu::Buffer& {
-                    return fit_sites(gpu, gbuffer, planes, sites, denoiser, prefix);
-                  });
+  return filtered(visibility, {}, [&](Planes planes, const char* prefix, const FilterRuns&) -> gpu::Buffer& {
+    return fit_sites(gpu, gbuffer, *(visibility.*planes), sites, denoiser, prefix);
+  });
 }
 
 Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
                        const Visibility& fitted, const Sites& sites, const Denoiser& denoiser, const FilterRuns& runs) {
-  Visibility result;
-  result.ao = &interpolate(gpu, gbuffer, *visibility.ao, fitted.ao, sites, denoiser, "", runs);
-  if (visibility.scales)
-    result.scales = &interpolate(gpu, gbuffer, *visibility.scales, fitted.scales, sites, denoiser, kScalesPrefix);
-  if (visibility.bent)
-    result.bent = &interpolate(gpu, gbuffer, *visibility.bent, fitted.bent, sites, denoiser, kBentPrefix);
-  return result;
+  return filtered(visibility, runs, [&](Planes planes, const char* prefix, const FilterRuns& listed) -> gpu::Buffer& {
+    return interpolate(gpu, gbuffer, *(visibility.*planes), fitted.*planes, sites, denoiser, prefix, listed);
+  });
 }
 
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, gpu::Buffer& low_planes,
@@ -331,11 +328,9 @@ gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer&
 
 Visibility upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const Visibility& visibility,
                     const FilterRuns& runs) {
-  Visibility result;
-  result.ao = &upsample(gpu, gbuffer, low, *visibility.ao, "", runs);
-  if (visibility.scales) result.scales = &upsample(gpu, gbuffer, low, *visibility.scales, kScalesPrefix);
-  if (visibility.bent) result.bent = &upsample(gpu, gbuffer, low, *visibility.bent, kBentPrefix);
-  return result;
+  return filtered(visibility, runs, [&](Planes planes, const char* prefix, const FilterRuns& listed) -> gpu::Buffer& {
+    return upsample(gpu, gbuffer, low, *(visibility.*planes), prefix, listed);
+  });
 }
 
 }  // namespace alcove

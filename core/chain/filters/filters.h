@@ -16,12 +16,6 @@ Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& e
 /// is 8 if pixels share estimates, and 4 if each has its own or fit_sites smooths them first.
 int denoise_radius_of(const EstimatorSettings& settings);
 
-/// The distance from which a pixel takes estimates of others, without fit_sites, in pixels of the estimate: 0 without a
-/// denoiser. Where
-/// pixels share estimates it is at least 3 px with an adaptive density, in which each pixel then has one, and 8 with a
-/// uniform one, in which small surfaces may have none: these stay open.
-int denoise_reach_of(const EstimatorSettings& settings);
-
 /// The reach of estimates beyond their own pixels, in px of the frame: fit_sites and the denoiser by pixels of the
 /// estimate, and upsampling by two of them. So does the choice of how many directions a tile takes.
 int filter_reach_of(const EstimatorSettings& settings);
