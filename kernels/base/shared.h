@@ -39,7 +39,7 @@ layout(scalar) buffer;
 /// through the body of a plain `if` in any case, with its lanes switched off, but leaves a loop that no lane goes on
 /// with. Values that are the same for all invocations are loaded outside of conditions and loops: there lavapipe loads
 /// them once, else for one lane after the other.
-#define IF_ANY(condition) for (bool once = condition; once; once = false)
+#define IF_ANY(condition) if (condition)
 #define ALCOVE_BEGIN
 #define ALCOVE_END
 #define ALCOVE_CONSTANT const

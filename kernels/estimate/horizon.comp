@@ -169,8 +169,10 @@ struct Before {
 };
 
 /// Of such runs the one of a side counts that reaches deepest into the sphere.
-void take_before(inout Before before, Run run, bool is_before, float thickness) {
-  const float within = thickness - sqrt(min(dot(run.start, run.start), dot(run.end, run.end)));
+float within_of(Run run, float thickness) {
+  return thickness - sqrt(min(dot(run.start, run.start), dot(run.end, run.end)));
+}
+void take_before(inout Before before, Run run, bool is_before, float thickness, float within) {
   const bool taken = both(is_before, within > before.within);
   before.start = taken ? run.start : before.start;
   before.end = taken ? run.end : before.end;
@@ -279,7 +281,7 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
     IF_ANY (kHard && !joins) {
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
       found.completed.sectors |= joins ? 0u : sectors_of(r, reach, run, true, thickness, draw.shift);
-      take_before(before, run, both(!joins, is_before), thickness);
+      take_before(before, run, both(!joins, is_before), thickness, within_of(run, thickness));
     }
     is_before = joins ? is_before : false;
     run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0, gap);
@@ -381,29 +383,33 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = false;  // the run has samples before the sphere
   for (int k = 0; k < count; k++) {
-    const Sample s = sample_at(r, side, reach, step_offset(k, int(kSteps), count, side.reach, draw.jitter));
-    const float gap = s.offset - last.offset;
-    const ivec2 here = pixel_at(r, side, s.offset);
+    const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
+    const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
+    const uint sectors = kHard ? sectors_of(r, reach, run, true, thickness, draw.shift) : 0u;
+    const float within = within_of(run, thickness);
+    const vec2 beside = round(side.direction_px * offset);
+    const ivec2 here = r.pixel + ivec2(beside);
     const ivec2 middle = last_pixel + here >> 1;
+    const float z = occluder_depth[here.y * reach.width + here.x];
     // The receiver itself need be no occluder.
     const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
+    const Sample s = sample_of(r, side, reach, offset, beside, z);
     last_pixel = here;
     const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
     // A run that crosses the sphere between two samples blocks half way to the one beyond.
     const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
     const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
     if (kBehindOthers) take_down(interrupted, k, s, last, connected, connected, reach);
-    if (connected) run.end = s.place;
     if (!connected || !s.above) {
       if (kHard) {
-        const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
-        found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
-        take_before(before, run, is_before, thickness);
+        found.blocked.sectors |= sectors;
+        take_before(before, run, is_before, thickness, within);
       }
       is_before = false;
       run = Run(s.place, s.place, -1.0, 1.0, gap);
       own = !s.above;
     }
+    run.end = s.place;
     if (own) {
       found.blocked.near = max(found.blocked.near, slopes.x);
     } else {
@@ -425,7 +431,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   if (kHard) {
     const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 0.0);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
-    take_before(before, run, is_before, thickness);
+    take_before(before, run, is_before, thickness, within_of(run, thickness));
     found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   }
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
@@ -475,7 +481,7 @@ void end_runs(inout Found found, inout Before before, Receiver r, Reach reach, S
     const float thickness = thickness_of(r, reach, slots[j], gap);
     const bool is_open = (slots[j].bits & kSlotOpen) != 0u;
     found.blocked.sectors |= ends ? sectors_of(r, reach, slots[j].run, is_open, thickness, shift) : 0u;
-    take_before(before, slots[j].run, both(ends, (slots[j].bits & kSlotBefore) != 0u), thickness);
+    take_before(before, slots[j].run, both(ends, (slots[j].bits & kSlotBefore) != 0u), thickness, within_of(slots[j].run, thickness));
   }
 }
 

@@ -20,7 +20,7 @@
 #include "kernels/base/depth_terms.glsl"
 #include "kernels/base/normal.glsl"
 
-layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(local_size_x = 64, local_size_y = 1) in;
 // The forms are specialization constants: a kernel with all of them takes twice as long on lavapipe, which computes
 // both sides of a choice.
 layout(constant_id = 0) const uint kDepthForm = kDepthLinear;    // one of kDepth*
