@@ -242,11 +242,13 @@ void add_completed(inout Found found, Side side, Reach reach, Draw draw, vec2 sl
 /// Adds what goes on behind something nearer. behind_last: the sample after the last one.
 void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count,
                      Interruptions interrupted, int behind_last) {
-  for (uint left = interrupted.jumps; left != 0u; left &= left - 1u) {
+  uint left = interrupted.jumps;
+  if (left != 0u) do {
     const Piece piece =
         piece_behind(r, side, reach, draw, count, interrupted, interrupted.first + findLSB(left), behind_last);
     add_completed(found, side, reach, draw, slopes_of(piece), 0.5 * (piece.near + piece.far));
-  }
+    left &= left - 1u;
+  } while (left != 0u);
 }
 
 /// Samples of a side beyond the border.
@@ -274,7 +276,8 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
   Run run = Run(border.place, border.place, at_border.x, at_border.y, 0.0);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
-  for (int k = 0; k < kStepsBeyond + (kHard ? 1 : 0); k++) {  // one more ends the last run
+  int k = 0;
+  do {
     const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
     const bool joins = both(both(k < kStepsBeyond, both(s.above, last.above)),
                             same_surface(r, reach, s.z, last.z, s.offset - last.offset));
@@ -295,7 +298,7 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
       found.completed_sum += add_faded(found, side, reach, draw, s.place);
     }
     last = s;
-  }
+  } while (++k < kStepsBeyond + (kHard ? 1 : 0));  // one more ends the last run
   found.completed.sectors |= sectors_of(r, reach, before, draw.shift);
 }
 
@@ -382,7 +385,8 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = false;  // the run has samples before the sphere
-  for (int k = 0; k < count; k++) {
+  int k = 0;
+  if (count > 0) do {
     const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
     const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
     const uint sectors = kHard ? sectors_of(r, reach, run, true, thickness, draw.shift) : 0u;
@@ -427,7 +431,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
       interrupted = Interruptions(k + 1, 0u, 0u);
     }
-  }
+  } while (++k < count);
   if (kHard) {
     const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 0.0);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
@@ -627,18 +631,21 @@ void estimate(ivec2 pixel, uint slices) {
   float whole = 0.0;
   float completed_arcs = 0.0;
   vec3 bent_blocked = vec3(0);
-  for (uint s = 0u; s < slices; s++) {
+  uint s = 0u;
+  do {
     const Slice slice = slice_at(view, r, s, slices, noise.x);  // 1. and 2.
     if (slice.weight < kLeastWeight) continue;
     whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);  // both sides' whole_arc()
-    for (int sign = -1; sign <= 1; sign += 2) {
+    int sign = -1;
+    do {
       const Side side = side_of(view, r, slice, float(sign), reach);  // 3.
       const vec4 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)));
       blocked += arcs.x;
       if (kTellsCompleted) completed_arcs += arcs.w;
       if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
-    }
-  }
+      sign += 2;
+    } while (sign <= 1);
+  } while (++s < slices);
   // 10.
   const float visibility = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
   ao[ao_index] = visibility;
