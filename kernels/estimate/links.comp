@@ -83,7 +83,8 @@ void main() {
   const int words = words_of_tile(tile, tiles);
   Tap above[kTile];
   uint word = 0u, flat_word = 0u;
-  for (int y = 0; y <= kTile; y++) {
+  int y = 0;
+  do {
     Tap taps[kTile + 1];
     for (int x = 0; x <= kTile; x++) taps[x] = load(view, first + ivec2(x, y));
     uint below = 0u, flat_below = 0u, right = 0u, flat_right = 0u, surface = 0u;
@@ -104,5 +105,5 @@ void main() {
     const uint site = surface & (lattice | border);
     word = right | surface << kSurfaceByte | site << kSiteByte;
     flat_word = flat_right;
-  }
+  } while (++y <= kTile);
 }

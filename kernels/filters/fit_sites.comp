@@ -99,8 +99,10 @@ void main() {
       sums[i].slope[p] = vec2(0);
     }
   }
-  for (int y = -kReach; y <= kReach; y++)
-    for (int x = -kReach; x < kReach + kFitRun; x++) {
+  int y = -kReach;
+  do {
+    int x = -kReach;
+    do {
       const ivec2 other = pixel + kLatticeStep * ivec2(x, y), nearest = clamp(other, ivec2(0), most);
       const Tap tap = tap_at(view, nearest);
       const bool is_site = other == nearest ? tap.z < kSkyDepth : false;
@@ -121,7 +123,8 @@ void main() {
           sums[i].slope[p] += share * blocked[p] * away;
         }
       }
-    }
+    } while (++x < kReach + kFitRun);
+  } while (++y <= kReach);
   for (int i = 0; i < kFitRun; i++)
     if (site.x + i < sites.x) write(site + ivec2(i, 0), sums[i]);
 }

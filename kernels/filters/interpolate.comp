@@ -116,7 +116,8 @@ void interpolate(ivec2 first, uint sites, int plane) {
     narrowness[i] = narrowness_of(taps[i]);
     for (int p = 0; p < kPlanes; p++) value[p * kDenoiseRun + i] = slope[p * kDenoiseRun + i] = 0.0;
   }
-  for (uint left = sites; left != 0u; left &= left - 1u) {
+  uint left = sites;
+  do {
     const int j = findLSB(left) - kRadius;
     const ivec2 site = first + j * params.axis;
     const int index = index_of(params.view, site);
@@ -145,7 +146,8 @@ void interpolate(ivec2 first, uint sites, int plane) {
         slope[p * kDenoiseRun + i] += share * away * blocked[p];
       }
     }
-  }
+    left &= left - 1u;
+  } while (left != 0u);
   for (int i = 0; i < kDenoiseRun; i++) {
     const ivec2 pixel = first + i * params.axis;
     if (!inside(params.view, pixel)) continue;
