@@ -404,23 +404,19 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
     const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
     if (kBehindOthers) take_down(interrupted, k, s, last, connected, connected, reach);
-    if (!connected || !s.above) {
-      if (kHard) {
-        found.blocked.sectors |= sectors;
-        take_before(before, run, is_before, thickness, within);
-      }
-      is_before = false;
-      run = Run(s.place, s.place, -1.0, 1.0, gap);
-      own = !s.above;
+    const bool ends = both(connected, s.above) ? false : true;
+    if (kHard) {
+      found.blocked.sectors |= ends ? sectors : 0u;
+      take_before(before, run, both(ends, is_before), thickness, within);
     }
+    own = ends ? !s.above : own;
+    run.start = ends ? s.place : run.start;
     run.end = s.place;
-    if (own) {
-      found.blocked.near = max(found.blocked.near, slopes.x);
-    } else {
-      run.near = max(run.near, slopes.x);
-      run.far = min(run.far, slopes.y);
-      is_before = s.above && is_before_sphere(r, reach, s.place) ? true : is_before;
-    }
+    run.near = max(ends ? -1.0 : run.near, own ? -1.0 : slopes.x);
+    run.far = min(ends ? 1.0 : run.far, own ? 1.0 : slopes.y);
+    run.gap = ends ? gap : run.gap;
+    found.blocked.near = max(found.blocked.near, own ? slopes.x : -1.0);
+    is_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place)) ? true : both(is_before, !ends);
     if (!kHard) {
       const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 0.0);
       found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
