@@ -223,7 +223,7 @@ void complete(View view, Lines lines, LinePlane plane, int line, int row, int fi
   Opens opens = Opens(none, none, none);
   int index = first;
   bool goes = (walk.before.marked & walk.is_last) == 0u;
-  while (goes) {
+  if (goes) do {
     index += way;
     const Corner next = corner_at(view, lines, line, index);
     const bool begins_run = (next.marked & walk.begins) != 0u;
@@ -253,7 +253,7 @@ void complete(View view, Lines lines, LinePlane plane, int line, int row, int fi
     if (begins_run) walk.inner = next;
     walk.prior = walk.before;
     walk.before = next;
-  }
+  } while (goes);
   // What still goes on at the walk's end ends there.
   const float end = float(walk.before.at);
   IF_ANY (opens.a.is_open) close(opens.a, view, plane, way, min(abs(end - opens.a.from), opens.a.farthest));

@@ -517,7 +517,8 @@ void add_border(inout Found found, Context c) {
   // Whether a step lies within the sphere's image is the same at any depth.
   bool goes =
       rest > 0.0 && dot(from_receiver(c, place_at(c.view, plane, first, c.z)), c.search.leaving) < params.radius;
-  for (int i = 0; goes; i++) {
+  int i = 0;
+  if (goes) do {
     const float part = max(float(i) - 1.0 + c.search.shift, 0.0) / float(kStepsBeyond);
     const float at = i == 0 ? first : first + float(c.search.step) * (rest * part);
     const float z = depth_at_step(c, plane, at);
@@ -537,7 +538,8 @@ void add_border(inout Found found, Context c) {
     last_z = z;
     last_at = at;
     goes = i < kStepsBeyond && dot(corner.place, c.search.leaving) < params.radius;
-  }
+    i++;
+  } while (goes);
 }
 
 /// 8. The integrals over what is blocked.
@@ -555,7 +557,8 @@ BlockedArcs blocked_by_one(Context c) {
   Found found = Found(nothing, nothing);
   Walk walk = Walk(vec2(0), true, true, params.thickness, 0.0);
   int at = c.row + int(first), last = -1;
-  for (bool goes = first != kNoVertex; goes; at += search.step) {
+  bool goes = first != kNoVertex;
+  if (goes) do {
     last = at;
     const uint marked = mark[at];
     const int to = int(marked >> 16), steps = abs(to - search.from);
@@ -569,7 +572,8 @@ BlockedArcs blocked_by_one(Context c) {
     goes = !ends_at(marked, corner, search);
     walk.last = corner.place;
     walk.starts = false;
-  }
+    at += search.step;
+  } while (goes);
   add_beyond(found, walk, c, last);
   if (kGoesBeyond) add_border(found, c);
   return arcs_of(c, found);
@@ -592,7 +596,7 @@ BlockedArcs blocked_by_several(Context c) {
   Walk walk = Walk(vec2(0), true, true, params.thickness, 0.0);
   bool is_own = true, starts = true;                    // the walk along the receiver's own slot
   int last = next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
-  for (; goes;) {
+  if (goes) do {
     const int i = nearest_walk(next);
     int at = next.at[0];
     for (int k = 1; k < kWalks; k++) at = k == i ? next.at[k] : at;
@@ -620,7 +624,7 @@ BlockedArcs blocked_by_several(Context c) {
     if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));
     goes = false;
     for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
-  }
+  } while (goes);
   add_beyond(found, walk, c, last);
   if (kGoesBeyond) add_border(found, c);
   return arcs_of(c, found);
@@ -680,7 +684,8 @@ void main() {
     const float sine = radius / point.eye_distance, cosine = sqrt(max(0.0, 1.0 - sine * sine));
     const float share = 1.0 / (plane.ray_length * -point.eye.y);  // 1.
     const float lift = max(params.bias, kLeastElevation), level = sqrt(1.0 - lift * lift);
-    for (int sign = -1; sign <= 1; sign += 2) {
+    int sign = -1;
+    do {
       Side side;
       side.cos_gamma = facing / weight;
       side.sin_gamma = float(sign) * dot(point.normal, across_eye) / weight;
@@ -706,7 +711,8 @@ void main() {
       blocked += share * weight * arcs.arc;
       unseen += share * weight * arcs.unseen;
       bent_blocked += share * weight * (arcs.bent.x * search.across + arcs.bent.y * point.eye);
-    }
+      sign += 2;
+    } while (sign <= 1);
   }
   const float last_whole = params.is_first == 0 ? whole_arcs[index] : 0.0;
   if (params.is_first == 0) {

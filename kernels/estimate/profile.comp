@@ -247,7 +247,9 @@ float thickness_of(View view, LinePlane plane, ivec2 steps, Step first, Step las
 /// Tells the steps up to `end` that show no surface of the slot the vertices before and after them.
 void fill(inout Run run, int end, int after) {
   const int before = run.next == run.begin ? -1 : run.next - 1;
-  for (int step = run.filled; step < end; step++) neighbor[run.row + step] = columns(before, after);
+  int step = run.filled;
+  if (step < end) do neighbor[run.row + step] = columns(before, after);
+  while (++step < end);
   run.filled = end;
 }
 
@@ -367,7 +369,8 @@ void main() {
     runs[slot] =
         Run(first, steps.x, steps.x, false, false, steps.x, none, 0, 0.0, 0.0, 0.0, 0u, steps.x, -1.0, 0.0, 0.0);
   }
-  for (int t = steps.x; t <= steps.y; t++) {
+  int t = steps.x;
+  do {
     Step here[kSlots];
     here[0] = step_at(view, lines, plane, extent.y, line, t, steps.y, 0u);
     if (kSlots > 1u) {
@@ -390,6 +393,6 @@ void main() {
       draw(runs[slot], view, lines, plane, steps, lasts[slot], here[slot]);
       lasts[slot] = here[slot];
     }
-  }
+  } while (++t <= steps.y);
   for (uint slot = 0u; slot < kSlots; slot++) finish(runs[slot], steps);
 }
