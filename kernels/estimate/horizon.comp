@@ -496,7 +496,8 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
-  for (int k = 0; k < count; k++) {
+  int k = 0;
+  if (count > 0) do {
     const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
     const Surfaces here = surfaces_at(r, side, reach, offset, plane);
     float last_z[kMostSurfaces];
@@ -567,7 +568,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
       interrupted = Interruptions(k + 1, 0u, 0u);
     }
-  }
+  } while (++k < count);
   if (kHard) end_runs(found, before, r, reach, slots, (1u << kSurfaces) - 1u, 0.0, draw.shift);
   if (kHard) found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
