@@ -224,36 +224,36 @@ void complete(View view, Lines lines, LinePlane plane, int line, int row, int fi
   int index = first;
   bool goes = (walk.before.marked & walk.is_last) == 0u;
   if (goes) do {
-    index += way;
-    const Corner next = corner_at(view, lines, line, index);
-    const bool begins_run = (next.marked & walk.begins) != 0u;
-    const bool is_interrupted = begins_run && (walk.before.marked & both_ends) != both_ends &&
-                                next.at == walk.before.at + way && next.hides > walk.before.nearness;
-    goes = (next.marked & walk.is_last) == 0u;
-    IF_ANY (is_interrupted) {
-      if (opens.a.is_open && opens.b.is_open) {
-        IF_ANY (opens.c.is_open) close(opens.c, view, plane, way, abs(float(walk.before.at) - opens.c.from));
-        opens.c = opens.b;
+      index += way;
+      const Corner next = corner_at(view, lines, line, index);
+      const bool begins_run = (next.marked & walk.begins) != 0u;
+      const bool is_interrupted = begins_run && (walk.before.marked & both_ends) != both_ends &&
+                                  next.at == walk.before.at + way && next.hides > walk.before.nearness;
+      goes = (next.marked & walk.is_last) == 0u;
+      IF_ANY (is_interrupted) {
+        if (opens.a.is_open && opens.b.is_open) {
+          IF_ANY (opens.c.is_open) close(opens.c, view, plane, way, abs(float(walk.before.at) - opens.c.from));
+          opens.c = opens.b;
+        }
+        if (opens.a.is_open) opens.b = opens.a;
+        opens.a = from_end(view, lines, plane, line, walk, walk.inner, index - way);
       }
-      if (opens.a.is_open) opens.b = opens.a;
-      opens.a = from_end(view, lines, plane, line, walk, walk.inner, index - way);
-    }
-    go_on(opens.a, view, plane, walk, next, begins_run);
-    go_on(opens.b, view, plane, walk, next, begins_run);
-    go_on(opens.c, view, plane, walk, next, begins_run);
-    uint column = kNoVertex;
-    if (opens.c.is_open) column = uint(opens.c.index - row);
-    if (opens.b.is_open) column = uint(opens.b.index - row);
-    if (opens.a.is_open) column = uint(opens.a.index - row);
-    const int at = index - first_of_plane(view);
-    behind[at] = way > 0 ? column | kNoVertex << 16 : behind[at] & kNoVertex | column << 16;
-    const bool is_long = abs(next.at - walk.before.at) > 1;
-    const bool before_begins = (walk.before.marked & walk.begins) != 0u;
-    walk.inner = is_long || before_begins ? walk.before : walk.prior;
-    if (begins_run) walk.inner = next;
-    walk.prior = walk.before;
-    walk.before = next;
-  } while (goes);
+      go_on(opens.a, view, plane, walk, next, begins_run);
+      go_on(opens.b, view, plane, walk, next, begins_run);
+      go_on(opens.c, view, plane, walk, next, begins_run);
+      uint column = kNoVertex;
+      if (opens.c.is_open) column = uint(opens.c.index - row);
+      if (opens.b.is_open) column = uint(opens.b.index - row);
+      if (opens.a.is_open) column = uint(opens.a.index - row);
+      const int at = index - first_of_plane(view);
+      behind[at] = way > 0 ? column | kNoVertex << 16 : behind[at] & kNoVertex | column << 16;
+      const bool is_long = abs(next.at - walk.before.at) > 1;
+      const bool before_begins = (walk.before.marked & walk.begins) != 0u;
+      walk.inner = is_long || before_begins ? walk.before : walk.prior;
+      if (begins_run) walk.inner = next;
+      walk.prior = walk.before;
+      walk.before = next;
+    } while (goes);
   // What still goes on at the walk's end ends there.
   const float end = float(walk.before.at);
   IF_ANY (opens.a.is_open) close(opens.a, view, plane, way, min(abs(end - opens.a.from), opens.a.farthest));

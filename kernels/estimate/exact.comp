@@ -519,27 +519,27 @@ void add_border(inout Found found, Context c) {
       rest > 0.0 && dot(from_receiver(c, place_at(c.view, plane, first, c.z)), c.search.leaving) < params.radius;
   int i = 0;
   if (goes) do {
-    const float part = max(float(i) - 1.0 + c.search.shift, 0.0) / float(kStepsBeyond);
-    const float at = i == 0 ? first : first + float(c.search.step) * (rest * part);
-    const float z = depth_at_step(c, plane, at);
-    Corner corner;
-    corner.place = from_receiver(c, place_at(c.view, plane, at, z < kSkyDepth ? z : 1.0));
-    corner.unseen = corner.place;
-    corner.least = c.search.least_height + kLeastRisen * params.radius;
-    const float slope = kRunSlope * c.view.tangent_per_pixel.x * abs(at - last_at);
-    const bool joins = abs(z - last_z) < slope * (perspective ? min(z, last_z) : 1.0);
-    start = joins ? start : corner.place;
-    const float gap = rest / float(kStepsBeyond) * plane.step * (perspective ? z : 1.0);
-    const float width = length(corner.place - start) + gap;
-    walk.thickness = params.thickness > 0.0 ? params.thickness : min(width, kCutThickness * params.radius);
-    IF_ANY (z < kSkyDepth && corner.place.x > 0.0)
-      block(found.all, walk, c, Stroke(joins ? last : kShortStroke * corner.place, corner.place), corner, false);
-    last = corner.place;
-    last_z = z;
-    last_at = at;
-    goes = i < kStepsBeyond && dot(corner.place, c.search.leaving) < params.radius;
-    i++;
-  } while (goes);
+      const float part = max(float(i) - 1.0 + c.search.shift, 0.0) / float(kStepsBeyond);
+      const float at = i == 0 ? first : first + float(c.search.step) * (rest * part);
+      const float z = depth_at_step(c, plane, at);
+      Corner corner;
+      corner.place = from_receiver(c, place_at(c.view, plane, at, z < kSkyDepth ? z : 1.0));
+      corner.unseen = corner.place;
+      corner.least = c.search.least_height + kLeastRisen * params.radius;
+      const float slope = kRunSlope * c.view.tangent_per_pixel.x * abs(at - last_at);
+      const bool joins = abs(z - last_z) < slope * (perspective ? min(z, last_z) : 1.0);
+      start = joins ? start : corner.place;
+      const float gap = rest / float(kStepsBeyond) * plane.step * (perspective ? z : 1.0);
+      const float width = length(corner.place - start) + gap;
+      walk.thickness = params.thickness > 0.0 ? params.thickness : min(width, kCutThickness * params.radius);
+      IF_ANY (z < kSkyDepth && corner.place.x > 0.0)
+        block(found.all, walk, c, Stroke(joins ? last : kShortStroke * corner.place, corner.place), corner, false);
+      last = corner.place;
+      last_z = z;
+      last_at = at;
+      goes = i < kStepsBeyond && dot(corner.place, c.search.leaving) < params.radius;
+      i++;
+    } while (goes);
 }
 
 /// 8. The integrals over what is blocked.
@@ -559,21 +559,21 @@ BlockedArcs blocked_by_one(Context c) {
   int at = c.row + int(first), last = -1;
   bool goes = first != kNoVertex;
   if (goes) do {
-    last = at;
-    const uint marked = mark[at];
-    const int to = int(marked >> 16), steps = abs(to - search.from);
-    const float stored = vertex[at], z = kGoesOn ? abs(stored) : stored;
-    const bool begins = (marked & search.begins) != 0u;
-    const Corner corner = corner_at(c, at, to, z, begins);
-    walk.is_own = begins ? false : walk.is_own;
-    walk.thickness = begins && params.thickness == 0.0 ? unpack_width(marked) : walk.thickness;
-    const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
-    add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0);
-    goes = !ends_at(marked, corner, search);
-    walk.last = corner.place;
-    walk.starts = false;
-    at += search.step;
-  } while (goes);
+      last = at;
+      const uint marked = mark[at];
+      const int to = int(marked >> 16), steps = abs(to - search.from);
+      const float stored = vertex[at], z = kGoesOn ? abs(stored) : stored;
+      const bool begins = (marked & search.begins) != 0u;
+      const Corner corner = corner_at(c, at, to, z, begins);
+      walk.is_own = begins ? false : walk.is_own;
+      walk.thickness = begins && params.thickness == 0.0 ? unpack_width(marked) : walk.thickness;
+      const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+      add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0);
+      goes = !ends_at(marked, corner, search);
+      walk.last = corner.place;
+      walk.starts = false;
+      at += search.step;
+    } while (goes);
   add_beyond(found, walk, c, last);
   if (kGoesBeyond) add_border(found, c);
   return arcs_of(c, found);
@@ -597,34 +597,34 @@ BlockedArcs blocked_by_several(Context c) {
   bool is_own = true, starts = true;                    // the walk along the receiver's own slot
   int last = next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
   if (goes) do {
-    const int i = nearest_walk(next);
-    int at = next.at[0];
-    for (int k = 1; k < kWalks; k++) at = k == i ? next.at[k] : at;
-    const bool is_unseen = kUnseen != 0u && i == kWalks - 1;
-    const uint marked = mark[at];
-    const int to = int(marked >> 16), steps = abs(to - search.from);
-    const float stored = vertex[at], z = kGoesOn ? abs(stored) : stored;
-    const bool begins = (marked & search.begins) != 0u;
-    // The walk for what is unseen has the same vertex where the run begins or ends there too.
-    const int unseen_at = next.at[kWalks - 1];
-    bool is_twin = kUnseen != 0u && !is_unseen && next.away[kWalks - 1] == steps && next.z[kWalks - 1] == z;
-    is_twin = is_twin && ((mark[is_twin ? unseen_at : at] ^ marked) & (kVertexBegins | kVertexEnds)) == 0u;
-    const bool twin_goes_on = is_twin && vertex[is_twin ? unseen_at : at] < 0.0;
-    const Corner corner = corner_at(c, twin_goes_on ? unseen_at : at, to, z, begins);
-    is_own = i == c.slot && begins ? false : is_own;
-    walk.is_own = i == c.slot && is_own;
-    walk.starts = i == c.slot && starts;
-    starts = i == c.slot ? false : starts;
-    come_to(walk, c, at, corner.place);
-    const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
-    // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
-    IF_ANY (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0 || twin_goes_on);
-    if (is_unseen || is_twin) last = unseen_at;
-    go_to(next, search, i, at + search.step, ends_at(marked, corner, search));
-    if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));
-    goes = false;
-    for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
-  } while (goes);
+      const int i = nearest_walk(next);
+      int at = next.at[0];
+      for (int k = 1; k < kWalks; k++) at = k == i ? next.at[k] : at;
+      const bool is_unseen = kUnseen != 0u && i == kWalks - 1;
+      const uint marked = mark[at];
+      const int to = int(marked >> 16), steps = abs(to - search.from);
+      const float stored = vertex[at], z = kGoesOn ? abs(stored) : stored;
+      const bool begins = (marked & search.begins) != 0u;
+      // The walk for what is unseen has the same vertex where the run begins or ends there too.
+      const int unseen_at = next.at[kWalks - 1];
+      bool is_twin = kUnseen != 0u && !is_unseen && next.away[kWalks - 1] == steps && next.z[kWalks - 1] == z;
+      is_twin = is_twin && ((mark[is_twin ? unseen_at : at] ^ marked) & (kVertexBegins | kVertexEnds)) == 0u;
+      const bool twin_goes_on = is_twin && vertex[is_twin ? unseen_at : at] < 0.0;
+      const Corner corner = corner_at(c, twin_goes_on ? unseen_at : at, to, z, begins);
+      is_own = i == c.slot && begins ? false : is_own;
+      walk.is_own = i == c.slot && is_own;
+      walk.starts = i == c.slot && starts;
+      starts = i == c.slot ? false : starts;
+      come_to(walk, c, at, corner.place);
+      const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+      // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
+      IF_ANY (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0 || twin_goes_on);
+      if (is_unseen || is_twin) last = unseen_at;
+      go_to(next, search, i, at + search.step, ends_at(marked, corner, search));
+      if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));
+      goes = false;
+      for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
+    } while (goes);
   add_beyond(found, walk, c, last);
   if (kGoesBeyond) add_border(found, c);
   return arcs_of(c, found);

@@ -244,11 +244,11 @@ void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw
                      Interruptions interrupted, int behind_last) {
   uint left = interrupted.jumps;
   if (left != 0u) do {
-    const Piece piece =
-        piece_behind(r, side, reach, draw, count, interrupted, interrupted.first + findLSB(left), behind_last);
-    add_completed(found, side, reach, draw, slopes_of(piece), 0.5 * (piece.near + piece.far));
-    left &= left - 1u;
-  } while (left != 0u);
+      const Piece piece =
+          piece_behind(r, side, reach, draw, count, interrupted, interrupted.first + findLSB(left), behind_last);
+      add_completed(found, side, reach, draw, slopes_of(piece), 0.5 * (piece.near + piece.far));
+      left &= left - 1u;
+    } while (left != 0u);
 }
 
 /// Samples of a side beyond the border.
@@ -387,47 +387,47 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   bool is_before = false;  // the run has samples before the sphere
   int k = 0;
   if (count > 0) do {
-    const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
-    const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
-    const uint sectors = kHard ? sectors_of(r, reach, run, true, thickness, draw.shift) : 0u;
-    const float within = within_of(run, thickness);
-    const vec2 beside = round(side.direction_px * offset);
-    const ivec2 here = r.pixel + ivec2(beside);
-    const ivec2 middle = last_pixel + here >> 1;
-    const float z = occluder_depth[here.y * reach.width + here.x];
-    // The receiver itself need be no occluder.
-    const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
-    const Sample s = sample_of(r, side, reach, offset, beside, z);
-    last_pixel = here;
-    const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
-    // A run that crosses the sphere between two samples blocks half way to the one beyond.
-    const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
-    const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
-    if (kBehindOthers) take_down(interrupted, k, s, last, connected, connected, reach);
-    const bool ends = both(connected, s.above) ? false : true;
-    if (kHard) {
-      found.blocked.sectors |= ends ? sectors : 0u;
-      take_before(before, run, both(ends, is_before), thickness, within);
-    }
-    own = ends ? !s.above : own;
-    run.start = ends ? s.place : run.start;
-    run.end = s.place;
-    run.near = max(ends ? -1.0 : run.near, own ? -1.0 : slopes.x);
-    run.far = min(ends ? 1.0 : run.far, own ? 1.0 : slopes.y);
-    run.gap = ends ? gap : run.gap;
-    found.blocked.near = max(found.blocked.near, own ? slopes.x : -1.0);
-    is_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place)) ? true : both(is_before, !ends);
-    if (!kHard) {
-      const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 0.0);
-      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
-      add_faded(found, side, reach, draw, s.place);
-    }
-    last = s;
-    IF_ANY (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
-      complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
-      interrupted = Interruptions(k + 1, 0u, 0u);
-    }
-  } while (++k < count);
+      const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
+      const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
+      const uint sectors = kHard ? sectors_of(r, reach, run, true, thickness, draw.shift) : 0u;
+      const float within = within_of(run, thickness);
+      const vec2 beside = round(side.direction_px * offset);
+      const ivec2 here = r.pixel + ivec2(beside);
+      const ivec2 middle = last_pixel + here >> 1;
+      const float z = occluder_depth[here.y * reach.width + here.x];
+      // The receiver itself need be no occluder.
+      const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
+      const Sample s = sample_of(r, side, reach, offset, beside, z);
+      last_pixel = here;
+      const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
+      // A run that crosses the sphere between two samples blocks half way to the one beyond.
+      const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
+      const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
+      if (kBehindOthers) take_down(interrupted, k, s, last, connected, connected, reach);
+      const bool ends = both(connected, s.above) ? false : true;
+      if (kHard) {
+        found.blocked.sectors |= ends ? sectors : 0u;
+        take_before(before, run, both(ends, is_before), thickness, within);
+      }
+      own = ends ? !s.above : own;
+      run.start = ends ? s.place : run.start;
+      run.end = s.place;
+      run.near = max(ends ? -1.0 : run.near, own ? -1.0 : slopes.x);
+      run.far = min(ends ? 1.0 : run.far, own ? 1.0 : slopes.y);
+      run.gap = ends ? gap : run.gap;
+      found.blocked.near = max(found.blocked.near, own ? slopes.x : -1.0);
+      is_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place)) ? true : both(is_before, !ends);
+      if (!kHard) {
+        const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 0.0);
+        found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
+        add_faded(found, side, reach, draw, s.place);
+      }
+      last = s;
+      IF_ANY (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
+        complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
+        interrupted = Interruptions(k + 1, 0u, 0u);
+      }
+    } while (++k < count);
   if (kHard) {
     const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 0.0);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
@@ -473,15 +473,30 @@ float thickness_of(Receiver r, Reach reach, Slot slot, float gap) {
   return thickness_of(r, reach, slot.run, slot.z, per_width, gap);
 }
 
-/// Ends the runs of those slots whose bits are set; most of the time it is none or one.
-void end_runs(inout Found found, inout Before before, Receiver r, Reach reach, Slot slots[kMostSurfaces], uint ending,
-              float gap, float shift) {
+/// What the runs of slots block if they end at their last samples.
+struct Ends {
+  uint sectors[kMostSurfaces];
+  float thickness[kMostSurfaces], within[kMostSurfaces];
+};
+
+Ends ends_of(Receiver r, Reach reach, Slot slots[kMostSurfaces], float gap, float shift) {
+  Ends ends;
   for (int j = 0; j < kSurfaces; j++) {
-    const bool ends = (ending >> j & 1u) != 0u;
-    const float thickness = thickness_of(r, reach, slots[j], gap);
     const bool is_open = (slots[j].bits & kSlotOpen) != 0u;
-    found.blocked.sectors |= ends ? sectors_of(r, reach, slots[j].run, is_open, thickness, shift) : 0u;
-    take_before(before, slots[j].run, both(ends, (slots[j].bits & kSlotBefore) != 0u), thickness, within_of(slots[j].run, thickness));
+    ends.thickness[j] = thickness_of(r, reach, slots[j], gap);
+    ends.within[j] = within_of(slots[j].run, ends.thickness[j]);
+    ends.sectors[j] = sectors_of(r, reach, slots[j].run, is_open, ends.thickness[j], shift);
+  }
+  return ends;
+}
+
+/// Ends the runs of those slots whose bits are set; most of the time it is none or one.
+void end_runs(inout Found found, inout Before before, Slot slots[kMostSurfaces], Ends ends, uint ending) {
+  for (int j = 0; j < kSurfaces; j++) {
+    const bool is_ending = (ending >> j & 1u) != 0u;
+    found.blocked.sectors |= is_ending ? ends.sectors[j] : 0u;
+    take_before(before, slots[j].run, both(is_ending, (slots[j].bits & kSlotBefore) != 0u), ends.thickness[j],
+                ends.within[j]);
   }
 }
 
@@ -498,78 +513,75 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   int k = 0;
   if (count > 0) do {
-    const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
-    const Surfaces here = surfaces_at(r, side, reach, offset, plane);
-    float last_z[kMostSurfaces];
-    for (int j = 0; j < kSurfaces; j++) last_z[j] = slots[j].z;
-    const ivec2 pixel = pixel_at(r, side, offset);
-    const ivec2 middle = last_pixel + pixel >> 1;
-    float middle_z[kMostSurfaces];
-    for (int i = 0; i < kSurfaces; i++)
-      middle_z[i] = middle == last_pixel ? last_z[i] : depth_at(r, side, reach, middle, i, plane);
-    last_pixel = pixel;
-    const int from[kMostSurfaces] = links_of(r, reach, here, middle_z, last_z, gap);
-    if (kBehindOthers) {
-      const bool goes_on = here.at[0].z > last.z ? from[0] >= 0 : is_taken(from, 0);
-      const bool connected = is_through(r, reach, here.at[0].z, middle_z[0], last.z, gap);
-      take_down(interrupted, k, here.at[0], last, connected, goes_on, reach);
-    }
-    // Runs end that no surface continues, and those of surfaces that sink below the tangent plane.
-    uint ending = 0u;
-    for (int j = 0; j < kSurfaces && kHard; j++) {
-      bool ends = slots[j].run.near >= slots[j].run.far || (slots[j].bits & kSlotBefore) != 0u;
+      const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
+      const Ends ends = ends_of(r, reach, slots, gap, draw.shift);
+      const Surfaces here = surfaces_at(r, side, reach, offset, plane);
+      float last_z[kMostSurfaces];
+      for (int j = 0; j < kSurfaces; j++) last_z[j] = slots[j].z;
+      const ivec2 pixel = pixel_at(r, side, offset);
+      const ivec2 middle = last_pixel + pixel >> 1;
+      float middle_z[kMostSurfaces];
+      for (int i = 0; i < kSurfaces; i++)
+        middle_z[i] = middle == last_pixel ? last_z[i] : depth_at(r, side, reach, middle, i, plane);
+      last_pixel = pixel;
+      const int from[kMostSurfaces] = links_of(r, reach, here, middle_z, last_z, gap);
+      if (kBehindOthers) {
+        const bool goes_on = here.at[0].z > last.z ? from[0] >= 0 : is_taken(from, 0);
+        const bool connected = is_through(r, reach, here.at[0].z, middle_z[0], last.z, gap);
+        take_down(interrupted, k, here.at[0], last, connected, goes_on, reach);
+      }
+      // Runs end that no surface continues, and those of surfaces that sink below the tangent plane.
+      uint ending = 0u;
+      for (int j = 0; j < kSurfaces && kHard; j++) {
+        bool goes_on = false;
+        for (int i = 0; i < kSurfaces; i++) goes_on = both(from[i] == j, here.at[i].above) ? true : goes_on;
+        ending |= goes_on ? 0u : 1u << j;
+      }
+      end_runs(found, before, slots, ends, ending);
+      Slot now[kMostSurfaces];
       for (int i = 0; i < kSurfaces; i++) {
-        const bool linked = from[i] == j;
-        slots[j].run.end = linked ? here.at[i].place : slots[j].run.end;
-        ends = both(linked, here.at[i].above) ? false : ends;
+        const Sample s = here.at[i];
+        Slot slot = slots[0];
+        for (int j = 1; j < kSurfaces; j++) slot = chosen(slot, slots[j], from[i] == j);
+        const bool connected = from[i] >= 0, was_above = (slot.bits & kSlotAbove) != 0u;
+        const bool was_within = (slot.bits & kSlotWithin) != 0u;
+        const bool crosses = kHard ? both(both(s.above, was_above), both(connected, s.within != was_within)) : false;
+        const vec2 open = slopes_of(s, crosses, mix(s.slope, slot.slope, 0.5));
+        const vec2 slopes = here.has_back[i] ? here.solid[i] : open;
+        const bool begins = both(connected, s.above) ? false : true;
+        slot.run.start = begins ? s.place : slot.run.start;
+        slot.run.near = begins ? -1.0 : slot.run.near;
+        slot.run.far = begins ? 1.0 : slot.run.far;
+        slot.run.gap = begins ? gap : slot.run.gap;
+        slot.run.end = s.place;
+        const bool own = begins ? !s.above : (slot.bits & kSlotOwn) != 0u;
+        const bool counts = both(here.exists[i], !own);
+        found.blocked.near = max(found.blocked.near, both(here.exists[i], own) ? open.x : -1.0);
+        slot.run.near = max(slot.run.near, counts ? slopes.x : -1.0);
+        slot.run.far = min(slot.run.far, counts ? slopes.y : 1.0);
+        const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
+        const bool is_open = both(counts, !here.has_back[i]);
+        const bool is_before = kHard ? both(both(is_open, s.above), is_before_sphere(r, reach, s.place)) : false;
+        slot.bits = (begins ? 0u : slot.bits & (kSlotOpen | kSlotKnows | kSlotBefore)) | (s.above ? kSlotAbove : 0u) |
+                    (s.within ? kSlotWithin : 0u) | (own ? kSlotOwn : 0u) | (knows ? kSlotKnows : 0u) |
+                    (is_open ? kSlotOpen : 0u) | (is_before ? kSlotBefore : 0u);
+        slot.z = here.exists[i] ? s.z : kNoLastSurface;
+        slot.slope = s.slope;
+        now[i] = slot;
+        if (!kHard && here.exists[i]) {
+          const float thickness = thickness_of(r, reach, slot, 0.0);
+          found.blocked.sectors |= sectors_of(r, reach, slot.run, (slot.bits & kSlotOpen) != 0u, thickness, draw.shift);
+          add_faded(found, side, reach, draw, s.place);
+        }
       }
-      ending |= ends ? 1u << j : 0u;
-    }
-    end_runs(found, before, r, reach, slots, ending, gap, draw.shift);
-    Slot now[kMostSurfaces];
-    for (int i = 0; i < kSurfaces; i++) {
-      const Sample s = here.at[i];
-      Slot slot = slots[0];
-      for (int j = 1; j < kSurfaces; j++) slot = chosen(slot, slots[j], from[i] == j);
-      const bool connected = from[i] >= 0, was_above = (slot.bits & kSlotAbove) != 0u;
-      const bool was_within = (slot.bits & kSlotWithin) != 0u;
-      const bool crosses = kHard ? both(both(s.above, was_above), both(connected, s.within != was_within)) : false;
-      const vec2 open = slopes_of(s, crosses, mix(s.slope, slot.slope, 0.5));
-      const vec2 slopes = here.has_back[i] ? here.solid[i] : open;
-      const bool begins = both(connected, s.above) ? false : true;
-      slot.run.start = begins ? s.place : slot.run.start;
-      slot.run.near = begins ? -1.0 : slot.run.near;
-      slot.run.far = begins ? 1.0 : slot.run.far;
-      slot.run.gap = begins ? gap : slot.run.gap;
-      slot.run.end = s.place;
-      const bool own = begins ? !s.above : (slot.bits & kSlotOwn) != 0u;
-      const bool counts = both(here.exists[i], !own);
-      found.blocked.near = max(found.blocked.near, both(here.exists[i], own) ? open.x : -1.0);
-      slot.run.near = max(slot.run.near, counts ? slopes.x : -1.0);
-      slot.run.far = min(slot.run.far, counts ? slopes.y : 1.0);
-      const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
-      const bool is_open = both(counts, !here.has_back[i]);
-      const bool is_before = kHard ? both(both(is_open, s.above), is_before_sphere(r, reach, s.place)) : false;
-      slot.bits = (begins ? 0u : slot.bits & (kSlotOpen | kSlotKnows | kSlotBefore)) | (s.above ? kSlotAbove : 0u) |
-                  (s.within ? kSlotWithin : 0u) | (own ? kSlotOwn : 0u) | (knows ? kSlotKnows : 0u) |
-                  (is_open ? kSlotOpen : 0u) | (is_before ? kSlotBefore : 0u);
-      slot.z = here.exists[i] ? s.z : kNoLastSurface;
-      slot.slope = s.slope;
-      now[i] = slot;
-      if (!kHard && here.exists[i]) {
-        const float thickness = thickness_of(r, reach, slot, 0.0);
-        found.blocked.sectors |= sectors_of(r, reach, slot.run, (slot.bits & kSlotOpen) != 0u, thickness, draw.shift);
-        add_faded(found, side, reach, draw, s.place);
+      slots = now;
+      last = here.at[0];
+      IF_ANY (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
+        complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
+        interrupted = Interruptions(k + 1, 0u, 0u);
       }
-    }
-    slots = now;
-    last = here.at[0];
-    IF_ANY (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
-      complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
-      interrupted = Interruptions(k + 1, 0u, 0u);
-    }
-  } while (++k < count);
-  if (kHard) end_runs(found, before, r, reach, slots, (1u << kSurfaces) - 1u, 0.0, draw.shift);
+    } while (++k < count);
+  if (kHard) end_runs(found, before, slots, ends_of(r, reach, slots, 0.0, draw.shift), (1u << kSurfaces) - 1u);
   if (kHard) found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }

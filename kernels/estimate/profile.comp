@@ -248,8 +248,9 @@ float thickness_of(View view, LinePlane plane, ivec2 steps, Step first, Step las
 void fill(inout Run run, int end, int after) {
   const int before = run.next == run.begin ? -1 : run.next - 1;
   int step = run.filled;
-  if (step < end) do neighbor[run.row + step] = columns(before, after);
-  while (++step < end);
+  if (step < end) do
+      neighbor[run.row + step] = columns(before, after);
+    while (++step < end);
   run.filled = end;
 }
 
