@@ -252,7 +252,7 @@ void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw
 }
 
 /// Samples of a side beyond the border.
-const int kStepsBeyond = 4;
+const int kStepsBeyond = 6;
 
 /// Adds what goes on beyond the border where occluders are endless.
 void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border,
