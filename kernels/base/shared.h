@@ -35,11 +35,11 @@ struct ivec2 {
 #extension GL_EXT_scalar_block_layout : require
 // The compiler numbers bindings: the host finds a buffer by the name of its block. See core/gpu/recorder.h.
 layout(scalar) buffer;
-/// An `if` that jumps if no invocation of a subgroup takes it, for a body that is long and seldom needed. Lavapipe goes
-/// through the body of a plain `if` in any case, with its lanes switched off, but leaves a loop that no lane goes on
-/// with. Values that are the same for all invocations are loaded outside of conditions and loops: there lavapipe loads
-/// them once, else for one lane after the other.
-#define IF_ANY(condition) if (condition)
+// What lavapipe (Mesa 22 to 25) makes of branches and loops: it goes through both sides of an `if` with its lanes
+// switched off, and looks only at the end of a loop's body whether any lane goes on. A loop that asks before its body,
+// as `for` does, goes through it once more than it has rounds. So loops whose bodies are long ask behind them. Values
+// that are the same for all invocations are loaded outside of conditions and loops: there lavapipe loads them once, else
+// for one lane after the other.
 #define ALCOVE_BEGIN
 #define ALCOVE_END
 #define ALCOVE_CONSTANT const

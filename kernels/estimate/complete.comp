@@ -181,7 +181,7 @@ void close(inout Open open, View view, LinePlane plane, int way, float steps) {
   const float kept_z = end.y / plane.ray_length;
   const float kept_step = (end.x / (perspective ? kept_z : 1.0) - plane.start) / plane.step;
   const float kept = min(steps, abs(kept_step - first));
-  IF_ANY (kept > 0.0) {
+  if (kept > 0.0) {
     goes_on[open.index] = pack_goes_on(kept, kept_z / z);
     vertex[open.index] = -abs(vertex[open.index]);
   }
@@ -196,7 +196,7 @@ void go_on(inout Open open, View view, LinePlane plane, Walk walk, Corner next, 
   const bool after_sky = begins_run && abs(next.at - walk.before.at) > 1;
   const bool is_hidden = !after_sky && behind_next > 0.0;
   const bool ends = !is_hidden || to_next >= open.farthest;
-  IF_ANY (open.is_open && ends) {
+  if (open.is_open && ends) {
     float steps = begins_run ? to_before : mix(to_before, to_next, behind_before / (behind_before - behind_next));
     if (is_hidden) steps = to_next;
     close(open, view, plane, walk.way, min(steps, open.farthest));
@@ -223,16 +223,17 @@ void complete(View view, Lines lines, LinePlane plane, int line, int row, int fi
   Opens opens = Opens(none, none, none);
   int index = first;
   bool goes = (walk.before.marked & walk.is_last) == 0u;
-  if (goes) do {
+  if (goes) {
+    do {
       index += way;
       const Corner next = corner_at(view, lines, line, index);
       const bool begins_run = (next.marked & walk.begins) != 0u;
       const bool is_interrupted = begins_run && (walk.before.marked & both_ends) != both_ends &&
                                   next.at == walk.before.at + way && next.hides > walk.before.nearness;
       goes = (next.marked & walk.is_last) == 0u;
-      IF_ANY (is_interrupted) {
+      if (is_interrupted) {
         if (opens.a.is_open && opens.b.is_open) {
-          IF_ANY (opens.c.is_open) close(opens.c, view, plane, way, abs(float(walk.before.at) - opens.c.from));
+          if (opens.c.is_open) close(opens.c, view, plane, way, abs(float(walk.before.at) - opens.c.from));
           opens.c = opens.b;
         }
         if (opens.a.is_open) opens.b = opens.a;
@@ -254,11 +255,12 @@ void complete(View view, Lines lines, LinePlane plane, int line, int row, int fi
       walk.prior = walk.before;
       walk.before = next;
     } while (goes);
+  }
   // What still goes on at the walk's end ends there.
   const float end = float(walk.before.at);
-  IF_ANY (opens.a.is_open) close(opens.a, view, plane, way, min(abs(end - opens.a.from), opens.a.farthest));
-  IF_ANY (opens.b.is_open) close(opens.b, view, plane, way, min(abs(end - opens.b.from), opens.b.farthest));
-  IF_ANY (opens.c.is_open) close(opens.c, view, plane, way, min(abs(end - opens.c.from), opens.c.farthest));
+  if (opens.a.is_open) close(opens.a, view, plane, way, min(abs(end - opens.a.from), opens.a.farthest));
+  if (opens.b.is_open) close(opens.b, view, plane, way, min(abs(end - opens.b.from), opens.b.farthest));
+  if (opens.c.is_open) close(opens.c, view, plane, way, min(abs(end - opens.c.from), opens.c.farthest));
 }
 
 void main() {

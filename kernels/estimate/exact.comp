@@ -312,7 +312,7 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
     slopes = is_solid ? vec2(max(slopes.x, max(a, b)), min(slopes.y, min(a, b))) : slopes;
     height = is_solid || from.x >= from.y ? max(height, dot(ends.from, search.normal)) : height;
     height = is_solid || to.x >= to.y ? max(height, dot(ends.to, search.normal)) : height;
-    IF_ANY (bends) {
+    if (bends) {
       vec2 unused;
       const vec2 bend = depths_of(corner.place, eye_distance, last, radius_sq, unused);
       slopes = vec2(max(slopes.x, bend.x), min(slopes.y, bend.y));
@@ -396,7 +396,7 @@ int nearest_walk(Next next) {
 void go_to(inout Next next, Search search, int walk, int at, bool ends) {
   int away = kNever;
   float z = 0.0;
-  IF_ANY (!ends) {
+  if (!ends) {
     away = abs(int(mark[at] >> 16) - search.from);
     z = abs(vertex[at]);
   }
@@ -421,7 +421,7 @@ void come_to(inout Walk walk, Context c, int at, vec2 place) {
   const float here = thickness_at(mark[at]);
   walk.thickness = here;
   walk.change = 0.0;
-  IF_ANY (!walk.starts && (mark[at] & c.search.begins) == 0u) {
+  if (!walk.starts && (mark[at] & c.search.begins) == 0u) {
     const int before = at - c.search.step, from_step = int(mark[before] >> 16);
     const vec2 from = from_receiver(c, place_at(c.view, c.plane, float(from_step), abs(vertex[before])));
     const float least = kBesideReceiver * place.x;
@@ -465,7 +465,7 @@ void add_stroke(inout Found found, Walk walk, Context c, Stroke stroke, Corner c
 void add_beyond(inout Found found, Walk walk, Context c, int last) {
   const bool looks_beyond = kGoesOn && (kSlots == 1u || kUnseen != 0u) && last >= 0;
   const uint beyond = looks_beyond ? vertex_beyond(c, last) : kNoVertex;
-  IF_ANY (beyond != kNoVertex) {
+  if (beyond != kNoVertex) {
     const int at = (kWalks - 1) * c.view.size.x * c.view.size.y + c.row + int(beyond);
     const uint marked = mark[at];
     const int to = int(marked >> 16);
@@ -518,7 +518,8 @@ void add_border(inout Found found, Context c) {
   bool goes =
       rest > 0.0 && dot(from_receiver(c, place_at(c.view, plane, first, c.z)), c.search.leaving) < params.radius;
   int i = 0;
-  if (goes) do {
+  if (goes) {
+    do {
       const float part = max(float(i) - 1.0 + c.search.shift, 0.0) / float(kStepsBeyond);
       const float at = i == 0 ? first : first + float(c.search.step) * (rest * part);
       const float z = depth_at_step(c, plane, at);
@@ -532,7 +533,7 @@ void add_border(inout Found found, Context c) {
       const float gap = rest / float(kStepsBeyond) * plane.step * (perspective ? z : 1.0);
       const float width = length(corner.place - start) + gap;
       walk.thickness = params.thickness > 0.0 ? params.thickness : min(width, kCutThickness * params.radius);
-      IF_ANY (z < kSkyDepth && corner.place.x > 0.0)
+      if (z < kSkyDepth && corner.place.x > 0.0)
         block(found.all, walk, c, Stroke(joins ? last : kShortStroke * corner.place, corner.place), corner, false);
       last = corner.place;
       last_z = z;
@@ -540,6 +541,7 @@ void add_border(inout Found found, Context c) {
       goes = i < kStepsBeyond && dot(corner.place, c.search.leaving) < params.radius;
       i++;
     } while (goes);
+  }
 }
 
 /// 8. The integrals over what is blocked.
@@ -558,7 +560,8 @@ BlockedArcs blocked_by_one(Context c) {
   Walk walk = Walk(vec2(0), true, true, params.thickness, 0.0);
   int at = c.row + int(first), last = -1;
   bool goes = first != kNoVertex;
-  if (goes) do {
+  if (goes) {
+    do {
       last = at;
       const uint marked = mark[at];
       const int to = int(marked >> 16), steps = abs(to - search.from);
@@ -574,6 +577,7 @@ BlockedArcs blocked_by_one(Context c) {
       walk.starts = false;
       at += search.step;
     } while (goes);
+  }
   add_beyond(found, walk, c, last);
   if (kGoesBeyond) add_border(found, c);
   return arcs_of(c, found);
@@ -596,7 +600,8 @@ BlockedArcs blocked_by_several(Context c) {
   Walk walk = Walk(vec2(0), true, true, params.thickness, 0.0);
   bool is_own = true, starts = true;                    // the walk along the receiver's own slot
   int last = next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
-  if (goes) do {
+  if (goes) {
+    do {
       const int i = nearest_walk(next);
       int at = next.at[0];
       for (int k = 1; k < kWalks; k++) at = k == i ? next.at[k] : at;
@@ -618,13 +623,14 @@ BlockedArcs blocked_by_several(Context c) {
       come_to(walk, c, at, corner.place);
       const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
       // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
-      IF_ANY (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0 || twin_goes_on);
+      if (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0 || twin_goes_on);
       if (is_unseen || is_twin) last = unseen_at;
       go_to(next, search, i, at + search.step, ends_at(marked, corner, search));
       if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));
       goes = false;
       for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
     } while (goes);
+  }
   add_beyond(found, walk, c, last);
   if (kGoesBeyond) add_border(found, c);
   return arcs_of(c, found);

@@ -183,7 +183,7 @@ void take_before(inout Before before, Run run, bool is_before, float thickness, 
 /// The sectors that it blocks.
 uint sectors_of(Receiver r, Reach reach, Before before, float shift) {
   uint sectors = 0u;
-  IF_ANY (before.within > -reach.radius) {
+  if (before.within > -reach.radius) {
     const vec2 first = depths_of(r, before.start, before.thickness, reach.radius_sq);
     const vec2 last = depths_of(r, before.end, before.thickness, reach.radius_sq);
     sectors = sectors_between(vec2(max(first.x, last.x), min(first.y, last.y)), shift);
@@ -243,12 +243,14 @@ void add_completed(inout Found found, Side side, Reach reach, Draw draw, vec2 sl
 void complete_behind(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count,
                      Interruptions interrupted, int behind_last) {
   uint left = interrupted.jumps;
-  if (left != 0u) do {
+  if (left != 0u) {
+    do {
       const Piece piece =
           piece_behind(r, side, reach, draw, count, interrupted, interrupted.first + findLSB(left), behind_last);
       add_completed(found, side, reach, draw, slopes_of(piece), 0.5 * (piece.near + piece.far));
       left &= left - 1u;
     } while (left != 0u);
+  }
 }
 
 /// Samples of a side beyond the border.
@@ -281,7 +283,7 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
     const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
     const bool joins = both(both(k < kStepsBeyond, both(s.above, last.above)),
                             same_surface(r, reach, s.z, last.z, s.offset - last.offset));
-    IF_ANY (kHard && !joins) {
+    if (kHard && !joins) {
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
       found.completed.sectors |= joins ? 0u : sectors_of(r, reach, run, true, thickness, draw.shift);
       take_before(before, run, both(!joins, is_before), thickness, within_of(run, thickness));
@@ -386,7 +388,8 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = false;  // the run has samples before the sphere
   int k = 0;
-  if (count > 0) do {
+  if (count > 0) {
+    do {
       const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
       const uint sectors = kHard ? sectors_of(r, reach, run, true, thickness, draw.shift) : 0u;
@@ -423,11 +426,12 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
         add_faded(found, side, reach, draw, s.place);
       }
       last = s;
-      IF_ANY (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
+      if (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
         complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
         interrupted = Interruptions(k + 1, 0u, 0u);
       }
     } while (++k < count);
+  }
   if (kHard) {
     const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 0.0);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
@@ -512,7 +516,8 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   int k = 0;
-  if (count > 0) do {
+  if (count > 0) {
+    do {
       const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
       const Ends ends = ends_of(r, reach, slots, gap, draw.shift);
       const Surfaces here = surfaces_at(r, side, reach, offset, plane);
@@ -576,11 +581,12 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       }
       slots = now;
       last = here.at[0];
-      IF_ANY (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
+      if (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
         complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
         interrupted = Interruptions(k + 1, 0u, 0u);
       }
     } while (++k < count);
+  }
   if (kHard) end_runs(found, before, slots, ends_of(r, reach, slots, 0.0, draw.shift), (1u << kSurfaces) - 1u);
   if (kHard) found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
@@ -597,7 +603,7 @@ vec4 search(Receiver r, Side side, Reach reach, Draw draw) {
     search_layers(found, r, side, reach, draw, count);
   else
     search_runs(found, r, side, reach, draw, count);
-  IF_ANY (kBeyondBorder && side.reach < side.whole_reach) complete_beyond(found, r, side, reach, draw);
+  if (kBeyondBorder && side.reach < side.whole_reach) complete_beyond(found, r, side, reach, draw);
   if (!kHard) return vec4(found.sum, found.completed_sum);
   const Blocked all =
       Blocked(max(found.blocked.near, found.completed.near), min(found.blocked.far, found.completed.far),

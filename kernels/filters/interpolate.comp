@@ -200,9 +200,9 @@ void main() {
   const int plane = params.view.size.x * params.view.size.y;
   const ivec2 from = first - kRadius * params.axis;
   const uint sites = (kColumns ? means_of_column(from) : sites_of_row(from)) & ~0u >> uint(32 - kCount);
-  IF_ANY (sites != 0u) interpolate(first, sites, plane);
+  if (sites != 0u) interpolate(first, sites, plane);
   if (!kColumns && sites != 0u) atomicOr(runs[(line >> 5) * words_of_runs() + run.y], 1u << uint(line & 31));
-  IF_ANY (kColumns && sites == 0u)
+  if (kColumns && sites == 0u)
     for (int i = 0; i < kDenoiseRun * kPlanes; i++) {
       const ivec2 pixel = first + i % kDenoiseRun * params.axis;
       if (inside(params.view, pixel))

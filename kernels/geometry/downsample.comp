@@ -71,7 +71,7 @@ void main() {
   low_depth[low_index] = kSkyDepth;
   low_normal[low_index] = pack_normal(vec3(0, 0, 1));
   const int index = index_of(params.view, chosen);
-  IF_ANY (nearest >= kSkyDepth) write_hidden(low_index, index, 0.0, true);
+  if (nearest >= kSkyDepth) write_hidden(low_index, index, 0.0, true);
   if (nearest >= kSkyDepth) return;
 
   // The centre of a block that reaches over the border lies outside of its pixels: there the range is a guess.

@@ -96,7 +96,7 @@ void main() {
   const vec3 eye = toward_eye(params.view, position);
   vec3 n = unpack_normal(word);
   const bool is_missing = word == kNoNormal;
-  IF_ANY (z < kSkyDepth && (is_missing || dot(n, eye) < 0.0)) {
+  if (z < kSkyDepth && (is_missing || dot(n, eye) < 0.0)) {
     const vec3 by_depth = normal_from_depth(pixel, position, eye);
     const bool is_turned = !is_missing && is_opposite(n, eye, by_depth);
     n = is_missing ? by_depth : is_turned ? -n : n;

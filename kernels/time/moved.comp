@@ -120,7 +120,7 @@ void mark(Box box, uint frames) {
 void add(inout Box box, Box more, uint frames) {
   const Box wider = both(box, more);
   const bool fits = is_small(wider);
-  IF_ANY (!fits) mark(box, frames);
+  if (!fits) mark(box, frames);
   box = fits ? wider : more;
 }
 
@@ -160,12 +160,12 @@ Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other, uint fr
     const vec3 there = from_own ? position_there(other, here) : position_here(other, here);
     const Sight sight = sight_of(to, there, other.depth_precision);
     bool moved = is_seen_through(!from_own, other.first, to, sight.at, 1, sight.same + kFarther * sight.width);
-    IF_ANY (moved) moved = is_wide(from_own, other.first, from, pixel, z);
+    if (moved) moved = is_wide(from_own, other.first, from, pixel, z);
     bool lifted =
         !moved && is_seen_through(!from_own, other.first, to, sight.at, kPatch, sight.same + kLifted * sight.width);
-    IF_ANY (lifted) moved = is_patch(from_own, other.first, from, pixel, z);
+    if (lifted) moved = is_patch(from_own, other.first, from, pixel, z);
     const vec3 place = from_own ? here : there;
-    IF_ANY (moved) add(box, Box(place, place), frames);
+    if (moved) add(box, Box(place, place), frames);
   }
   return box;
 }
@@ -189,7 +189,7 @@ void add_moving(inout Box box, ivec2 tile, bool of_own, TakenFrame other, uint f
     const float z = depth_at(of_own, other.first, index_of(view, pixel));
     const vec3 position = position_of(view, vec2(pixel) + 0.5, -z);
     const vec3 place = of_own ? position : position_here(other, position);
-    IF_ANY (z < 0.0) add(box, Box(place, place), frames);
+    if (z < 0.0) add(box, Box(place, place), frames);
   }
 }
 
