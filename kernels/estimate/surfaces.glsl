@@ -76,16 +76,14 @@ int[kMostSurfaces] links_of(Receiver r, Reach reach, Surfaces found, float middl
     float least = r.perspective ? slope * z : slope;
     from[i] = -1;
     for (int j = 0; j < kSurfaces; j++) {
+      bool through = false;
+      for (int m = 0; m < kSurfaces; m++)
+        through = is_through(r, reach, z, middle_z[m], last_z[j], gap) ? true : through;
       const float apart = abs(z - left[j]);
-      const bool goes_on = apart < min(least, limit[j]);
+      const bool goes_on = both(through, apart < min(least, limit[j]));
       least = goes_on ? apart : least;
       from[i] = goes_on ? j : from[i];
     }
-    bool through = false;
-    for (int j = 0; j < kSurfaces; j++)
-      for (int m = 0; m < kSurfaces; m++)
-        through = both(from[i] == j, is_through(r, reach, z, middle_z[m], last_z[j], gap)) ? true : through;
-    from[i] = through ? from[i] : -1;
     for (int j = 0; j < kSurfaces; j++) left[j] = from[i] == j ? kNoLastSurface : left[j];
   }
   return from;
