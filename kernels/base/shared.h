@@ -45,6 +45,11 @@ layout(scalar) buffer;
 #define ALCOVE_CONSTANT const
 #define ALCOVE_NUMBER const float
 
+/// min() and max() in two instructions of lavapipe; GLSL's ask of both for NaN, which takes a third. Where a is NaN, b
+/// is the result, as of those; where b is, so is the result.
+float lesser(float a, float b) { return a < b ? a : b; }
+float greater(float a, float b) { return a > b ? a : b; }
+
 #endif
 
 ALCOVE_BEGIN

@@ -157,7 +157,7 @@ uint sectors_of(Receiver r, Reach reach, Run run, bool is_open, float thickness,
   // time.
   const float back = slope_of(kThickness == kThicknessWidth ? run.start + thickness * away_from_eye(r, run.start)
                                                             : back_of(r, run.start, thickness, reach.radius));
-  const float far = is_open ? min(back, run.far) : run.far;
+  const float far = is_open ? lesser(back, run.far) : run.far;
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(far, shift) : 0u;
 }
 
@@ -170,7 +170,7 @@ struct Before {
 
 /// Of such runs the one of a side counts that reaches deepest into the sphere.
 float within_of(Run run, float thickness) {
-  return thickness - sqrt(min(dot(run.start, run.start), dot(run.end, run.end)));
+  return thickness - sqrt(lesser(dot(run.start, run.start), dot(run.end, run.end)));
 }
 void take_before(inout Before before, Run run, bool is_before, float thickness, float within) {
   const bool taken = both(is_before, within > before.within);
@@ -195,8 +195,8 @@ uint sectors_of(Receiver r, Reach reach, Before before, float shift) {
 /// sample before it crosses the sphere in between, that `crossing`.
 vec2 slopes_of(Sample s, bool crosses, float crossing) {
   const bool blocks = both(s.above, s.within);
-  return vec2(max(blocks ? s.slope : -1.0, crosses ? crossing : -1.0),
-              min(blocks ? s.slope : 1.0, crosses ? crossing : 1.0));
+  return vec2(greater(blocks ? s.slope : -1.0, crosses ? crossing : -1.0),
+              lesser(blocks ? s.slope : 1.0, crosses ? crossing : 1.0));
 }
 
 /// The blocked directions that a search has found.
@@ -415,10 +415,10 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       own = ends ? !s.above : own;
       run.start = ends ? s.place : run.start;
       run.end = s.place;
-      run.near = max(ends ? -1.0 : run.near, own ? -1.0 : slopes.x);
-      run.far = min(ends ? 1.0 : run.far, own ? 1.0 : slopes.y);
+      run.near = greater(own ? -1.0 : slopes.x, ends ? -1.0 : run.near);
+      run.far = lesser(own ? 1.0 : slopes.y, ends ? 1.0 : run.far);
       run.gap = ends ? gap : run.gap;
-      found.blocked.near = max(found.blocked.near, own ? slopes.x : -1.0);
+      found.blocked.near = greater(own ? slopes.x : -1.0, found.blocked.near);
       is_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place)) ? true : both(is_before, !ends);
       if (!kHard) {
         const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 0.0);

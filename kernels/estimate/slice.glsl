@@ -248,7 +248,7 @@ float step_offset(int k, int steps, int count, float reach, float jitter) {
 
 /// Whether two samples `gap` steps apart are taken for one surface.
 bool same_surface(Receiver r, Reach reach, float z, float last_z, float gap) {
-  return abs(z - last_z) < kRunSlope * reach.pixel_size * gap * (r.perspective ? min(z, last_z) : 1.0);
+  return abs(z - last_z) < kRunSlope * reach.pixel_size * gap * (r.perspective ? lesser(z, last_z) : 1.0);
 }
 
 /// Of the tolerance for two samples the part, beside that of a pixel, that the pixel in their middle has to each: more
@@ -291,7 +291,7 @@ vec2 back_of(Receiver r, vec2 front, float thickness, float radius) {
 /// The thickness of a run by its width: a long one levels off, a wall is not as thick as it is long. most: the width
 /// from which it grows no more.
 float levelled(float width, float most) {
-  const float counted = min(width, most);
+  const float counted = lesser(width, most);
   return counted - counted * counted * counted / (3.0 * most * most);
 }
 

@@ -53,7 +53,7 @@ float similarity(Tap a, Tap b, vec2 pixels) {
   // Each site of a run has products of its own, see likeness.glsl.
   precise const float above_b = a.ahead * further + dot(a.across, pixels) * b.scale;
   precise const float above_a = b.ahead * further + dot(b.across, pixels) * a.scale;
-  return max(0.0, 1.0 - max(above_a * above_a, above_b * above_b));
+  return greater(1.0 - greater(above_a * above_a, above_b * above_b), 0.0);
 }
 
 /// Sums over the sites about one: of their weights, times the distance, and times its products; of what they block, and
@@ -111,7 +111,7 @@ void main() {
       for (int p = 0; p < kPlanes; p++) blocked[p] = is_site ? 1.0 - ao[index_of(view, nearest) + p * plane] : 0.0;
       for (int i = 0; i < kFitRun; i++) {
         const vec2 away = float(kLatticeStep) * vec2(x - i, y);
-        precise const float window = max(0.0, exists - narrowness[i] * dot(away, away));
+        precise const float window = greater(exists - narrowness[i] * dot(away, away), 0.0);
         const float share = window * similarity(here[i], tap, away);
         sums[i].whole += share;
         sums[i].along += share * away;

@@ -93,7 +93,7 @@ uint sites_of_row(ivec2 first) {
 float window_at(float away, float narrowness) {
   if ((kMode & kInterpolateLooksUp) != 0u) return params.weight[min(int(abs(away)), kRadius)];
   precise const float window = 1.0 - narrowness * (away * away);
-  return params.weight[0] * max(kLeastWindow, window);
+  return params.weight[0] * greater(window, kLeastWindow);
 }
 
 /// The narrowness of a pixel's parabola, which is 0 a pixel beyond its reach: no contact is smeared over more than a

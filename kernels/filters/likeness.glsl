@@ -52,6 +52,6 @@ float similarity(Tap a, Tap b, float pixels, float least) {
   // pixel must not depend on where runs begin.
   precise const float above_a = a.ahead * further + a.across * pixels * b.scale;
   precise const float above_b = b.ahead * further + b.across * pixels * a.scale;
-  precise const float above_sq = max(above_a * above_a, above_b * above_b);
-  return max(least / (1.0 + above_sq), 1.0 - above_sq);
+  precise const float above_sq = greater(above_a * above_a, above_b * above_b);
+  return greater(least / (1.0 + above_sq), 1.0 - above_sq);
 }
