@@ -10,6 +10,7 @@
 #include "cli/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/frame/environment.h"
 #include "core/frame/raw_plane.h"
 #include "core/inspect/inspect.h"
 #include "core/run/first_look.h"
@@ -65,6 +66,11 @@ int inspect_command(const std::vector<std::string>& arguments) {
   const InputSettings& input = options.settings.input;
   const std::string& path = main_input(input);
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
+  if (path == input.input && is_sky_picture(path)) {
+    const Environment sky = read_environment(path, "INPUT");
+    fmt::print("{}", asked.json ? environment_json(path, sky) : environment_text(path, sky));
+    return 0;
+  }
   const FramePlan plan = plan_of(options.settings);
   const int frame = frame_number_of(path);
   const Inspection inspection =

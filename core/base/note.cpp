@@ -65,6 +65,7 @@ constexpr std::array kTable = {
     NoteFacts{NoteCode::unused_input, "unused-input", true, "no channel of INPUT is used, and there are no normals"},
     NoteFacts{NoteCode::unread_ranks, "unread-ranks", false, "a Cryptomatte has more ranks than are read"},
     NoteFacts{NoteCode::no_indirect_light, "no-indirect-light", true, "the composite dims direct light too"},
+    NoteFacts{NoteCode::sun_in_sky, "sun-in-sky", true, "nine colours do not hold the light of the sky"},
     NoteFacts{NoteCode::device_memory, "device-memory", false, "the device had too little memory at first"},
     NoteFacts{NoteCode::in_parts, "in-parts", false, "the frame was too large to compute at once", InHeader::nothing},
     NoteFacts{NoteCode::no_gpu, "no-gpu", false, "there is no GPU, so the CPU computed"},

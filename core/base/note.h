@@ -58,6 +58,7 @@ enum class NoteCode {
   unused_input,
   unread_ranks,
   no_indirect_light,
+  sun_in_sky,
   // computing
   device_memory,
   in_parts,

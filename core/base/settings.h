@@ -191,6 +191,7 @@ struct OutputSettings {
   std::string preview;    // a PNG, see preview_style
   // AOVs in the file of `output`: names with commas, see core/chain/results/outputs.h
   std::string aovs = "ao";
+  std::string environment;  // a lat-long picture of the light for the AOVs relight and relight-open
   // mono: Y; rgb: R, G, B, as compositors expect, and coloured with multi_bounce
   AoChannels ao_channels = AoChannels::mono;
   // space of directions; automatic: world if the camera has world_to_camera, else view

@@ -55,10 +55,10 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   const GBuffer work = needed(gpu, blocks, inputs, seen.matte, filter_reach_of(settings));
   const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn));
   const bool with_completed = wanted.completed && completes_anywhere(settings);
-  seen.estimate = estimate(gpu, work, chosen, inputs, settings, needs_bent(settings, wanted), with_completed);
+  seen.estimate = estimate(gpu, work, chosen, inputs, settings, moment_order(settings, wanted), with_completed);
   seen.completion = completion(gpu, work, seen.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
-  const Visibility noisy = combine(gpu, work, seen.estimate, wanted.has(&FrameOutputs::scales));
+  const Visibility noisy = combine(gpu, work, seen.estimate, wanted.needs_scales());
   const FilterRuns runs = dilate(gpu, work, seen.estimate.listed, denoiser);
   const Visibility fitted = fit_sites(gpu, work, noisy, chosen, denoiser);
   const Visibility smooth = chosen.rows ? interpolate(gpu, work, noisy, fitted, chosen, denoiser, runs)
@@ -73,11 +73,11 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
 Seen mean_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
                      const EstimatorSettings& settings, const Wanted& wanted) {
   const std::size_t radii = radii_of(settings).size();
-  const std::size_t scales = wanted.has(&FrameOutputs::scales) && radii > 1 ? radii : 0;
+  const std::size_t scales = wanted.needs_scales() && radii > 1 ? radii : 0;
   Seen seen;
   seen.matte = matte(gpu, frame);
   const Accumulation mean =
-      accumulate(gpu, surfaces.frame, frame.estimates, settings, scales, needs_bent(settings, wanted));
+      accumulate(gpu, surfaces.frame, frame.estimates, settings, scales, moment_order(settings, wanted));
   seen.visibility = mean.visibility;
   seen.count = mean.count;
   seen.stages.count = mean.count;
@@ -111,14 +111,27 @@ FrameOutputs handed_out(const Surfaces& surfaces, const Seen& seen) {
   return out;
 }
 
+/// The outputs with the coefficients of the reflected light, and that light.
+FrameOutputs with_transfer(gpu::Recorder& gpu, const FrameInputs& frame, const GBuffer& gbuffer,
+                           const Visibility& visibility, const Wanted& wanted, FrameOutputs out) {
+  if (wanted.has(&FrameOutputs::transfer))
+    out.transfer = &transfer(gpu, gbuffer, visibility, frame.aov_from_view, "transfer");
+  if (wanted.has(&FrameOutputs::relight))
+    out.relight = &transfer(gpu, gbuffer, visibility, frame.world_from_view, "relight", &frame.environment);
+  if (wanted.has(&FrameOutputs::relight_open))
+    out.relight_open = &transfer(gpu, gbuffer, {}, frame.world_from_view, "relight open", &frame.environment);
+  return out;
+}
+
 /// All that is wanted.
 FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces, const Seen& seen,
                         const EstimatorSettings& settings, const Wanted& wanted) {
   const GBuffer& gbuffer = surfaces.frame;
-  const gpu::Buffer& open = bent_normal(gpu, gbuffer, seen.visibility.bent);
+  const bool has_open = wanted.has(&FrameOutputs::bent_normal) || wanted.has(&FrameOutputs::specular_occlusion);
+  const gpu::Buffer& open = bent_normal(gpu, gbuffer, has_open ? seen.visibility.moments : nullptr);
   const Visibility visibility =
       shape(gpu, gbuffer, seen.visibility, shaping_of(settings), frame[RawPlane::material_ao], seen.matte);
-  FrameOutputs out = counts_of(surfaces, seen);
+  FrameOutputs out = with_transfer(gpu, frame, gbuffer, seen.visibility, wanted, counts_of(surfaces, seen));
   out.ao = visibility.ao;
   out.error = seen.error;
   if (wanted.has(&FrameOutputs::scales)) out.scales = visibility.scales ? visibility.scales : visibility.ao;
@@ -146,7 +159,7 @@ FrameOutputs downloaded(gpu::Recorder& gpu, const FrameOutputs& out) {
   for (const auto& plane : out.debug) results.push_back(plane.values);
   if (out.own)
     for (const auto* part : {out.own->gbuffer.depth, out.own->gbuffer.normal, out.own->visibility.ao,
-                             out.own->visibility.scales, out.own->visibility.bent})
+                             out.own->visibility.scales, out.own->visibility.moments})
       results.push_back(part);
   for (const auto* result : results)
     if (result) gpu.download(*result);

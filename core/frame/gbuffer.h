@@ -13,6 +13,7 @@
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
 #include "core/frame/channels.h"
+#include "core/frame/environment.h"
 #include "core/frame/evidence.h"
 #include "core/frame/input_rules.h"
 #include "core/frame/raw_plane.h"
@@ -100,9 +101,10 @@ struct FrameSource {
   std::optional<Window> region;  // that is written; none: all pixels are
   // by which the frame is settled, see core/frame/settle.h; none: it is not yet
   std::optional<Evidence> evidence;
-  Notes notes;                  // guesses that are unusual, and options that the pixels speak against
-  Notes suspicious;             // on faults of the files that harm AO
-  std::uint64_t rows_read = 0;  // that were decoded, each as often as it was
+  Notes notes;                             // guesses that are unusual, and options that the pixels speak against
+  Notes suspicious;                        // on faults of the files that harm AO
+  std::optional<Environment> environment;  // that the settings name
+  std::uint64_t rows_read = 0;             // that were decoded, each as often as it was
 };
 
 /// Opens the files that the settings name and finds the channels. `with_beauty` asks for the beauty and its ambient

@@ -238,12 +238,17 @@ void check_hidden(const Settings& settings) {
          option);
 }
 
-/// Several radii make sense once each; bent normals need an estimator that finds open directions.
+/// Several radii make sense once each; bent normals and transfer need an estimator that finds open directions.
 void check_scales(const Settings& settings) {
   const auto& e = settings.estimator;
-  if (wants(settings.output, &FrameOutputs::bent_normal) && !searches_slices(e))
-    fail(ErrorKind::usage, "--aov bent-normal: --estimator {} finds no open directions; gtao and bitmask do",
-         e.estimator == Estimator::hbao ? "hbao" : "crytek");
+  for (const Aov& aov : aovs_of(settings.output))
+    if (aov.source >= AovSource::open_directions && aov.planes != &FrameOutputs::specular_occlusion &&
+        !searches_slices(e))
+      fail(ErrorKind::usage, "--aov {}: --estimator {} finds no open directions; gtao and bitmask do", aov.name,
+           e.estimator == Estimator::hbao ? "hbao" : "crytek");
+  for (const char* name : {"relight", "relight-open"})
+    if (settings.output.environment.empty() && std::ranges::count(split(settings.output.aovs), name) > 0)
+      fail(ErrorKind::usage, "--aov {}: it is the light of a sky: give --environment SKY.exr", name);
   if (e.further_radii.empty()) return;
   const auto radii = radii_of(e);
   if (radii.size() > kMostRadii)

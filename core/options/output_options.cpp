@@ -118,6 +118,9 @@ void add_output_rows(std::vector<SettingRow>& rows) {
   files.text("-o,--output", &S::output, "FILE.exr", "the AO, 1 = open, and what else --aov names").is_common = true;
   word_list(results, "--aov", &S::aovs, fmt::format("what OUTPUT holds: {}", fmt::join(aov_names(), ", "))).is_common =
       true;
+  OptionGroup(rows, "Output", Effect::input, &Settings::output)
+      .text("--environment", &S::environment, "SKY.exr",
+            "lat-long light: OUTPUT holds relight, what white surfaces reflect of it with occlusion");
   results.choice("ao-channels", &S::ao_channels, "mono: Y; rgb: R, G, B").others_idle([](const Settings& all) {
     return unless_aov(all, {"ao"});
   });
@@ -134,7 +137,7 @@ void add_output_rows(std::vector<SettingRow>& rows) {
   results
       .choice("aov-space", &S::aov_space, "of the normals in OUTPUT; auto: world where the camera tells it, else view")
       .others_idle([](const Settings& all) {
-        return unless_aov(all, {"normal", "bent-normal"});
+        return unless_aov(all, {"normal", "bent-normal", "transfer"});
       });
   results
       .flag("multi-bounce", &S::multi_bounce,

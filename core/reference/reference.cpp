@@ -5,6 +5,7 @@
 #include "core/reference/reference.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <functional>
@@ -39,15 +40,47 @@ double simpson_weight(int i, int parts) {
   return i % 2 ? 4 : 2;
 }
 
-/// The integral of cos(theta - gamma) sin(theta) (sin(theta), cos(theta)), by Simpson's rule.
-Vector bent_between(double from, double to, double gamma) {
+/// The integrals over angles of a slice's side: of the arc, and of the arc times the spherical harmonics up to l = 2.
+struct Integrals {
+  double arc = 0;
+  std::array<double, kTransferPlanes> transfer{};
+};
+Integrals operator+(Integrals a, const Integrals& b) {
+  a.arc += b.arc;
+  for (std::size_t k = 0; k < kTransferPlanes; k++) a.transfer[k] += b.transfer[k];
+  return a;
+}
+Integrals operator*(double s, Integrals a) {
+  a.arc *= s;
+  for (double& x : a.transfer) x *= s;
+  return a;
+}
+Integrals operator-(const Integrals& a, const Integrals& b) { return a + -1 * b; }
+
+/// Y_00, Y_1-1, Y_10, Y_11, Y_2-2, Y_2-1, Y_20, Y_21, Y_22 of a direction.
+std::array<double, kTransferPlanes> harmonics(Vector w) {
+  const double linear = std::sqrt(3 / kPi) / 2, mixed = std::sqrt(15 / kPi) / 2;
+  return {std::sqrt(1 / kPi) / 2,
+          linear * w.y,
+          linear * w.z,
+          linear * w.x,
+          mixed * w.x * w.y,
+          mixed * w.y * w.z,
+          std::sqrt(5 / kPi) / 4 * (3 * w.z * w.z - 1),
+          mixed * w.x * w.z,
+          mixed / 2 * (w.x * w.x - w.y * w.y)};
+}
+
+/// The integrals of cos(theta - gamma) sin(theta) Y_lm(theta), by Simpson's rule. tangent, eye: of the side.
+std::array<double, kTransferPlanes> transfer_between(double from, double to, double gamma, Vector tangent, Vector eye) {
   const int parts = 2 * (1 + int(8 * (to - from)));
   const double width = (to - from) / parts;
-  Vector sum;
+  std::array<double, kTransferPlanes> sum{};
   for (int i = 0; i <= parts; i++) {
     const double theta = from + i * width;
     const double weight = simpson_weight(i, parts) * width / 3 * std::cos(theta - gamma) * std::sin(theta);
-    sum = sum + weight * Vector{0, std::sin(theta), std::cos(theta)};
+    const auto y = harmonics(std::sin(theta) * tangent + std::cos(theta) * eye);
+    for (std::size_t k = 0; k < kTransferPlanes; k++) sum[k] += weight * y[k];
   }
   return sum;
 }
@@ -55,13 +88,15 @@ Vector bent_between(double from, double to, double gamma) {
 /// The blocked angles of one side of a slice: disjoint, sorted intervals.
 class Blocked {
  public:
-  Blocked(double gamma, bool with_bent) : gamma_(gamma), with_bent_(with_bent) {}
+  using Transfer = std::function<std::array<double, kTransferPlanes>(double from, double to)>;
 
-  /// Blocks [from, to] and returns the integrals over the part of it that was open: the arc's, and the bent normal's
-  /// along T and V.
-  Vector add(double from, double to) {
+  /// Without a transfer only arcs are integrated.
+  Blocked(double gamma, const Transfer& transfer) : gamma_(gamma), transfer_(transfer) {}
+
+  /// Blocks [from, to] and returns the integrals over the part of it that was open.
+  Integrals add(double from, double to) {
     if (!(to > from)) return {};
-    Vector fresh = integrals(from, to);
+    Integrals fresh = integrals(from, to);
     std::vector<std::pair<double, double>> kept;
     for (const auto& [a, b] : intervals_) {
       if (b < from || a > to) {
@@ -78,13 +113,14 @@ class Blocked {
   }
 
  private:
-  Vector integrals(double from, double to) const {
-    const Vector arcs{arc(to, gamma_) - arc(from, gamma_), 0, 0};
-    return with_bent_ ? arcs + bent_between(from, to, gamma_) : arcs;
+  Integrals integrals(double from, double to) const {
+    Integrals sum{arc(to, gamma_) - arc(from, gamma_)};
+    if (transfer_) sum.transfer = transfer_(from, to);
+    return sum;
   }
 
   double gamma_;
-  bool with_bent_;
+  const Transfer& transfer_;
   std::vector<std::pair<double, double>> intervals_;
 };
 
@@ -152,22 +188,22 @@ std::pair<double, double> span_between(const Scene& scene, const Receiver& recei
 
 /// The integrals over the blocked angles of a slice's side.
 struct Arcs {
-  Vector seen;       // blocked by visible surfaces
-  Vector completed;  // blocked by completed surfaces alone
+  Integrals seen;       // blocked by visible surfaces
+  Integrals completed;  // blocked by completed surfaces alone
 };
 
 /// Computes the blocked angles of one side of a slice.
 class Blocking {
  public:
   Blocking(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings,
-           bool with_bent)
+           const Blocked::Transfer& transfer)
       : scene_(scene),
         receiver_(receiver),
         side_(side),
         settings_(settings),
         limit_(side.gamma + kPi / 2),
         lowest_(limit_ - std::asin(settings.bias)),
-        blocked_(side.gamma, with_bent) {}
+        blocked_(side.gamma, transfer) {}
 
   Arcs arcs() {
     const ReferenceLine line = line_of(scene_, receiver_, side_, settings_);
@@ -178,8 +214,8 @@ class Blocking {
   }
 
  private:
-  Vector by_samples(const ReferenceLine& line) {
-    Vector sum;
+  Integrals by_samples(const ReferenceLine& line) {
+    Integrals sum;
     for (int i = line.surfaces; i < int(line.samples.size()); i++) {
       const Sample& sample = line[i];
       const Vector offset = sample.position - receiver_.position;
@@ -209,8 +245,8 @@ class Blocking {
     return angle < 0 ? limit_ : std::min(std::max(angle, front), limit_);
   }
 
-  Vector by_segment(const CompletedSegment& segment) {
-    Vector sum;
+  Integrals by_segment(const CompletedSegment& segment) {
+    Integrals sum;
     Vector from = segment.nearer;
     const Vector along = segment.farther - segment.nearer;
     const int parts = int(std::ceil(
@@ -224,7 +260,7 @@ class Blocking {
   }
 
   /// Blocks a straight part: what it blocks is one interval of angles.
-  Vector by_part(Vector from, Vector to, double thickness) {
+  Integrals by_part(Vector from, Vector to, double thickness) {
     double low = INFINITY, high = -INFINITY, back = 0, weight = 0;
     for (const Vector end : {from, to}) {
       const auto solid = depths_of(scene_, receiver_, end, thickness, settings_.radius);
@@ -250,11 +286,11 @@ class Blocking {
 
 struct Openness {
   double visibility = 1;
-  double completed = 0;  // the visibility that completed surfaces take
-  Vector bent;           // the mean open direction
+  double completed = 0;                            // the visibility that completed surfaces take
+  std::array<double, kTransferPlanes> transfer{};  // see reference_transfer()
 };
 
-Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceSettings& settings, bool with_bent) {
+Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceSettings& settings, bool with_transfer) {
   const Vector v = receiver.eye;
   const double a = 1 / (1 + v.z);
   const double b = -v.x * v.y * a;
@@ -263,7 +299,7 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
   double seen = 0;
   double completed = 0;
   double whole = 0;
-  Vector bent;
+  Integrals open;
   for (int s = 0; s < settings.slices; s++) {
     const double azimuth = kPi * (s + 0.5) / settings.slices;
     const Vector t = std::cos(azimuth) * basis_x + std::sin(azimuth) * basis_y;
@@ -294,19 +330,19 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
       }
       const Side side{
           tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels, reach};
-      const Arcs blocked = Blocking(scene, receiver, side, settings, with_bent).arcs();
-      seen += weight * blocked.seen.x;
-      completed += weight * blocked.completed.x;
-      if (with_bent) {
-        const double end = side.gamma + kPi / 2;
-        const Vector open = bent_between(0, end, side.gamma) - blocked.seen - blocked.completed;
-        bent = bent + weight * (open.y * tangent + open.z * v);
-      }
+      Blocked::Transfer transfer;
+      if (with_transfer)
+        transfer = [&](double from, double to) { return transfer_between(from, to, side.gamma, tangent, v); };
+      const Arcs blocked = Blocking(scene, receiver, side, settings, transfer).arcs();
+      seen += weight * blocked.seen.arc;
+      completed += weight * blocked.completed.arc;
+      if (with_transfer)
+        open = open + weight * (Integrals{0, transfer(0, side.gamma + kPi / 2)} - blocked.seen - blocked.completed);
     }
   }
   if (!(whole > 0)) return {};
   const double visibility = std::clamp(1 - (seen + completed) / whole, 0.0, 1.0);
-  return {visibility, std::clamp(1 - seen / whole, 0.0, 1.0) - visibility, (1 / whole) * bent};
+  return {visibility, std::clamp(1 - seen / whole, 0.0, 1.0) - visibility, ((1 / whole) * open).transfer};
 }
 
 }  // namespace
@@ -335,7 +371,7 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings, bool 
 namespace {
 
 /// Calls `take` with the index and the openness of every pixel that was asked for and is not sky, from several threads.
-void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool with_bent,
+void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool with_transfer,
                 const std::function<void(std::size_t, const Openness&)>& take) {
   const Scene scene(frame, settings.hidden, settings.separation);
   constexpr std::size_t kChunk = 64;  // pixels that a thread takes at a time
@@ -351,7 +387,7 @@ void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool 
         if (z == 0) continue;
         const Vector position = scene.position(x, y, z);
         const Vector eye = scene.toward_eye(position);
-        take(index, openness(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings, with_bent));
+        take(index, openness(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings, with_transfer));
       }
   };
   const int count = settings.threads > 0 ? settings.threads : int(std::max(1u, std::thread::hardware_concurrency()));
@@ -376,13 +412,13 @@ std::vector<float> reference_completed(const HostFrame& frame, const ReferenceSe
   return completed;
 }
 
-std::vector<float> reference_bent(const HostFrame& frame, const ReferenceSettings& settings) {
+std::vector<float> reference_transfer(const HostFrame& frame, const ReferenceSettings& settings) {
   const std::size_t pixels = frame.data.pixels();
-  std::vector<float> bent(3 * pixels, 0.0f);
+  std::vector<float> transfer(kTransferPlanes * pixels, 0.0f);
   for_pixels(frame, settings, true, [&](std::size_t i, const Openness& open) {
-    bent[i] = float(open.bent.x), bent[i + pixels] = float(open.bent.y), bent[i + 2 * pixels] = float(open.bent.z);
+    for (std::size_t k = 0; k < kTransferPlanes; k++) transfer[i + k * pixels] = float(open.transfer[k]);
   });
-  return bent;
+  return transfer;
 }
 
 }  // namespace alcove

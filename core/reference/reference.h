@@ -55,9 +55,11 @@ std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings&
 /// asked for. Thickness is the same with and without them.
 std::vector<float> reference_completed(const HostFrame& frame, const ReferenceSettings& settings);
 
-/// Gives the mean open direction in view space, cosine weighted, as planes x, y, z: 2/3 of the normal if nothing is
-/// blocked; 0 on sky and at pixels that were not asked for.
-std::vector<float> reference_bent(const HostFrame& frame, const ReferenceSettings& settings);
+/// Gives (1 / pi) times the integral of the visibility, the cosine to the normal and the real spherical harmonics of
+/// l <= 2 in view space as planes of (l, m) = (0, 0), (1, -1), (1, 0) ... (2, 2): constants are positive, and (1, 1)
+/// goes by x. The first band is the mean open direction. 0 on sky and at pixels that were not asked for.
+inline constexpr std::size_t kTransferPlanes = 9;
+std::vector<float> reference_transfer(const HostFrame& frame, const ReferenceSettings& settings);
 
 /// Gives the visibility in [0, 1] of each pixel by the settings' estimator (gtao, hbao, crytek) with its radius, bias,
 /// falloff and kernel, intensity and power. That is its result at full resolution with so many directions and samples

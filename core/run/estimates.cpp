@@ -247,7 +247,7 @@ EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, Prep
   Wanted wanted{settings.output};
   wanted.only_own = wanted.visibility = true;
   ReadPlanes read;
-  std::vector<float> scales, bent;  // over the whole frame
+  std::vector<float> scales, moments;  // over the whole frame
   const auto compute = [&](const Window& window, const Window& part) {
     if (where.begin) where.begin(window);
     FrameInputs inputs = load_frame(where.gpu, source, window, settings, plan_.turn_of(frame), &read);
@@ -265,7 +265,7 @@ EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, Prep
     copy(own.gbuffer.normal, result.normal);
     copy(own.visibility.ao, result.values);
     copy(own.visibility.scales, scales);
-    copy(own.visibility.bent, bent);
+    copy(own.visibility.moments, moments);
   };
   const WindowLimits limits{memory_with_others(plan_, source, settings), where.room, longest_side(settings.estimator)};
   if (limits.allow(whole)) {
@@ -277,7 +277,8 @@ EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, Prep
     for (const auto& row : tiles_of(whole, surroundings, of_parts, source))
       for (const auto& tile : row) compute(surroundings.around(tile), tile);
   }
-  for (const auto* planes : {&scales, &bent}) result.values.insert(result.values.end(), planes->begin(), planes->end());
+  for (const auto* planes : {&scales, &moments})
+    result.values.insert(result.values.end(), planes->begin(), planes->end());
   result.others.seen.clear();
   result.camera = source.reading.camera;
   result.view = view_of(source.reading, whole);

@@ -322,7 +322,8 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
       output.planes.push_back({channel, type, {}});
   }
   if (wants(settings, &FrameOutputs::scales)) output.own_attributes["alcove/radii"] = radius_text(estimator);
-  if (wants(settings, &FrameOutputs::normal) || wants(settings, &FrameOutputs::bent_normal))
+  if (wants(settings, &FrameOutputs::normal) || wants(settings, &FrameOutputs::bent_normal) ||
+      wants(settings, &FrameOutputs::transfer))
     output.own_attributes["alcove/normal_space"] = in_world(source.reading.camera, settings) ? "world" : "view";
   return output;
 }
@@ -440,6 +441,10 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
   if (settings.aov_space == NormalSpace::world && !source.reading.camera.view_from_world)
     fail(ErrorKind::input,
          "{}: --set aov-space=world needs a camera with world_to_camera: give a --camera file with it", file);
+  if (source.environment && !source.reading.camera.view_from_world)
+    fail(ErrorKind::input,
+         "{}: --environment lights the world, and needs a camera with world_to_camera: give a --camera file with it",
+         file);
   if (settings.multi_bounce && !source.channels[RawPlane::beauty].empty() &&
       source.channels[RawPlane::indirect].empty())
     fail(ErrorKind::input,
@@ -459,6 +464,19 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
            "--normal-channels)",
            file, view->name);
   }
+}
+
+/// Reads the light of the settings, if they name any, and notes what nine colours miss of it.
+void read_sky(FrameSource& source, const std::string& path) {
+  if (path.empty()) return;
+  source.environment = read_environment(path, "--environment");
+  if (source.environment->missed > kMostMissed)
+    source.notes.push_back(
+        {NoteCode::sun_in_sky,
+         fmt::format("nine colours do not hold it: {:.0f} % of its light comes from elsewhere than they "
+                     "say; a sun needs a light of its own (--environment)",
+                     100 * source.environment->missed),
+         path});
 }
 
 /// Whether planes are all that the frame needs.
@@ -484,6 +502,7 @@ FrameSource open_frame(const Settings& settings, int frame) {
     fail(ErrorKind::usage,
          "{}: the beauty has no pixel of --roi, which is {}: give a region within it, or no --composite",
          source.files[source.channels[RawPlane::beauty][0].file].path(), to_string(*source.region));
+  read_sky(source, settings.output.environment);
   require_for_outputs(source, settings.output);
   return source;
 }
@@ -546,6 +565,10 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& wi
   FrameInputs inputs = inputs_of(over(source.reading, window), planes, frame);
   inputs.margin = margin_of(window, whole);
   inputs.albedo_value = settings.input.albedo_value.value_or(0);
+  if (source.environment) {
+    inputs.environment = *source.environment;
+    inputs.world_from_view = transposed(*source.reading.camera.view_from_world);
+  }
   if (in_world(source.reading.camera, settings.output))
     inputs.aov_from_view = transposed(*source.reading.camera.view_from_world);
   return inputs;

@@ -81,6 +81,7 @@ std::span<const NamedPath> named_paths() {
     };
     add("--motion", &Settings::input, &InputSettings::motion, false);
     add("--camera", &Settings::input, &InputSettings::camera, false);
+    add("--environment", &Settings::output, &OutputSettings::environment, false);
     add("--output", &Settings::output, &OutputSettings::output, true);
     add("--composite", &Settings::output, &OutputSettings::composite, true);
     add("--preview", &Settings::output, &OutputSettings::preview, true);

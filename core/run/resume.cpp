@@ -88,6 +88,7 @@ std::vector<std::string> inputs_of(const Settings& frame) {
   const InputSettings& input = frame.input;
   std::vector<std::string> files;
   if (!input.motion.empty()) files.push_back(input.motion);
+  if (!frame.output.environment.empty()) files.push_back(frame.output.environment);
   for (const auto& file : plane_file_options()) files.push_back(file.of(input));
   if (!input.matte_object.empty())
     add_manifests(files, input.matte.empty() ? main_input(input) : input.matte, input.view);

@@ -30,6 +30,7 @@ PASSES = ("use_pass_z", "use_pass_normal", "use_pass_position")
 FOR_COMPOSITE = ("use_pass_diffuse_color", "use_pass_diffuse_indirect")
 NODE_LABEL = "Alcove"
 FRAME_LABEL = "Ambient Occlusion"
+RELIGHT = "Relight by a Sky"
 HASHES = "####"  # of a frame's number in names
 
 
@@ -225,6 +226,8 @@ def command_for(scene, folder, frames):
                     "%d-%d" % (frames[0], frames[-1])]
     else:
         command += ["--frames", str(frames[0])]
+    if settings.sky:
+        command += ["--aov", "ao,transfer"]
     if settings.output == "COMPOSITE":
         command += ["--composite", os.path.join(folder, "composite.%s.exr" % name)]
     return command
@@ -317,6 +320,62 @@ def add_node(tree, kind, beside=None):
     return node
 
 
+def sky_colors(path):
+    """The nine colours of a lat-long picture."""
+    done = subprocess.run([program(), "inspect", bpy.path.abspath(path), "--json"], capture_output=True, text=True, check=False)
+    if done.returncode != 0 or "sky" not in json.loads(done.stdout or "{}"):
+        raise Failure("Alcove: %s" % (done.stderr.strip() or path + " is no lat-long sky"))
+    return json.loads(done.stdout)["sky"]
+
+
+def relight_group(colors):
+    """The group that multiplies the three layers of transfer by nine colours, which stay open to be changed within it."""
+    tree = bpy.data.node_groups.get(RELIGHT)
+    if tree is None:
+        tree = bpy.data.node_groups.new(RELIGHT, "CompositorNodeTree")
+        for name in ("transfer0", "transfer1", "transfer2", "Light"):
+            way = "OUTPUT" if name == "Light" else "INPUT"
+            if hasattr(tree, "interface"):  # from Blender 4 on
+                tree.interface.new_socket(name=name, in_out=way, socket_type="NodeSocketColor")
+            else:
+                (tree.outputs if way == "OUTPUT" else tree.inputs).new("NodeSocketColor", name)
+    tree.nodes.clear()
+
+    def mixed(kind, place, first, second):
+        node = tree.nodes.new("CompositorNodeMixRGB")
+        node.blend_type, node.location, node.inputs[0].default_value = kind, place, 1
+        tree.links.new(first, node.inputs[1])
+        if isinstance(second, tuple):
+            node.inputs[2].default_value = second
+        else:
+            tree.links.new(second, node.inputs[2])
+        return node.outputs[0]
+
+    layers, total = tree.nodes.new("NodeGroupInput"), None
+    for k, color in enumerate(colors):
+        if k % 3 == 0:
+            parts = tree.nodes.new("CompositorNodeSeparateColor")
+            parts.location = (200, -200 * k)
+            tree.links.new(layers.outputs[k // 3], parts.inputs[0])
+        for kind, sign in (("ADD", 1), ("SUBTRACT", -1)):  # sockets hold no colours below 0
+            color_part = tuple(max(0, sign * x) for x in color)
+            if total is None or any(color_part):
+                product = mixed("MULTIPLY", (400, -200 * k), parts.outputs[k % 3], (*color_part, 1))
+                total = product if total is None else mixed(kind, (600, -200 * k), total, product)
+    end = tree.nodes.new("NodeGroupOutput")
+    end.location = (1000, -1600)
+    tree.links.new(mixed("LIGHTEN", (800, -1600), total, (0, 0, 0, 1)), end.inputs[0])
+    return tree
+
+
+def relight(tree, node, colors):
+    """Puts the group behind the image node of the result."""
+    group = next((n for n in tree.nodes if n.label == RELIGHT), None) or add_node(tree, "CompositorNodeGroup", node)
+    group.label, group.node_tree = RELIGHT, relight_group(colors)
+    for number in range(3):
+        tree.links.new(node.outputs["transfer%d" % number], group.inputs[number])
+
+
 def show(image, frames):
     """Shows the result in an image editor, at best in the one that shows the rendered frame. Returns whether there is one."""
     editors = [area.spaces.active for window in bpy.context.window_manager.windows for area in window.screen.areas
@@ -353,6 +412,8 @@ def load_result(scene, folder, frames):
         node.use_auto_refresh = True
     if is_new and hasattr(scene, "node_tree"):
         wire(tree, node, stem)
+    if scene.alcove.sky and stem == "ao":
+        relight(tree, node, sky_colors(scene.alcove.sky))
     for other in tree.nodes:
         other.select = other == node
     tree.nodes.active = node
@@ -534,6 +595,9 @@ class AlcoveSettings(bpy.types.PropertyGroup):
         name="Load", default="AO",
         items=[("AO", "AO", "The ambient occlusion"),
                ("COMPOSITE", "Composite", "The picture with ambient occlusion in its indirect light")])
+    sky: bpy.props.StringProperty(
+        name="Relight by", description="A lat-long picture: a node group lights white surfaces by it, with its occlusion",
+        subtype="FILE_PATH")
     folder: bpy.props.StringProperty(
         name="Folder", description="Folder of frames, cameras and results", default="//alcove", subtype="DIR_PATH")
 
@@ -548,7 +612,7 @@ class ALCOVE_PT_panel(bpy.types.Panel):
     def draw(self, context):
         layout, settings = self.layout, context.scene.alcove
         layout.use_property_split = True
-        for name in ("radius", "preset", "output", "folder"):
+        for name in ("radius", "preset", "output", "sky", "folder"):
             layout.prop(settings, name)
             if name == "radius" and settings.radius == 0:
                 proposed = Proposal.of(context)

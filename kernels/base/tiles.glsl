@@ -89,10 +89,3 @@ uint invocation_of_tile(ivec2 tiles, uvec2 invocation) {
   const uint row = (uint(tiles.x) + kGroupX - 1u) / kGroupX * kGroupX;
   return invocation.y * row + invocation.x;
 }
-
-/// A mean open direction as the estimators store it. It lies in [0, 1], so that filters of visibility take it as it
-/// is.
-vec3 stored_bent(vec3 bent) { return 0.5 + 0.5 * bent; }
-
-/// The mean open direction of an open hemisphere, whichever slices are drawn.
-vec3 open_bent(vec3 normal) { return 2.0 / 3.0 * normal; }

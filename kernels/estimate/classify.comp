@@ -18,9 +18,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
 #include "kernels/base/view.glsl"
-#include "kernels/base/normal.glsl"
 #include "kernels/base/clearance.glsl"
 #include "kernels/base/tiles.glsl"
+#include "kernels/base/moments.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kSparse = 0;             // 1: only sites have an estimate
@@ -29,19 +29,19 @@ const bool kSkips = (kMode & kClassifySkips) != 0u;
 const bool kReuses = (kMode & kClassifyReuses) != 0u;
 const bool kSelects = (kMode & kClassifySelects) != 0u;
 const bool kLayered = (kMode & kClassifyLayered) != 0u;
+const uint kOrder = (kMode & kClassifyWithSecond) != 0u ? 2u : (kMode & kClassifyWithFirst) != 0u ? 1u : 0u;
 const bool kTellsLayered = kSkips && kLayered;
 layout(scalar, push_constant) uniform Push { ClassifyParams params; };
 readonly buffer Bounds { vec2 bounds[]; };  // from bounds; only with kClassifyLayered and kClassifySkips
 // one uint per corner of blocks, (columns + 1) x (rows + 1): how many blocks above and left of it have changed
 readonly buffer Changes { uint changes[]; };
-readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
-readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
-writeonly buffer List { uint list[]; };     // one uint per tile, as many as are counted, in no order: see pack_tile
-buffer Counts { TileCounts counts; };       // zeros before
+readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
+writeonly buffer List { uint list[]; };    // one uint per tile, as many as are counted, in no order: see pack_tile
+buffer Counts { TileCounts counts; };      // zeros before
 // one float per pixel, 1 at receivers of tiles that are not listed; in the plane that the parameters name
 writeonly buffer Ao { float ao[]; };
-// planes x, y, z as estimators write them, for the same; only with kClassifyWithBent
-writeonly buffer Bent { float bent[]; };
+// as many planes as estimators write, for the same; only with kClassifyWith*
+writeonly buffer Moments { float moments[]; };
 // one float per pixel, 0 at receivers of tiles that are not listed; only with kClassifyWithCompleted
 writeonly buffer Completed { float completed[]; };
 // one uint per tile, from needed: not 0 where estimates are needed; only with kClassifySelects
@@ -163,11 +163,7 @@ void write_open(View view, ivec2 tile) {
     const int index = index_of(view, pixel);
     ao[index + int(params.plane) * plane] = 1.0;
     if ((kMode & kClassifyWithCompleted) != 0u) completed[index] = 0.0;
-    if ((kMode & kClassifyWithBent) != 0u) {
-      const vec3 stored =
-          depth[index] >= kSkyDepth ? stored_bent(vec3(0)) : stored_bent(open_bent(unpack_normal(normal[index])));
-      for (int c = 0; c < 3; c++) bent[index + c * plane] = stored[c];
-    }
+    for (int k = 0; k < moments_in(kOrder); k++) moments[index + k * plane] = stored_moment(0.0);
   }
 }
 

@@ -28,13 +28,14 @@ struct BoundsParams {
   uint hidden;  // planes of hidden surfaces
 };
 
-ALCOVE_CONSTANT uint kClassifySkips = 1;  // else every tile is listed, and hidden surfaces count everywhere
-ALCOVE_CONSTANT uint kClassifyWithBent = 2;
+ALCOVE_CONSTANT uint kClassifySkips = 1;      // else every tile is listed, and hidden surfaces count everywhere
+ALCOVE_CONSTANT uint kClassifyWithFirst = 2;  // moments
 ALCOVE_CONSTANT uint kClassifyWithCompleted = 4;
 // with kClassifySkips: reads the changes, and leaves tiles as they are within whose reach nothing has changed
 ALCOVE_CONSTANT uint kClassifyReuses = 8;
 ALCOVE_CONSTANT uint kClassifySelects = 16;  // with kClassifySkips: other tiles count as sky
 ALCOVE_CONSTANT uint kClassifyLayered = 32;  // surfaces may be hidden: listed tiles say where these may count
+ALCOVE_CONSTANT uint kClassifyWithSecond = 64;
 
 // px of the frame beyond the reach: their depths may decide a normal that was reconstructed, or which surface a pixel
 // of a smaller image shows; of hidden surfaces also which ends with the one before it, and closes its solid
@@ -56,8 +57,9 @@ struct ClassifyParams {
   ivec2 needed_from, needed_to;
 };
 
-ALCOVE_CONSTANT uint kWithBent = 4;          // a bit beside kFalloff*: bent normals too
+ALCOVE_CONSTANT uint kWithFirst = 4;         // a bit beside kFalloff*: moments of first order too
 ALCOVE_CONSTANT uint kWithCompleted = 8;     // another one: what completed surfaces take, too
+ALCOVE_CONSTANT uint kWithSecond = 16;       // moments of second order, beside those of first
 ALCOVE_CONSTANT uint kThicknessWidth = 0;    // as deep as wide
 ALCOVE_CONSTANT uint kThicknessLength = 1;   // as HorizonParams says
 ALCOVE_CONSTANT uint kThicknessEndless = 2;  // solid as far as the sphere of the radius

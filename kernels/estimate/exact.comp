@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals, the profiles of the lines of one direction.
-// Out: the sums of blocked and of whole arcs; after the last direction visibility, 1 = open. The same of the mean open
-// direction (see bent.glsl), where it is asked for.
+// Out: the sums of blocked and of whole arcs; after the last direction visibility, 1 = open. The same of the moments of
+// what is blocked (see moments.glsl), where they are asked for.
 //
 // horizon.comp takes samples; this kernel searches without gaps. It has the same integrals, over slices of its
 // own. The steps have their numbers at the code:
@@ -35,7 +35,8 @@
 #include "kernels/base/normal.glsl"
 #include "kernels/base/arcs.glsl"
 #include "kernels/base/noise.glsl"
-#include "kernels/estimate/bent.glsl"
+#include "kernels/base/moments.glsl"
+#include "kernels/estimate/arc_moments.glsl"
 #include "kernels/base/tiles.glsl"
 #include "kernels/base/clearance.glsl"
 #include "kernels/estimate/slice.glsl"
@@ -47,8 +48,8 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kListed = 0;
 // bits of kExact*: where surfaces go on, and whether what they block so is told apart
 layout(constant_id = 1) const uint kCompletes = 0;
-layout(constant_id = 2) const uint kBentId = 0;  // 1: bent normals too
-layout(constant_id = 3) const uint kSlots = 1;   // of the profile, 1 to 1 + kMostHidden
+layout(constant_id = 2) const uint kOrder = 0;  // of moments, 0 to 2
+layout(constant_id = 3) const uint kSlots = 1;  // of the profile, 1 to 1 + kMostHidden
 // 1: behind the slots' planes is one of the first surfaces, which go on unseen where no slot goes on
 layout(constant_id = 4) const uint kUnseen = 0;
 layout(scalar, push_constant) uniform Push { ExactParams params; };
@@ -66,14 +67,12 @@ readonly buffer GoesOn { uint goes_on[]; };     // from complete; only with kExa
 readonly buffer Behind { uint behind[]; };      // from complete; only with kExactBehind
 // one float per pixel, visibility that completed surfaces took; only with kExactApart
 buffer Completed { float completed[]; };
-// planes x, y, z of the sum of the bent_to() of what is blocked, in view space; after the last slice the mean open
-// direction b as 0.5 + 0.5 b. Only with kBentId.
-buffer Bent { float bent[]; };
+// planes of the sums of the moments of what is blocked, in view space; after the last slice the mean ones, see
+// stored_moment(). Only with kOrder.
+buffer Moments { float moments[]; };
 readonly buffer Own { uint own[]; };  // from profile; only with several kSlots
 // one float per pixel, depth of the first surfaces that may block; only with kExactBorder
 readonly buffer Occluders { float occluder_depth[]; };
-
-const bool kBent = kBentId != 0u;
 
 const bool kGoesBeyond = (kCompletes & kExactBorder) != 0u;
 const bool kGoesOn = (kCompletes & kExactBehind) != 0u;
@@ -341,22 +340,26 @@ float arc_of(Side side, Search search, Blocked blocked) {
          arc_of(side, blocked.sectors & ~sectors_below(blocked.own, search.shift));
 }
 
-/// bent_to() over what is blocked; exactly 0 where the own surface blocks nothing, too.
-vec2 bent_of(Side side, Search search, Blocked blocked) {
-  vec2 own = vec2(0);
+/// first_to() over what is blocked, and second_to(); exactly 0 where the own surface blocks nothing, too.
+mat2 moments_of(Side side, Search search, Blocked blocked) {
+  mat2 own = mat2(0);
   if (blocked.own > slope_of(side.ahead)) {
     const vec2 top = normalize(place_at(blocked.own));
-    own = bent_to(-side.sin_gamma, side.cos_gamma, side.cos_gamma, side.sin_gamma) -
-          bent_to(top.y, top.x, side.cos_gamma, side.sin_gamma);
+    const float cosine = side.cos_gamma, sine = side.sin_gamma, end = side.gamma + kHalfPi;
+    own[0] = first_to(-sine, cosine, cosine, sine) - first_to(top.y, top.x, cosine, sine);
+    if (kOrder > 1u)
+      own[1] =
+          second_to(-sine, cosine, end, cosine, sine) - second_to(top.y, top.x, angle_of(top.y, top.x), cosine, sine);
   }
-  return own + bent_of(side, blocked.sectors & ~sectors_below(blocked.own, search.shift));
+  const uint others = blocked.sectors & ~sectors_below(blocked.own, search.shift);
+  return own + mat2(first_of(side, others), kOrder > 1u ? second_of(side, others) : vec2(0));
 }
 
 /// The blocked part of a side's integrals.
 struct BlockedArcs {
   float arc;
   float unseen;  // of the arc: what only completed surfaces block; only with kExactApart
-  vec2 bent;     // bent_to(), across the eye's ray and towards it; only with kBent
+  mat2 moments;  // across the eye's ray and towards it; only with kOrder
 };
 
 /// The walks along the profiles of a line: one of each slot, and one for what is unseen.
@@ -548,7 +551,7 @@ void add_border(inout Found found, Context c) {
 BlockedArcs arcs_of(Context c, Found found) {
   const float arc = arc_of(c.side, c.search, found.all);
   return BlockedArcs(arc, kTellsApart ? arc - arc_of(c.side, c.search, found.seen) : 0.0,
-                     kBent ? bent_of(c.side, c.search, found.all) : vec2(0));
+                     kOrder > 0u ? moments_of(c.side, c.search, found.all) : mat2(0));
 }
 
 /// 3. Where the line has one profile: a walk along it.
@@ -636,14 +639,12 @@ BlockedArcs blocked_by_several(Context c) {
   return arcs_of(c, found);
 }
 
-/// Adds what a direction blocks to the sum of the pixel's bent_to(), of which the last one makes the mean open
-/// direction.
-void add_bent(int index, int plane, vec3 n, vec3 blocked, float whole) {
-  for (int c = 0; c < 3; c++) {
-    const int at = index + c * plane;
-    const float sum = params.is_first == 0 ? bent[at] + blocked[c] : blocked[c];
-    const float mean = open_bent(n)[c] - (whole > 0.0 ? sum / whole : 0.0);
-    bent[at] = params.is_last != 0 ? stored_bent(vec3(mean)).x : sum;
+/// Adds what a direction blocks to the sums of the pixel's moments, of which the last one makes the mean.
+void add_moments(int index, int plane, mat3 blocked, float whole) {
+  for (int k = 0; k < moments_in(kOrder); k++) {
+    const int at = index + k * plane;
+    const float sum = params.is_first == 0 ? moments[at] + moment(blocked, k) : moment(blocked, k);
+    moments[at] = params.is_last != 0 ? stored_moment(whole > 0.0 ? sum / whole : 0.0) : sum;
   }
 }
 
@@ -668,7 +669,7 @@ void main() {
   const float z = depth[index];
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
-    for (int c = 0; kBent && c < 3; c++) bent[index + c * pixels] = stored_bent(vec3(0)).x;
+    for (int k = 0; k < moments_in(kOrder); k++) moments[index + k * pixels] = stored_moment(0.0);
     return;
   }
   const int line = at.y - shift_at(lines, at.x), row = row_of(lines, line, extent.y) * extent.x;
@@ -684,7 +685,8 @@ void main() {
   const float facing = max(dot(point.normal, point.eye), kLeastWeight);
   const int slot = kSlots > 1u ? int(own[row + at.x]) : 0;
   float blocked = 0.0, whole = 0.0, unseen = 0.0;
-  vec2 bent_blocked = vec2(0);  // along the line, and away from the eye
+  mat3 blocked_moments = mat3(0);
+  const mat2x3 in_view = mat2x3(vec3(plane.along, 0), away_of(view, plane));
   if (weight >= kLeastWeight) {
     const vec2 across_eye = vec2(-point.eye.y, point.eye.x);
     const float sine = radius / point.eye_distance, cosine = sqrt(max(0.0, 1.0 - sine * sine));
@@ -716,7 +718,10 @@ void main() {
       const BlockedArcs arcs = kWalks == 1 ? blocked_by_one(c) : blocked_by_several(c);
       blocked += share * weight * arcs.arc;
       unseen += share * weight * arcs.unseen;
-      bent_blocked += share * weight * (arcs.bent.x * search.across + arcs.bent.y * point.eye);
+      if (kOrder > 0u)
+        blocked_moments += share * weight *
+                           moments_of(mat2x3(arcs.arc, arcs.moments[0], arcs.moments[1], 0), in_view * search.across,
+                                      in_view * point.eye);
       sign += 2;
     } while (sign <= 1);
   }
@@ -729,8 +734,7 @@ void main() {
   if (kTellsApart && whole > 0.0)
     completed[index] =
         clamp((last_whole > 0.0 ? completed[index] * last_whole : 0.0) + unseen, 0.0, max(blocked, 0.0)) / whole;
-  if (kBent)
-    add_bent(index, pixels, n, bent_blocked.x * vec3(plane.along, 0) + bent_blocked.y * away_of(view, plane), whole);
+  add_moments(index, pixels, blocked_moments, whole);
   // 9.
   if (params.is_last != 0) blocked = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
   ao[ao_index] = blocked;

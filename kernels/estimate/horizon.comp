@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals.
-// Out: visibility, 1 = open; where they are asked for, the mean open direction (see bent.glsl), and the visibility that
-// completed surfaces took.
+// Out: visibility, 1 = open; where they are asked for, the moments of the blocked directions (see moments.glsl), and
+// the visibility that completed surfaces took.
 //
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016. Lines are those of the listing
 // of its algorithm in the edition of 2019 (Technical Memo ATVI-TR-19-01). The steps have their numbers at the code:
@@ -40,7 +40,8 @@
 #include "kernels/base/arcs.glsl"
 #include "kernels/base/noise.glsl"
 #include "kernels/base/tiles.glsl"
-#include "kernels/estimate/bent.glsl"
+#include "kernels/base/moments.glsl"
+#include "kernels/estimate/arc_moments.glsl"
 #include "kernels/base/clearance.glsl"
 #include "kernels/estimate/slice.glsl"
 #include "kernels/estimate/sectors.glsl"
@@ -65,8 +66,8 @@ readonly buffer List { uint list[]; };                         // one uint per l
 readonly buffer Sites { uint sites[]; };                       // one uint per site, from list_sites; only if sparse
 readonly buffer SiteCountsBuffer { SiteCounts site_counts; };  // only if sparse
 readonly buffer Counts { TileCounts counts; };
-// planes x, y, z of the mean open direction b in view space as 0.5 + 0.5 b; only with kWithBent
-writeonly buffer Bent { float bent[]; };
+// planes of the moments of the blocked directions in view space, see stored_moment(); only with kWithFirst
+writeonly buffer Moments { float moments[]; };
 // one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
 writeonly buffer Completed { float completed[]; };
 readonly buffer Hidden { float hidden[]; };  // planes of hidden surfaces that may block, see GBuffer; with layers only
@@ -75,8 +76,8 @@ readonly buffer Hidden { float hidden[]; };  // planes of hidden surfaces that m
 // this file, since drivers take long over code that is left out by a specialization constant alone.
 const int kSurfaces = ALCOVE_SURFACES;
 
-const uint kFalloff = kMode & ~(kWithBent | kWithCompleted);
-const bool kBent = (kMode & kWithBent) != 0u;
+const uint kFalloff = kMode & ~(kWithFirst | kWithSecond | kWithCompleted);
+const uint kOrder = (kMode & kWithSecond) != 0u ? 2u : (kMode & kWithFirst) != 0u ? 1u : 0u;
 const bool kTellsCompleted = (kMode & kWithCompleted) != 0u;
 const bool kHard = kFalloff == kFalloffNone;
 const uint kThickness = kSolid & 3u;
@@ -114,20 +115,26 @@ struct Blocked {
   uint sectors;
 };
 
-/// arc_to() and, with bent normals, bent_to().
-vec3 arcs_to(Side side, vec2 place) {
-  const vec2 direction = place * inversesqrt(dot(place, place));
-  return vec3(arc_to(side, place), kBent ? bent_to(direction.y, direction.x, side.cos_gamma, side.sin_gamma) : vec2(0));
+/// arc_to() and, with moments, first_to() in the first column and second_to() in the second one, whose last row is 0.
+mat2x3 arcs_to(Side side, vec2 place) {
+  const vec2 d = place * inversesqrt(dot(place, place));
+  const float cosine = side.cos_gamma, sine = side.sin_gamma;
+  return mat2x3(arc_to(side, place), kOrder > 0u ? first_to(d.y, d.x, cosine, sine) : vec2(0),
+                kOrder > 1u ? second_to(d.y, d.x, angle_of(d.y, d.x), cosine, sine) : vec2(0), 0);
 }
 
 /// These integrals over a set of sectors.
-vec3 arcs_of(Side side, uint sectors) { return vec3(arc_of(side, sectors), kBent ? bent_of(side, sectors) : vec2(0)); }
+mat2x3 arcs_of(Side side, uint sectors) {
+  return mat2x3(arc_of(side, sectors), kOrder > 0u ? first_of(side, sectors) : vec2(0),
+                kOrder > 1u ? second_of(side, sectors) : vec2(0), 0);
+}
 
 /// 9. These integrals over what is blocked.
-vec3 blocked_arcs(Side side, Blocked blocked, float shift) {
+mat2x3 blocked_arcs(Side side, Blocked blocked, float shift) {
   const float plane = slope_of(side.ahead), far = max(blocked.far, plane);
   const bool is_exact = !kAllInSectors && blocked.near > far;
-  const vec3 own = is_exact ? arcs_to(side, place_at(far)) - arcs_to(side, place_at(blocked.near)) : vec3(0);
+  mat2x3 own = mat2x3(0);
+  if (is_exact) own = arcs_to(side, place_at(far)) - arcs_to(side, place_at(blocked.near));
   if (kThickness == kThicknessEndless && kSurfaces == 1 && !kAllInSectors) return own;
   uint others;
   if (kAllInSectors) {
@@ -202,9 +209,9 @@ vec2 slopes_of(Sample s, bool crosses, float crossing) {
 /// The blocked directions that a search has found.
 struct Found {
   Blocked blocked;
-  Blocked completed;    // without falloff: by completed surfaces
-  vec3 sum, last_arcs;  // with falloff: the weighed integrals, and those of all that is blocked so far
-  float completed_sum;  // with falloff: what completed surfaces added to the sum
+  Blocked completed;      // without falloff: by completed surfaces
+  mat2x3 sum, last_arcs;  // with falloff: the weighed integrals, and those of all that is blocked so far
+  float completed_sum;    // with falloff: what completed surfaces added to the sum
 };
 
 /// Adds what lies between two slopes, the larger one first, to what is blocked.
@@ -221,12 +228,12 @@ void block(inout Blocked blocked, vec2 slopes, float shift) {
 /// 8. With falloff: adds the new part of what is blocked, weighed by the distance of a place. Returns that part of the
 /// arc.
 float add_faded(inout Found found, Side side, Reach reach, Draw draw, vec2 place) {
-  const vec3 arcs = blocked_arcs(side, found.blocked, draw.shift);
+  const mat2x3 arcs = blocked_arcs(side, found.blocked, draw.shift);
   const float weight = falloff_weight(kFalloff, length(place), reach.falloff_start, reach.radius);
-  const vec3 added = weight * (arcs - found.last_arcs);
+  const mat2x3 added = weight * (arcs - found.last_arcs);
   found.sum += added;
   found.last_arcs = arcs;
-  return added.x;
+  return added[0].x;
 }
 
 /// 7. Adds what a completed surface blocks.
@@ -592,11 +599,12 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
-/// 4. to 9. The blocked part of a side's integrals, and the part of its arc that completed surfaces block.
-vec4 search(Receiver r, Side side, Reach reach, Draw draw) {
+/// 4. to 9. The blocked part of a side's integrals; in the last row of the second column the part of its arc that
+/// completed surfaces block.
+mat2x3 search(Receiver r, Side side, Reach reach, Draw draw) {
   const int count = min(int(kSteps), int(side.reach));
   const Blocked nothing = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
-  Found found = Found(nothing, nothing, vec3(0), vec3(0), 0.0);
+  Found found = Found(nothing, nothing, mat2x3(0), mat2x3(0), 0.0);
   if (kThickness == kThicknessEndless)
     search_endless(found, r, side, reach, draw, count);
   else if (kSurfaces > 1)
@@ -604,12 +612,16 @@ vec4 search(Receiver r, Side side, Reach reach, Draw draw) {
   else
     search_runs(found, r, side, reach, draw, count);
   if (kBeyondBorder && side.reach < side.whole_reach) complete_beyond(found, r, side, reach, draw);
-  if (!kHard) return vec4(found.sum, found.completed_sum);
+  if (!kHard) {
+    found.sum[1].z = found.completed_sum;
+    return found.sum;
+  }
   const Blocked all =
       Blocked(max(found.blocked.near, found.completed.near), min(found.blocked.far, found.completed.far),
               found.blocked.sectors | found.completed.sectors);
-  const vec3 arcs = blocked_arcs(side, all, draw.shift);
-  return vec4(arcs, kTellsCompleted ? arcs.x - blocked_arcs(side, found.blocked, draw.shift).x : 0.0);
+  mat2x3 arcs = blocked_arcs(side, all, draw.shift);
+  if (kTellsCompleted) arcs[1].z = arcs[0].x - blocked_arcs(side, found.blocked, draw.shift)[0].x;
+  return arcs;
 }
 
 /// Random numbers of a side, from those of its pixel. The boundaries of the sectors move by the fraction of a multiple
@@ -622,11 +634,11 @@ Draw draw_of(vec2 noise, uint slice, uint side) {
 
 #include "kernels/estimate/receivers.glsl"
 
-void write_bent(int index, int plane, vec3 b) {
-  for (int c = 0; c < 3; c++) bent[index + c * plane] = stored_bent(b)[c];
+void write_moments(int index, int plane, mat3 blocked) {
+  for (int k = 0; k < moments_in(kOrder); k++) moments[index + k * plane] = stored_moment(moment(blocked, k));
 }
 
-/// Writes the visibility of a pixel and, where it is asked for, its mean open direction.
+/// Writes the visibility of a pixel and, where they are asked for, the moments of what is blocked.
 void estimate(ivec2 pixel, uint slices) {
   const View view = params.view;
   const int index = index_of(view, pixel);
@@ -636,7 +648,7 @@ void estimate(ivec2 pixel, uint slices) {
   if (z >= kSkyDepth) {
     ao[ao_index] = 1.0;
     if (kTellsCompleted) completed[index] = 0.0;
-    if (kBent) write_bent(index, plane, vec3(0));
+    write_moments(index, plane, mat3(0));
     return;
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius, params.depth_precision);
@@ -645,7 +657,7 @@ void estimate(ivec2 pixel, uint slices) {
   float blocked = 0.0;
   float whole = 0.0;
   float completed_arcs = 0.0;
-  vec3 bent_blocked = vec3(0);
+  mat3 blocked_moments = mat3(0);
   uint s = 0u;
   do {
     const Slice slice = slice_at(view, r, s, slices, noise.x);  // 1. and 2.
@@ -654,10 +666,10 @@ void estimate(ivec2 pixel, uint slices) {
     int sign = -1;
     do {
       const Side side = side_of(view, r, slice, float(sign), reach);  // 3.
-      const vec4 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)));
-      blocked += arcs.x;
-      if (kTellsCompleted) completed_arcs += arcs.w;
-      if (kBent) bent_blocked += arcs.y * float(sign) * slice.t + arcs.z * r.eye;
+      const mat2x3 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)));
+      blocked += arcs[0].x;
+      if (kTellsCompleted) completed_arcs += arcs[1].z;
+      if (kOrder > 0u) blocked_moments += moments_of(arcs, float(sign) * slice.t, r.eye);
       sign += 2;
     } while (sign <= 1);
   } while (++s < slices);
@@ -665,7 +677,7 @@ void estimate(ivec2 pixel, uint slices) {
   const float visibility = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
   ao[ao_index] = visibility;
   if (kTellsCompleted) completed[index] = whole > 0.0 ? clamp(completed_arcs / whole, 0.0, 1.0 - visibility) : 0.0;
-  if (kBent) write_bent(index, plane, open_bent(r.normal) - (whole > 0.0 ? bent_blocked / whole : vec3(0)));
+  write_moments(index, plane, whole > 0.0 ? blocked_moments / whole : mat3(0));
 }
 
 void main() {

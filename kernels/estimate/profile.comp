@@ -29,7 +29,6 @@
 #include "kernels/estimate/exact.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/arcs.glsl"
-#include "kernels/estimate/bent.glsl"
 #include "kernels/base/clearance.glsl"
 #include "kernels/estimate/slice.glsl"
 #include "kernels/estimate/lines.glsl"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: what converge says of every tile.
-// Out: the tiles to go on with; of the others the error and, where it is asked for, the mean open direction.
+// Out: the tiles to go on with; of the others the error and, where they are asked for, the moments of what is blocked.
 //
 // Few directions agree by chance, or all miss the same occluder, and then they do so at all pixels of a tile alike: a
 // mean over the tile does not help. Two things are held against it. After 4 directions the difference counts four
@@ -13,10 +13,10 @@
 #include "kernels/estimate/exact.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/tiles.glsl"
-#include "kernels/base/normal.glsl"
+#include "kernels/base/moments.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = 0) const uint kBent = 0;  // 1: bent normals too
+layout(constant_id = 0) const uint kOrder = 0;  // of moments, 0 to 2
 layout(scalar, push_constant) uniform Push { RefineParams params; };
 readonly buffer Depth { float depth[]; };         // one float per pixel, from prepare
 readonly buffer Judged { JudgedTile judged[]; };  // one per tile, from converge
@@ -30,12 +30,11 @@ writeonly buffer NextList { uint next[]; };     // one uint per tile that needs 
 buffer NextCounts { TileCounts next_counts; };  // zeros before
 // of profile: z is 0, and becomes 1 where any tile needs more
 buffer NextLines { GroupCount next_lines; };
-// one float per pixel, sum of whole arcs, from exact; only with kBent
+// one float per pixel, sum of whole arcs, from exact; only with kOrder
 readonly buffer Whole { float whole[]; };
-readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare; only with kBent
-// planes x, y, z of the sums of what is blocked, from exact; where a tile needs no more directions, the mean
-// open direction, as exact has it. Only with kBent.
-buffer Bent { float bent[]; };
+// planes of the sums of moments, from exact; where a tile needs no more directions, the mean ones, as exact has them.
+// Only with kOrder.
+buffer Moments { float moments[]; };
 
 /// The first directions that decide, and the factor on the error that they say. On six rendered scenes at tolerances of
 /// 0.003, 0.01 and 0.03, 354 tiles erred by more than four times the tolerance by their own difference alone, 6 with
@@ -70,13 +69,11 @@ void needs_more(ivec2 tile) {
   atomicMax(next_lines.z, 1u);
 }
 
-/// The mean open direction of a pixel, from the sums of what is blocked.
-void finish_bent(int index, int plane, bool is_sky) {
-  const vec3 open = is_sky ? vec3(0) : open_bent(unpack_normal(normal[index]));
-  for (int c = 0; c < 3; c++) {
-    const int at = index + c * plane;
-    const float blocks = !is_sky && whole[index] > 0.0 ? bent[at] / whole[index] : 0.0;
-    bent[at] = stored_bent(vec3(open[c] - blocks)).x;
+/// The mean moments of a pixel, from the sums.
+void finish_moments(int index, int plane, bool is_sky) {
+  for (int k = 0; k < moments_in(kOrder); k++) {
+    const int at = index + k * plane;
+    moments[at] = stored_moment(!is_sky && whole[index] > 0.0 ? moments[at] / whole[index] : 0.0);
   }
 }
 
@@ -92,7 +89,7 @@ void finish(View view, ivec2 tile, int at) {
     const float of_pixel = is_sky ? 0.0 : (params.is_first != 0u ? 0.0 : error[index]) + share;
     error[index] = of_pixel;
     total = max(total, of_pixel);
-    if (kBent != 0u) finish_bent(index, view.size.x * view.size.y, is_sky);
+    finish_moments(index, view.size.x * view.size.y, is_sky);
   }
   squares[at] = vec2(receivers * total * total, receivers);
 }

@@ -33,6 +33,14 @@ struct DirectionsParams {
   vec3 z_from_view;
 };
 
+struct TransferParams {
+  ivec2 size;        // px
+  uint plane;        // of the AO: of the largest radius
+  vec3 x_from_view;  // rows of the rotation from view space
+  vec3 y_from_view;
+  vec3 z_from_view;
+};
+
 struct SpecularOcclusionParams {
   View view;
   float roughness;  // of the surface, perceptual (its square is the width of a GGX lobe), 0 to 1

@@ -16,12 +16,14 @@
 #include "kernels/base/reprojection.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
+#include "kernels/base/moments.glsl"
 #include "kernels/base/reprojection.glsl"
 #include "kernels/time/sight.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const int kPlanes = 1;  // of values
 layout(constant_id = 1) const int kListed = 0;  // frames that the buffer lists, 0 to kMostTaken
+layout(constant_id = 2) const uint kOrder = 0;  // of the moments among the planes, 0 to 2
 layout(scalar, push_constant) uniform Push { AccumulateParams params; };
 readonly buffer Depth { float depth[]; };    // one float per pixel of the part, planar depth
 readonly buffer Normal { uint normal[]; };   // one uint per pixel of the part, see normal.glsl
@@ -32,9 +34,9 @@ readonly buffer Near { uint near[]; };  // words of cells, from moved
 // planes of floats: how many estimates there are, and for each plane of values the sum of what they are less than 1;
 // not read where they begin
 buffer Sums { float sums[]; };
-writeonly buffer Ao { float ao[]; };          // where the sums end: the first plane of values
-writeonly buffer Scales { float scales[]; };  // those of radii, which follow it
-writeonly buffer Bent { float bent[]; };      // those of the mean open direction, which are the last ones
+writeonly buffer Ao { float ao[]; };            // where the sums end: the first plane of values
+writeonly buffer Scales { float scales[]; };    // those of radii, which follow it
+writeonly buffer Moments { float moments[]; };  // those of moments, which are the last ones
 
 /// Normals of one point differ by rounding and by how files filter them: as the cosine between them.
 const float kLeastAgreement = 0.9;
@@ -62,12 +64,6 @@ int index_in(TakenFrame other, vec3 here, vec3 n, out uint second) {
                        dot(facing, seen) >= kLeastAgreement;
   return is_same ? index : -1;
 }
-
-/// The first of the planes of the mean open direction, which are the last three where there are any.
-const int kBent = kPlanes > 3 ? kPlanes - 3 : 0;
-
-/// A direction of another frame's view space in this one's, both as 0.5 + 0.5 b.
-vec3 turned_here(TakenFrame other, vec3 encoded) { return 0.5 + 0.5 * direction_here(other, 2.0 * encoded - 1.0); }
 
 void main() {
   // All is loaded before the condition: see shared.h.
@@ -98,12 +94,12 @@ void main() {
       const vec2 halves = unpackUnorm2x16(words[(k + 1) / 2]);
       theirs[k] = k % 2 == 0 ? halves.y : halves.x;
     }
-    if (params.scales + 1 < kPlanes) {
-      const vec3 turned = turned_here(other, vec3(theirs[kBent], theirs[kBent + 1], theirs[kBent + 2]));
-      theirs[kBent] = turned.x;
-      theirs[kBent + 1] = turned.y;
-      theirs[kBent + 2] = turned.z;
-    }
+    // Moments are of the other frame's view space.
+    mat3 turns = mat3(0);
+    const int first = kPlanes - moments_in(kOrder);
+    for (int k = 0; k < moments_in(kOrder); k++) turns[k / 3][k % 3] = blocked_moment(theirs[first + k]);
+    turns = turned(mat3(other.row_x, other.row_y, other.row_z), turns);
+    for (int k = 0; k < moments_in(kOrder); k++) theirs[first + k] = stored_moment(moment(turns, k));
     for (int k = 0; k < kPlanes; k++) blocked[k] += is_taken ? 1.0 - theirs[k] : 0.0;
   }
   if (any(greaterThanEqual(invoked, params.size))) return;
@@ -117,6 +113,6 @@ void main() {
     else if (k <= params.scales)
       scales[index + (k - 1) * plane] = value;
     else
-      bent[index + (k - 1 - params.scales) * plane] = value;
+      moments[index + (k - 1 - params.scales) * plane] = value;
   }
 }

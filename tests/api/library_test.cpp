@@ -96,10 +96,11 @@ TEST_F(Library, gives_what_aov_names_with_its_components) {
   const Handle handle = with_camera();
   give_planes(handle);
   EXPECT_OK(handle, alcove_set(handle.get(), "radius", "0.1,0.35"));
-  EXPECT_OK(handle, alcove_set(handle.get(), "aov", "ao,bent-normal,ao-scales"));
+  EXPECT_OK(handle, alcove_set(handle.get(), "aov", "ao,bent-normal,ao-scales,transfer"));
   EXPECT_OK(handle, alcove_run(handle.get(), 0));
   EXPECT_EQ(alcove_components(handle.get(), "ao"), 1);
   EXPECT_EQ(alcove_components(handle.get(), "bent-normal"), 3);
+  EXPECT_EQ(alcove_components(handle.get(), "transfer"), 9);
   EXPECT_EQ(alcove_components(handle.get(), "ao-scales"), 2);
   EXPECT_EQ(alcove_components(handle.get(), "depth"), 0);
   std::vector<float> bent(3 * frame().data.pixels(), NAN);

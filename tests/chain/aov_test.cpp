@@ -111,11 +111,13 @@ TEST_F(Aovs, only_what_was_asked_for_is_computed) {
   EXPECT_THAT(
       passes_of(joined(plain, {"--aov", "specular-occlusion"})),
       ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion", "bent_normal", "specular_occlusion"));
+  EXPECT_THAT(passes_of(joined(plain, {"--aov", "transfer"})),
+              ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion", "transfer"));
 }
 
 TEST_F(Aovs, a_region_holds_what_the_whole_holds_there) {
   expect_region_of_whole(set({"ao-channels=rgb", "multi-bounce=true", "albedo=0.7"},
-                             {"--radius", "1", "--aov", "ao,normal,bent-normal,depth,specular-occlusion"}),
+                             {"--radius", "1", "--aov", "ao,normal,bent-normal,transfer,depth,specular-occlusion"}),
                          {20, 10, 9, 20});
   expect_region_of_whole({"--aov", "depth"}, {20, 10, 9, 20});  // no radius, no surroundings
 }
@@ -128,7 +130,8 @@ TEST_F(Aovs, without_ao_no_radius_is_needed) {
 TEST_F(Aovs, unknown_ones_are_answered_with_all_there_are) {
   for (const char* list : {"nromal", "ao,nromal", "bent", "ao,,depth", ""})
     expect_run_refused(
-        2, {"--aov", "ao, ao-scales, normal, bent-normal, depth, hidden, confidence, error, specular-occlusion"},
+        2,
+        {"--aov", "ao, ao-scales, normal, bent-normal, transfer, depth, hidden, confidence, error, specular-occlusion"},
         {"--aov", list});
   expect_run_refused(2, {"did you mean normal?"}, {"--aov", "nromal"});
 }

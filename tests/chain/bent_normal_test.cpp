@@ -16,7 +16,7 @@ struct vec2 {
   vec2(float along_x, float along_y) : x(along_x), y(along_y) {}
   float x, y;
 };
-#include "kernels/estimate/bent.glsl"
+#include "kernels/estimate/arc_moments.glsl"
 }  // namespace glsl
 
 constexpr Estimator kSliced[]{Estimator::gtao, Estimator::bitmask};
@@ -38,21 +38,27 @@ Vec3 normal_at(const HostFrame& frame, std::size_t i) {
 
 // Closed forms.
 
-TEST(BentNormals, of_a_side_are_its_integral) {
+TEST(Moments, of_a_side_are_its_integrals) {
   for (double gamma = -1.5; gamma <= 1.5; gamma += 0.25)
     for (double part = 0; part <= 1; part += 0.125) {
       const double h = part * (gamma + kPi / 2);
-      double across = 0, toward = 0;
+      double across = 0, toward = 0, mixed = 0, along = 0;
       constexpr int kSteps = 2000;
       for (int i = 0; i < kSteps; i++) {
         const double theta = h * (i + 0.5) / kSteps, weight = std::cos(theta - gamma) * std::sin(theta) * h / kSteps;
         across += weight * std::sin(theta);
         toward += weight * std::cos(theta);
+        mixed += weight * std::sin(theta) * std::cos(theta);
+        along += weight * std::cos(theta) * std::cos(theta);
       }
-      const glsl::vec2 result =
-          glsl::bent_to(float(std::cos(h)), float(std::sin(h)), float(std::cos(gamma)), float(std::sin(gamma)));
-      ASSERT_NEAR(result.x, across, 2e-6) << gamma << " " << h;
-      ASSERT_NEAR(result.y, toward, 2e-6) << gamma << " " << h;
+      const auto c = float(std::cos(h)), s = float(std::sin(h)), c_gamma = float(std::cos(gamma)),
+                 s_gamma = float(std::sin(gamma));
+      const glsl::vec2 first = glsl::first_to(c, s, c_gamma, s_gamma);
+      const glsl::vec2 second = glsl::second_to(c, s, float(h), c_gamma, s_gamma);
+      ASSERT_NEAR(first.x, across, 2e-6) << gamma << " " << h;
+      ASSERT_NEAR(first.y, toward, 2e-6) << gamma << " " << h;
+      ASSERT_NEAR(second.x, mixed, 2e-6) << gamma << " " << h;
+      ASSERT_NEAR(second.y, along, 2e-6) << gamma << " " << h;
     }
 }
 
@@ -225,7 +231,7 @@ TEST(BentNormals, are_those_of_the_cpu_reference) {
         ReferenceSettings reference = reference_settings_of(of);
         for (std::size_t i = 11; i < room.hits.size(); i += is_exact ? 19 : 109)
           if (room.hits[i].primitive >= 0) reference.pixels.push_back(i);
-        const auto expected = vectors_in(reference_bent(room.frame, reference));
+        const auto expected = first_band(reference_transfer(room.frame, reference));
         if (is_exact) {
           for (const SliceSearch how : {SliceSearch::exact, SliceSearch::every_pixel}) {
             search.search = how;
@@ -347,13 +353,19 @@ TEST(BentNormals, fall_back_to_the_normal_where_nothing_is_open) {
   const FrameInputs inputs = upload(gpu, room.frame);
   const GBuffer gbuffer = prepare(gpu, inputs);
   gpu::Buffer& closed = gpu.buffer("closed", 3 * room.frame.depth.size() * sizeof(float), gpu::Use::upload);
-  std::ranges::fill(closed.as<float>(), 0.5f);
+  const std::vector<Vec3> normals = vectors_in(room.frame.normal);
+  for (std::size_t i = 0; i < normals.size(); i++) {
+    const Vec3 open = room.hits[i].primitive < 0 ? Vec3{} : 2.0 / 3 * normals[i];  // as much is blocked
+    for (std::size_t c = 0; c < 3; c++)
+      closed.as<float>()[i + c * normals.size()] = float(0.5 - 0.5 * std::array{open.x, open.y, open.z}[c]);
+  }
   gpu.upload(closed);
   const gpu::Buffer& planes =
       directions(gpu, gbuffer, bent_normal(gpu, gbuffer, &closed), "test directions", inputs.aov_from_view);
   gpu.download(planes);
   gpu.run();
-  EXPECT_LE(farthest_from_normals(vectors_in(planes.as<float>()), room.frame, 1), 1e-3);
+  // Packed normals are off by up to 4e-5, and what is added to them is 7e-4 long.
+  EXPECT_LE(farthest_from_normals(vectors_in(planes.as<float>()), room.frame, 1), 0.1);
 }
 
 // They come of another kernel, whose last bits drivers may round otherwise.

@@ -439,7 +439,7 @@ TEST_F(CommandLine, an_exact_search_of_a_region_is_that_part_of_the_whole) {
   write_bytes(camera, wall_camera(display).dump());
   for (const std::string more :
        {"--preset reference", "--search exact --slices 2", "--tolerance 0.05", "--search exact --resolution half"}) {
-    const Options arguments = typed("--radius 0.1 --aov ao,bent-normal,specular-occlusion " + more);
+    const Options arguments = typed("--radius 0.1 --aov ao,bent-normal,transfer,specular-occlusion " + more);
     EXPECT_LT(std::ranges::min(expect_region_of_whole(arguments, region).plane("Y")), 0.8);
   }
 }

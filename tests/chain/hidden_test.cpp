@@ -17,8 +17,9 @@ struct Outcome {
   TileCounts tiles;
 };
 Outcome outcome_of(const HostFrame& frame, const EstimatorSettings& settings) {
-  Planes planes = planes_of(frame, settings, "ao,bent-normal");
-  planes.ao.insert(planes.ao.end(), planes.bent.begin(), planes.bent.end());
+  Planes planes = planes_of(frame, settings, "ao,bent-normal,transfer");
+  for (const auto* more : {&planes.bent, &planes.transfer})
+    planes.ao.insert(planes.ao.end(), more->begin(), more->end());
   return {planes.ao, planes.tiles};
 }
 std::vector<float> run(const HostFrame& frame, const EstimatorSettings& settings) {

@@ -16,8 +16,8 @@ using namespace test;
 
 std::vector<float> values_of(const FrameOutputs& outputs) {
   std::vector<float> values;
-  for (const auto* planes :
-       {outputs.ao, outputs.scales, outputs.bent_normal, outputs.confidence, outputs.specular_occlusion}) {
+  for (const auto* planes : {outputs.ao, outputs.scales, outputs.bent_normal, outputs.transfer, outputs.confidence,
+                             outputs.specular_occlusion}) {
     const std::vector<float> plane = test::values_of(planes);
     values.insert(values.end(), plane.begin(), plane.end());
   }
@@ -27,7 +27,7 @@ std::vector<float> values_of(const FrameOutputs& outputs) {
 /// all: also what is made of the AO, and by other estimates beside it.
 OutputSettings outputs_for(const EstimatorSettings& settings, bool all) {
   OutputSettings output;
-  output.aovs = searches_slices(settings) ? "ao,bent-normal,ao-scales" : "ao,ao-scales";
+  output.aovs = searches_slices(settings) ? "ao,bent-normal,transfer,ao-scales" : "ao,ao-scales";
   if (all) output.aovs += ",confidence,specular-occlusion";
   return output;
 }

@@ -6,6 +6,7 @@
 #include "tests/support/dds_file.h"
 #include "tests/support/deep_file.h"
 #include "tests/support/source_frame.h"
+#include "tests/support/wall_frame.h"
 
 namespace alcove::docs_test {
 namespace {
@@ -61,6 +62,10 @@ class Documents : public Sources {
     write(folder / "beauty.exr");
     planes = {{"A", std::vector<float>(z.size(), 1)}};
     write(folder / "hero.exr");
+    FrameFile sky;
+    sky.data = sky.display = {0, 0, 16, 8};
+    for (const char* color : {"R", "G", "B"}) sky.planes[color] = std::vector<float>(128, 1);
+    sky.write(folder / "sky.exr");
     for (int frame = 1001; frame <= 1100; frame++)
       for (const std::string name : {"frame.exr", "beauty.exr"})
         fs::create_hard_link(

@@ -38,7 +38,7 @@ std::vector<std::string> block_names(std::span<const std::uint32_t> code) {
 TEST(Reflection, reads_blocks_groups_and_constants) {
   const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
   EXPECT_THAT(block_names(gpu::kernel_code("horizon")),
-              UnorderedElementsAre("Depth", "Normal", "Ao", "Bent", "List", "Counts", "Completed", "Sites",
+              UnorderedElementsAre("Depth", "Normal", "Ao", "Moments", "List", "Counts", "Completed", "Sites",
                                    "SiteCountsBuffer", "Occluders"));
   EXPECT_THAT(block_names(gpu::kernel_code("horizon_layers")), Contains("Hidden"));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
@@ -46,7 +46,7 @@ TEST(Reflection, reads_blocks_groups_and_constants) {
 }
 
 TEST(Reflection, tells_blocks_that_are_read_from_blocks_that_are_written) {
-  const std::set<std::string> read{"Bounds", "Changes", "Depth", "Normal", "Needed", "Rows"};
+  const std::set<std::string> read{"Bounds", "Changes", "Depth", "Needed", "Rows"};
   for (const auto& block : gpu::reflect(gpu::kernel_code("classify")).blocks) {
     EXPECT_EQ(block.is_written, !read.contains(block.name)) << block.name;
     EXPECT_EQ(block.is_read, !block.is_written || block.name == "Counts") << block.name;

@@ -116,6 +116,24 @@ scene.render.image_settings.file_format, scene.render.image_settings.color_depth
 scene.render.filepath, scene.render.use_compositing = os.path.join(folder, "by hand", "shot.####"), False
 bpy.ops.render.render(animation=True)
 
+# A sky lights the result through a group of nodes.
+sky = bpy.data.images.new("sky", 64, 32, float_buffer=True)
+sky.pixels = [value for y in range(32) for x in range(64) for value in (0.2 + y / 32, 0.5, 1 - x / 64, 1)]
+sky.filepath_raw, sky.file_format = os.path.join(folder, "sky.exr"), "OPEN_EXR"
+sky.save()
+scene.alcove.output, scene.alcove.sky = "AO", sky.filepath_raw
+scene.frame_set(3)
+facts["relit"] = sorted(bpy.ops.alcove.compute(animation=False))
+group = next(node for node in scene.node_tree.nodes if node.label == alcove.RELIGHT)
+for link in [link for link in scene.node_tree.links if link.to_node.bl_idname == "CompositorNodeComposite"]:
+    scene.node_tree.links.remove(link)
+scene.node_tree.links.new(group.outputs[0], next(
+    node for node in scene.node_tree.nodes if node.bl_idname == "CompositorNodeComposite").inputs["Image"])
+scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"
+scene.render.filepath, scene.render.use_compositing = os.path.join(folder, "relit.exr"), True
+bpy.ops.render.render(write_still=True)
+scene.alcove.sky = ""
+
 
 def message_of(change):
     """What an error says where something was changed."""

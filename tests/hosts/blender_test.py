@@ -78,6 +78,12 @@ class Blender(unittest.TestCase):
         self.assertEqual(self.facts["composite"], ["FINISHED"])
         self.assertIn("ViewLayer.Combined.R", alcove("inspect", path("composite.0005.exr")))
 
+    def test_the_node_group_of_a_sky_lights_as_the_program_does(self):
+        self.assertEqual(self.facts["relit"], ["FINISHED"])
+        alcove("run", path("frame.0003.exr"), "-o", path("lit.exr"), "--camera", path("written.json"), "--radius", "0.5", "--frames", "3",
+               "--environment", path("sky.exr"), "-q")
+        alcove("compare", path("relit.exr"), path("lit.exr"), "--channel", "R=relight.R,G=relight.G,B=relight.B", "--max-rmse", "0.001")
+
     def test_cameras_are_those_that_the_positions_tell(self):
         with open(path("written.json"), encoding="utf-8") as file:
             written = {entry["frame"]: entry for entry in json.load(file)["frames"]}

@@ -144,10 +144,10 @@ class Arrays(unittest.TestCase):
             self.same(alcove.ao(self.depth.astype(kind), self.normal, camera=self.camera, radius=0.35), theirs)
 
     def test_many_results_have_the_bits_of_the_program(self):
-        names = ["ao", "bent-normal", "ao-scales", "confidence", "specular-occlusion", "normal", "depth"]
+        names = ["ao", "bent-normal", "transfer", "ao-scales", "confidence", "specular-occlusion", "normal", "depth"]
         theirs = self.program(self.frame, "--camera", self.camera_file, "--radius", "0.1,0.35", "--preset", "production", "--slices", "3", "--aov", ",".join(names))
         made = alcove.compute(self.depth, self.normal, camera=self.camera, radius=[0.1, 0.35], preset="production", slices=3, aov=names)
-        for name, channels in (("ao", ["Y"]), ("bent-normal", ["bent.X", "bent.Y", "bent.Z"]), ("ao-scales", ["scale1.Y", "scale2.Y"]), ("confidence", ["confidence.Y"]),
+        for name, channels in (("ao", ["Y"]), ("bent-normal", ["bent.X", "bent.Y", "bent.Z"]), ("transfer", ["transfer%d.%s" % (k, c) for k in range(3) for c in "XYZ"]), ("ao-scales", ["scale1.Y", "scale2.Y"]), ("confidence", ["confidence.Y"]),
                                ("specular-occlusion", ["specular.Y"]), ("normal", ["normal.X", "normal.Y", "normal.Z"]), ("depth", ["Z"])):
             planes = [theirs[channel] for channel in channels]
             self.same(made[name], planes[0] if len(planes) == 1 else numpy.stack(planes, axis=-1))

@@ -268,7 +268,7 @@ TEST_F(Accumulated, each_frame_is_estimated_once) {
 
 TEST_F(Accumulated, works_with_all_that_is_made_of_an_estimate) {
   write_shot(3);
-  for (const char* more : {"--aov ao,bent-normal,specular-occlusion", "--radius 1,0.3 --aov ao,ao-scales",
+  for (const char* more : {"--aov ao,bent-normal,transfer,specular-occlusion", "--radius 1,0.3 --aov ao,ao-scales",
                            "--resolution half", "--estimator hbao", "--around 1 --aov ao,hidden"})
     done(joined(typed(more), kByOne));
   EXPECT_THAT(run(typed("--accumulate 1 --set motion-channels=ViewLayer.Normal.X,ViewLayer.Normal.Y --motion " + in +

@@ -155,6 +155,7 @@ TEST_F(Refusals, settings_that_contradict_each_other_name_what_mends_them) {
       {"--depth " + frame + " --position " + frame, {"--depth", "--position is given", "only one of them"}},
       {"--set debug=raw-dpth", {"--set debug", "did you mean raw-depth"}},
       {"--aov bent", {"--aov", "bent", "did you mean"}},
+      {"--aov transfer --estimator hbao", {"--aov transfer", "--estimator hbao", "gtao"}},
       {"--thickness -1", {"--thickness", "-1 is neither auto nor infinite"}},
       {"--thickness inf", {"--thickness", "inf is neither"}},
       {"--set albedo=2 --set multi-bounce=true", {"--set albedo", "0 to 1"}},

@@ -42,7 +42,7 @@ TEST_F(SameBits, of_threads_chunks_and_orders) {
   const std::vector<std::vector<std::string>> ways{
       {"--threads 3 --frames 7-1"}, {"--threads 2 --frames 1-7x2,2-6:2"}, {"--chunk 2/2", "--threads 1 --chunk 1/2"}};
   for (const std::string& more : std::vector<std::string>{
-           "", "--around 2", "--accumulate 2", "--accumulate 1 --around 1 --preset reference --aov ao,bent-normal",
+           "", "--around 2", "--accumulate 2", "--accumulate 1 --around 1 --preset reference --aov ao,transfer",
            "--around 1 --estimator bitmask", "--around 1 --search exact --behind " + peel}) {
     SCOPED_TRACE(more);
     remove_outputs();

@@ -147,7 +147,7 @@ TEST_F(Tiles, give_the_bits_of_the_whole_where_solids_reach_into_the_sphere) {
   put(far, 25);
   slabs.write(frame);
   write_plane(folder / "far.exr", "Z", far, data, display);
-  const Options slices = typed("--radius 0.1 --aov ao,bent-normal");
+  const Options slices = typed("--radius 0.1 --aov ao,transfer");
   const Options hidden{"--behind", folder / "far.exr", "--behind-kind", "fronts"};
   expect_same(joined(slices, {"--roi", "3,5,450,250"}));
   expect_same(joined(slices, hidden));
@@ -195,6 +195,7 @@ TEST_F(TilesOfShots, give_the_bits_of_the_whole) {
   write_shot(3, {0, 0, 512, 288});
   expect_same("--around 1", 40);
   expect_same("--accumulate 1 --aov ao,bent-normal", 48);
+  expect_same("--accumulate 1 --aov ao,transfer", 72);
   // What moves is known in tiles after those of sky.
   constexpr Window kTall{0, 0, 512, 400};
   write_bytes(camera, wall_camera(kTall).dump());
@@ -231,7 +232,7 @@ TEST_F(Tiles, too_little_memory_is_refused_with_the_least_that_is_enough) {
   };
   // Less than the planes alone take, which stay in memory beside any tile.
   expect_enough_is_named(
-      "--radius 0.4 --slices 1 --steps 2 --aov ao,bent-normal,normal,depth,specular-occlusion,confidence");
+      "--radius 0.4 --slices 1 --steps 2 --aov ao,bent-normal,transfer,normal,depth,specular-occlusion,confidence");
   // Codecs take more of more memory.
   const Window tall{0, 0, 160, 1500};
   wall_frame(tall, tall).write(frame);

@@ -60,6 +60,7 @@ Planes planes_of(const HostFrame& frame, const EstimatorSettings& settings, cons
                 values_of(outputs.scales),
                 values_of(outputs.normal),
                 values_of(outputs.bent_normal),
+                values_of(outputs.transfer),
                 values_of(outputs.confidence),
                 values_of(outputs.error),
                 values_of(outputs.specular_occlusion),

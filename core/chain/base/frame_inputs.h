@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/frame/environment.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"
@@ -92,6 +93,8 @@ struct FrameInputs {
   std::vector<AmbientReading> ambient;  // how those of RawPlane::indirect are read
   double albedo_value = 0;              // for multi-bounce where there are no planes of it
   Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
+  Environment environment;                                   // its light, for relighting; in world space:
+  Matrix3 world_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   bool is_sky = false;  // no pixel shows a surface, and none had to be repaired for that
   // how the blocks differ from the frame before, whose estimate the buffers still hold: see classify.comp; null: the
   // buffers hold none

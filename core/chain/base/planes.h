@@ -11,7 +11,7 @@ namespace alcove {
 
 // Prefixes of the names of buffers of further planes; those of the AO have none.
 inline constexpr const char* kScalesPrefix = "scales ";
-inline constexpr const char* kBentPrefix = "bent ";
+inline constexpr const char* kMomentsPrefix = "moments ";
 
 inline std::size_t pixels_of(const View& view) { return std::size_t(view.size.x) * std::size_t(view.size.y); }
 inline std::size_t plane_bytes(const View& view) { return pixels_of(view) * sizeof(float); }
@@ -20,11 +20,15 @@ inline gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint
 inline uint groups_of(int pixels, uint size) { return (uint(pixels) + size - 1) / size; }
 inline vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
 
+/// The planes of moments up to an order: see moments.glsl.
+inline constexpr std::size_t moments_in(uint order) { return order == 0 ? 0 : order == 1 ? 3 : 8; }
+
 /// The visibility on its way.
 struct Visibility {
   gpu::Buffer* ao = nullptr;      // a plane; of several radii the mean
   gpu::Buffer* scales = nullptr;  // a plane for each radius; null: there is one radius, or nobody asked for them
-  gpu::Buffer* bent = nullptr;    // planes x, y, z of the mean open direction; null: nobody asked for it
+  // planes of what is blocked, of the largest radius: see moments.glsl; null: nobody asked for them
+  gpu::Buffer* moments = nullptr;
 };
 
 }  // namespace alcove

@@ -165,10 +165,11 @@ Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame
 }
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
-                  const EstimatorSettings& settings, bool with_bent, bool with_completed) {
+                  const EstimatorSettings& settings, uint order, bool with_completed) {
   const std::size_t plane = plane_bytes(gbuffer.view);
   Estimate result{&gpu.buffer("ao", radii_of(settings).size() * plane)};
-  if (with_bent) result.bent = &gpu.buffer("bent", 3 * plane);
+  if (order > 0) result.moments = &gpu.buffer("moments", moments_in(order) * plane);
+  result.order = order;
   if (with_completed) result.completed = &gpu.buffer("completed", plane);
   if (!searches_exactly(settings))
     estimate_sampled(gpu, gbuffer, sites, frame, settings, result);
@@ -180,7 +181,8 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
 Estimate of_radius(const Estimate& all, uint plane, std::size_t radii) {
   const bool is_largest = plane + 1 == radii;
   Estimate out{all.ao, plane};
-  if (is_largest) out.bent = all.bent;
+  if (is_largest) out.moments = all.moments;
+  if (is_largest) out.order = all.order;
   if (is_largest) out.completed = all.completed;
   return out;
 }
@@ -231,9 +233,10 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   const bool selects = skipping.skips_sky && gbuffer.needed;
   list.skips_surfaces = skipping.changes || selects;
   gpu.clear(*list.counts);
-  const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (out.bent ? kClassifyWithBent : 0) |
-                    (out.completed ? kClassifyWithCompleted : 0) | (skipping.changes ? kClassifyReuses : 0) |
-                    (selects ? kClassifySelects : 0) | (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
+  const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (out.order > 0 ? kClassifyWithFirst : 0) |
+                    (out.order > 1 ? kClassifyWithSecond : 0) | (out.completed ? kClassifyWithCompleted : 0) |
+                    (skipping.changes ? kClassifyReuses : 0) | (selects ? kClassifySelects : 0) |
+                    (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
   const ClassifyParams params{gbuffer.view,
                               reach.radius,
                               reach.front,
@@ -249,13 +252,12 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                 {"Changes", gpu::Optional(skipping.changes)},
                 {"Needed", gpu::Optional(gbuffer.needed)},
                 {"Depth", gbuffer.depth},
-                {"Normal", gbuffer.normal},
                 {"Rows", gpu::Optional(sites.rows)},
                 {"List", list.tiles},
                 {"Counts", list.counts},
                 {"Kinds", list.kinds},
                 {"Ao", out.ao},
-                {"Bent", gpu::Optional(out.bent)},
+                {"Moments", gpu::Optional(out.moments)},
                 {"Completed", gpu::Optional(out.completed)}},
                {groups_of(int(blocks.x), kGroupY) * kGroupX, blocks.y * kGroupY}, {sites.rows ? 1u : 0u, mode});
   return list;
@@ -275,8 +277,9 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   params.plane = out.plane;
   params.depth_precision = gbuffer.depth_precision;
   std::vector<gpu::Binding> buffers = buffers_of(gbuffer, out);
-  buffers.insert(buffers.end(), {{"Bent", gpu::Optional(out.bent)}, {"Completed", gpu::Optional(out.completed)}});
-  const uint mode = uint(reach.falloff) | (out.bent ? kWithBent : 0) | (out.completed ? kWithCompleted : 0);
+  buffers.insert(buffers.end(), {{"Moments", gpu::Optional(out.moments)}, {"Completed", gpu::Optional(out.completed)}});
+  const uint mode = uint(reach.falloff) | (out.order > 0 ? kWithFirst : 0) | (out.order > 1 ? kWithSecond : 0) |
+                    (out.completed ? kWithCompleted : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
   const uint sites = out.listed.sites ? uint(sampling.wide_slices) : 0;
   std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, sites, solid};

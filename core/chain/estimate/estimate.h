@@ -51,7 +51,8 @@ gpu::Extent estimate_extent(const TileList& list);
 struct Estimate {
   gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on
   uint plane = 0;                  // of `ao`: that of the radius that an estimator writes
-  gpu::Buffer* bent = nullptr;     // planes x, y, z, of the largest radius: see horizon.comp; null: not asked for
+  gpu::Buffer* moments = nullptr;  // of the largest radius: see Visibility
+  uint order = 0;                  // of the moments
   TileList listed{};               // of the largest radius
   gpu::Buffer* error = nullptr;    // with a tolerance, of the mean over the radii: see refine.comp
   gpu::Buffer* squares = nullptr;  // the same
@@ -63,12 +64,12 @@ struct Estimate {
 /// Runs the estimator of the settings for each of their radii. The frame gives the number that animates the noise, and
 /// what has changed.
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
-                  const EstimatorSettings& settings, bool with_bent = false, bool with_completed = false);
+                  const EstimatorSettings& settings, uint order = 0, bool with_completed = false);
 
 /// Runs an estimator that takes samples for each radius of the settings, into the buffers of `result`.
 void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
                       const EstimatorSettings& settings, Estimate& result);
-/// The buffers of an estimate of so many radii into which an estimator writes one of them: open directions, and what
+/// The buffers of an estimate of so many radii into which an estimator writes one of them: moments, and what
 /// completed surfaces took, only with the largest.
 Estimate of_radius(const Estimate& all, uint plane, std::size_t radii);
 

@@ -152,7 +152,8 @@ Convergence convergence(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
                         const Estimate& result, uint planes) {
   Convergence search{settings.tolerance, settings.search == SliceSearch::every_pixel, result.plane, planes, {}};
   search.sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view));
-  search.sums.bent = result.bent;
+  search.sums.moments = result.moments;
+  search.sums.order = result.order;
   search.sums.completed = result.completed;
   return search;
 }
@@ -200,7 +201,6 @@ void refine(gpu::Recorder& gpu, const GBuffer& gbuffer, Convergence& search, Est
   params.ends = directions == kMostDirections ? 1 : 0;
   params.is_first = search.plane == 0 ? 1 : 0;
   params.share = 1.0f / float(search.planes);
-  const gpu::Buffer* bent = search.sums.bent;
   gpu.dispatch("refine", params,
                {{"Depth", gbuffer.depth},
                 {"Judged", judged_tiles(gpu, gbuffer)},
@@ -212,9 +212,8 @@ void refine(gpu::Recorder& gpu, const GBuffer& gbuffer, Convergence& search, Est
                 {"NextCounts", next.counts},
                 {"NextLines", next.lines},
                 {"Whole", whole_arcs(gpu, gbuffer)},
-                {"Normal", gbuffer.normal},
-                {"Bent", gpu::Optional(bent)}},
-               {tiles.columns, tiles.rows}, {bent ? 1u : 0u});
+                {"Moments", gpu::Optional(search.sums.moments)}},
+               {tiles.columns, tiles.rows}, {search.sums.order});
   search.sums.listed = next;
   if (directions == 0) result.listed = next;
 }
@@ -305,11 +304,11 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {"GoesOn", gpu::Optional(profile.goes_on)},
                 {"Behind", gpu::Optional(profile.behind)},
                 {"Completed", gpu::Optional(out.completed)},
-                {"Bent", gpu::Optional(out.bent)},
+                {"Moments", gpu::Optional(out.moments)},
                 {"Own", gpu::Optional(profile.own)},
                 {"Occluders", occluder_depth_of(gbuffer)}},
                is_listed ? list_extent(out.listed) : pixels,
-               {is_listed ? 1u : 0u, completing, out.bent ? 1u : 0u, profile.slots, profile.has_unseen ? 1u : 0u});
+               {is_listed ? 1u : 0u, completing, out.order, profile.slots, profile.has_unseen ? 1u : 0u});
 }
 
 }  // namespace alcove

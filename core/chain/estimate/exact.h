@@ -41,9 +41,9 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
 /// Finds how far the surfaces of a profile go on unseen, where the settings say that any do.
 void complete(gpu::Recorder& gpu, const GBuffer& gbuffer, Profile& profile, const Reach& reach,
               const gpu::Buffer* groups = nullptr);
-/// Adds a direction to the plane of `out` and to out.bent, for the pixels that take it; call it for all directions in
-/// order. Where tiles are listed, these planes keep the sums of what is blocked, from which converge makes the
-/// visibility, and refine the mean open direction.
+/// Adds a direction to the plane of `out` and to out.moments, for the pixels that take it; call it for all directions
+/// in order. Where tiles are listed, these planes keep the sums of what is blocked, from which converge makes the
+/// visibility, and refine the moments.
 void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, const SearchDirections& directions,
            const Reach& reach, const Estimate& out);
 

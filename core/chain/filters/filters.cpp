@@ -125,11 +125,11 @@ int denoise_radius_of(const EstimatorSettings& settings) {
 
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales) {
   const uint radii = planes_in(*estimate.ao, gbuffer.view);
-  if (radii == 1) return {estimate.ao, nullptr, estimate.bent};
+  if (radii == 1) return {estimate.ao, nullptr, estimate.moments};
   gpu::Buffer& mean = gpu.buffer("combined", plane_bytes(gbuffer.view));
   gpu.dispatch("combine", CombineParams{gbuffer.view.size, radii}, {{"Scales", estimate.ao}, {"Ao", mean}},
                extent_of(gbuffer.view));
-  return {&mean, keeps_scales ? estimate.ao : nullptr, estimate.bent};
+  return {&mean, keeps_scales ? estimate.ao : nullptr, estimate.moments};
 }
 
 int filter_reach_of(const EstimatorSettings& settings) {
@@ -239,7 +239,7 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
   const Lattice lattice = lattice_of(gbuffer, sites);
   params.first = lattice.first;
   params.sites = lattice.sites;
-  params.missing = prefix == kBentPrefix ? 0.5f : 1.0f;
+  params.missing = prefix == kMomentsPrefix ? 0.5f : 1.0f;
   const uint mode =
       (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.looks_up ? kInterpolateLooksUp : 0);
   const uint of_rows = fitted ? kInterpolateFitted : 0;
@@ -274,7 +274,7 @@ Visibility filtered(const Visibility& visibility, const FilterRuns& runs, const 
   Visibility result;
   result.ao = &filter(&Visibility::ao, "", runs);
   if (visibility.scales) result.scales = &filter(&Visibility::scales, kScalesPrefix, FilterRuns{});
-  if (visibility.bent) result.bent = &filter(&Visibility::bent, kBentPrefix, FilterRuns{});
+  if (visibility.moments) result.moments = &filter(&Visibility::moments, kMomentsPrefix, FilterRuns{});
   return result;
 }
 

@@ -181,7 +181,8 @@ gpu::Buffer* cut(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Buffer* plan
 }
 
 Visibility cut(gpu::Recorder& gpu, const FrameInputs& frame, const Visibility& wide) {
-  return {cut(gpu, frame, wide.ao, "ao"), cut(gpu, frame, wide.scales, "scales"), cut(gpu, frame, wide.bent, "bent")};
+  return {cut(gpu, frame, wide.ao, "ao"), cut(gpu, frame, wide.scales, "scales"),
+          cut(gpu, frame, wide.moments, "moments")};
 }
 
 GBuffer cut(gpu::Recorder& gpu, const FrameInputs& frame, const GBuffer& wide, const GBuffer& prepared) {

@@ -27,7 +27,9 @@ std::vector<std::string> aov_names() {
 
 std::vector<Aov> aovs_of(const OutputSettings& settings) {
   std::vector<Aov> aovs;
-  for (const auto& name : split(settings.aovs)) {
+  std::vector<std::string> names = split(settings.aovs);
+  if (!settings.environment.empty()) names.emplace_back("relight");
+  for (const auto& name : names) {
     const auto row = std::ranges::find(kAovs, name, &AovRow::name);
     if (row == kAovs.end())
       fail(ErrorKind::usage, "--aov: there is no AOV \"{}\"{}; there is {}", name, suggestion(name, aov_names()),
@@ -71,7 +73,8 @@ Wanted::Wanted(const OutputSettings& settings)
   const auto is_at_least = [](AovSource source) { return [source](const Aov& aov) { return aov.source >= source; }; };
   const auto shows_completed = [](const DebugView* view) { return view->source == DebugSource::completed; };
   completed = !settings.stats.empty() || std::ranges::any_of(debug_views, shows_completed);
-  open_directions = std::ranges::any_of(aovs, is_at_least(AovSource::open_directions));
+  for (const AovSource source : {AovSource::open_directions, AovSource::transfer})
+    order += std::ranges::any_of(aovs, is_at_least(source)) ? 1 : 0;
   visibility = std::ranges::any_of(aovs, is_at_least(AovSource::visibility)) || multi_bounce ||
                !settings.composite.empty() || !settings.preview.empty() ||
                std::ranges::any_of(debug_views, is_of_visibility);
@@ -94,8 +97,8 @@ bool in_world(const Camera& camera, const OutputSettings& settings) {
 
 bool needs_ao(const OutputSettings& output) { return Wanted(output).visibility; }
 
-bool needs_bent(const EstimatorSettings& settings, const Wanted& wanted) {
-  return wanted.open_directions && searches_slices(settings);
+uint moment_order(const EstimatorSettings& settings, const Wanted& wanted) {
+  return searches_slices(settings) ? wanted.order : 0;
 }
 
 }  // namespace alcove

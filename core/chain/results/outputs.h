@@ -34,11 +34,14 @@ struct FrameOutputs {
   // with wanted.completed, a plane of the estimate's size: see Estimate. It stays on the device: whoever reads it calls
   // download()
   gpu::Buffer* completed = nullptr;
-  gpu::Buffer* ao = nullptr;           // a plane: visibility in [0, 1]; of several radii the mean
-  gpu::Buffer* scales = nullptr;       // a plane for each radius, from the smallest on
-  gpu::Buffer* normal = nullptr;       // planes x, y, z; 0 for sky
-  gpu::Buffer* bent_normal = nullptr;  // planes x, y, z; 0 for sky
-  gpu::Buffer* depth = nullptr;        // a plane: planar, scene units; kSkyDepth for sky
+  gpu::Buffer* ao = nullptr;            // a plane: visibility in [0, 1]; of several radii the mean
+  gpu::Buffer* scales = nullptr;        // a plane for each radius, from the smallest on
+  gpu::Buffer* normal = nullptr;        // planes x, y, z; 0 for sky
+  gpu::Buffer* bent_normal = nullptr;   // planes x, y, z; 0 for sky
+  gpu::Buffer* transfer = nullptr;      // planes T_00, T_1-1 ... T_22; 0 for sky: see transfer.comp
+  gpu::Buffer* relight = nullptr;       // planes r, g, b, of an environment; 0 for sky
+  gpu::Buffer* relight_open = nullptr;  // the same without occlusion
+  gpu::Buffer* depth = nullptr;         // a plane: planar, scene units; kSkyDepth for sky
   // for each surface that is kept behind the first, nearer first, a plane of planar depth, kSkyDepth for none; and a
   // plane of 1 where it closes the solid of the one before it, else 0
   gpu::Buffer* hidden = nullptr;
@@ -53,7 +56,7 @@ struct FrameOutputs {
 };
 
 /// The input of an AOV; each needs those that stand before it, too.
-enum class AovSource { geometry, visibility, open_directions };
+enum class AovSource { geometry, visibility, open_directions, transfer };
 
 /// A row of the table.
 struct AovRow {
@@ -69,6 +72,13 @@ inline constexpr std::array kAovs{
     AovRow{"ao-scales", "scale1.Y", &FrameOutputs::scales, AovSource::visibility},
     AovRow{"normal", "normal.X,normal.Y,normal.Z", &FrameOutputs::normal, AovSource::geometry},
     AovRow{"bent-normal", "bent.X,bent.Y,bent.Z", &FrameOutputs::bent_normal, AovSource::open_directions},
+    AovRow{
+        "transfer",
+        "transfer0.X,transfer0.Y,transfer0.Z,transfer1.X,transfer1.Y,transfer1.Z,transfer2.X,transfer2.Y,transfer2.Z",
+        &FrameOutputs::transfer, AovSource::transfer},
+    AovRow{"relight", "relight.R,relight.G,relight.B", &FrameOutputs::relight, AovSource::transfer},
+    AovRow{"relight-open", "relight-open.R,relight-open.G,relight-open.B", &FrameOutputs::relight_open,
+           AovSource::geometry},
     AovRow{"depth", "Z", &FrameOutputs::depth, AovSource::geometry, true},
     AovRow{"hidden", "hidden1.Z,hidden1.back", &FrameOutputs::hidden, AovSource::geometry, true},
     AovRow{"confidence", "confidence.Y", &FrameOutputs::confidence, AovSource::visibility},
@@ -107,15 +117,17 @@ struct Wanted {
 
   /// Whether an AOV lies in these planes.
   bool has(gpu::Buffer* FrameOutputs::*planes) const;
+  /// Whether the AO of each radius is asked for, or that of one.
+  bool needs_scales() const { return has(&FrameOutputs::scales) || order > 1; }
   /// Whether nothing is asked for but AO that is made from depth and normals alone.
   bool is_only_visibility() const;
 
   std::vector<Aov> aovs;
   std::vector<const DebugView*> debug_views;
-  bool visibility = false;       // AO, or what is made from it
-  bool open_directions = false;  // what is made from them, of an estimator that finds them
-  bool completed = false;        // what completed surfaces took of the visibility
-  bool only_own = false;         // the estimate alone, for other frames
+  bool visibility = false;  // AO, or what is made from it
+  uint order = 0;           // of the moments that others are made from, of an estimator that finds open directions
+  bool completed = false;   // what completed surfaces took of the visibility
+  bool only_own = false;    // the estimate alone, for other frames
   bool multi_bounce = false;
   PixelFilter filter;
   CompositeLook look;
@@ -127,7 +139,8 @@ bool in_world(const Camera& camera, const OutputSettings& settings);
 /// Whether any output is AO or made from it.
 bool needs_ao(const OutputSettings& output);
 
-/// Whether any output is made from open directions, by an estimator that finds them.
-bool needs_bent(const EstimatorSettings& settings, const Wanted& wanted);
+/// The order of the moments that any output is made from: 1 for bent normals, 2 for transfer; 0: none, or the estimator
+/// finds no open directions.
+uint moment_order(const EstimatorSettings& settings, const Wanted& wanted);
 
 }  // namespace alcove

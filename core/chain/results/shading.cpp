@@ -49,12 +49,32 @@ Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& v
   return result;
 }
 
-gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bent) {
-  if (!bent) return *gbuffer.normal;
+gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* moments) {
+  if (!moments) return *gbuffer.normal;
   gpu::Buffer& result = gpu.buffer("bent normal", plane_bytes(gbuffer.view));
   gpu.dispatch("bent_normal", BentNormalParams{gbuffer.view.size},
-               {{"Normal", gbuffer.normal}, {"Bent", bent}, {"Result", result}}, extent_of(gbuffer.view));
+               {{"Normal", gbuffer.normal}, {"Moments", moments}, {"Result", result}}, extent_of(gbuffer.view));
   return result;
+}
+
+gpu::Buffer& transfer(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
+                      const Matrix3& space_from_view, const std::string& name, const Environment* light) {
+  gpu::Buffer& planes = gpu.buffer(name, (light ? 3 : 9) * plane_bytes(gbuffer.view));
+  gpu::Buffer* colors =
+      light ? &gpu.buffer("environment", light->light.size() * sizeof(vec3), gpu::Use::upload) : nullptr;
+  if (light) std::ranges::transform(light->light, colors->as<vec3>().begin(), to_vec3);
+  const gpu::Buffer* ao = visibility.scales ? visibility.scales : visibility.ao;
+  const TransferParams params{gbuffer.view.size, ao ? planes_in(*ao, gbuffer.view) - 1 : 0, to_vec3(space_from_view[0]),
+                              to_vec3(space_from_view[1]), to_vec3(space_from_view[2])};
+  gpu.dispatch("transfer", params,
+               {{"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"Ao", gpu::Optional(ao)},
+                {"Moments", gpu::Optional(visibility.moments)},
+                {"Light", gpu::Optional(colors)},
+                {"Planes", planes}},
+               extent_of(gbuffer.view), {visibility.moments ? 0u : 1u, light ? 1u : 0u});
+  return planes;
 }
 
 gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,

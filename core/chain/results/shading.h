@@ -28,9 +28,14 @@ Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& v
 gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
                    const gpu::Buffer* material_ao, const Matte& matte = {}, const std::string& prefix = "");
 
-/// The mean open directions as unit vectors, packed as the normals are. `bent` may be null, of an estimator that finds
-/// none: then they are the normals.
-gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* bent);
+/// The mean open directions as unit vectors, packed as the normals are; without moments the normals.
+gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* moments);
+
+/// The nine coefficients of the reflected light, with the AO of the largest radius, in that space; with a light, planes
+/// r, g, b of what is reflected of it. The visibility must have moments of second order, or no planes at all: then
+/// nothing is blocked. `name`: of the buffer.
+gpu::Buffer& transfer(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
+                      const Matrix3& space_from_view, const std::string& name, const Environment* light = nullptr);
 
 /// Packed directions as planes x, y, z of that name, for the host. aov_from_view rotates them.
 gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,

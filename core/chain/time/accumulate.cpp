@@ -63,7 +63,7 @@ void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& gr
 }
 
 Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimateSet& estimates,
-                        const EstimatorSettings& settings, std::size_t scales, bool with_bent) {
+                        const EstimatorSettings& settings, std::size_t scales, uint order) {
   const float radius = reach_of(settings, radii_of(settings).back()).radius;
   const gpu::Buffer& near = gpu.buffer("moved near", kMovedCells * sizeof(uint));
   if (!estimates.is_further_part) {
@@ -75,11 +75,11 @@ Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
       place += group.count;
     }
   }
-  const std::size_t plane = plane_bytes(gbuffer.view), values = 1 + scales + (with_bent ? 3 : 0);
+  const std::size_t plane = plane_bytes(gbuffer.view), values = 1 + scales + moments_in(order);
   gpu::Buffer& sums = gpu.buffer("accumulated sums", (1 + values) * plane);
   Visibility mean{&gpu.buffer("accumulated", plane)};
   if (scales > 0) mean.scales = &gpu.buffer(fmt::format("{}accumulated", kScalesPrefix), scales * plane);
-  if (with_bent) mean.bent = &gpu.buffer(fmt::format("{}accumulated", kBentPrefix), 3 * plane);
+  if (order > 0) mean.moments = &gpu.buffer(fmt::format("{}accumulated", kMomentsPrefix), moments_in(order) * plane);
 
   AccumulateParams params{estimates.view, gbuffer.view.size, estimates.corner, radius, 0, int(scales), 0, 0};
   const std::vector<SeenGroup> none(1);
@@ -98,8 +98,8 @@ Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
                   {"Sums", sums},
                   {"Ao", mean.ao},
                   {"Scales", gpu::Optional(mean.scales)},
-                  {"Bent", gpu::Optional(mean.bent)}},
-                 extent_of(gbuffer.view), {uint(values), group.listed});
+                  {"Moments", gpu::Optional(mean.moments)}},
+                 extent_of(gbuffer.view), {uint(values), group.listed, order});
     params.place += group.count;
   }
   return {mean, &sums};

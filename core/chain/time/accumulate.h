@@ -23,8 +23,8 @@ void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& gr
            float radius, uint place, const gpu::Buffer& near);
 
 /// Takes the mean of the estimates, each where it sees what the G-buffer shows and nothing within the largest radius of
-/// it has moved. They have planes of so many radii beside the visibility, and open directions where `with_bent`.
+/// it has moved. They have planes of so many radii beside the visibility, and moments of that order.
 Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimateSet& estimates,
-                        const EstimatorSettings& settings, std::size_t scales, bool with_bent);
+                        const EstimatorSettings& settings, std::size_t scales, uint order);
 
 }  // namespace alcove
