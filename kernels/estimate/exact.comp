@@ -144,10 +144,10 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
   const float middle = dot(from, along);
   const float beside = from.x * along.y - from.y * along.x;
   const float inside_sq = a * radius_sq - beside * beside;
-  const float inside = sqrt(greater(inside_sq, 0.0));
+  const float inside = sqrt(max(inside_sq, 0.0));
   const float scale = 1.0 / a;
-  const float enters = greater((-middle - inside) * scale, 0.0);
-  const float leaves = lesser((inside - middle) * scale, unit);
+  const float enters = max((-middle - inside) * scale, 0.0);
+  const float leaves = min((inside - middle) * scale, unit);
   return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
 }
 
@@ -283,39 +283,39 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
   const Search search = c.search;
   const float eye_distance = c.point.eye_distance, radius_sq = c.radius_sq;
   const Clipped front = clip_to_sphere(stroke, radius_sq, search.unit);
-  const bool is_within = both(front.is_within, lesser(front.near.x, front.far.x) > 0.0);
+  const bool is_within = both(front.is_within, min(front.near.x, front.far.x) > 0.0);
   const float near_slope = slope_of(front.near), far_slope = slope_of(front.far);
   // The largest and the smallest slope of what lies within the sphere.
-  vec2 slopes = is_within ? vec2(greater(near_slope, far_slope), lesser(near_slope, far_slope)) : vec2(-1, 1);
-  float height = is_within ? greater(dot(front.near, search.normal), dot(front.far, search.normal)) : -kNone;
+  vec2 slopes = is_within ? vec2(max(near_slope, far_slope), min(near_slope, far_slope)) : vec2(-1, 1);
+  float height = is_within ? max(dot(front.near, search.normal), dot(front.far, search.normal)) : -kNone;
   const bool bends = kGoesOn && goes_on;
   const float last = walk.thickness + walk.change;
   if (walk.is_own || walk.thickness >= kNone) {
     // What has no end blocks by its front within the sphere alone.
     const bool bends_within = both(bends, dot(corner.place, corner.place) < radius_sq);
     const float bend = slope_of(corner.place);
-    slopes.y = is_within ? lesser(back_of(front.far, eye_distance, radius_sq), slopes.y) : slopes.y;
-    slopes.x = bends_within ? greater(bend, slopes.x) : slopes.x;
-    slopes.y = bends_within ? lesser(back_of(corner.place, eye_distance, radius_sq), lesser(bend, slopes.y)) : slopes.y;
-    height = bends_within ? greater(dot(corner.place, search.normal), height) : height;
+    slopes.y = is_within ? min(back_of(front.far, eye_distance, radius_sq), slopes.y) : slopes.y;
+    slopes.x = bends_within ? max(bend, slopes.x) : slopes.x;
+    slopes.y = bends_within ? min(back_of(corner.place, eye_distance, radius_sq), min(bend, slopes.y)) : slopes.y;
+    height = bends_within ? max(dot(corner.place, search.normal), height) : height;
   } else {
     const Stroke ends = before_sphere(stroke, search.leaving);
     Stroke back;
     const vec2 from = depths_of(ends.from, eye_distance, walk.thickness, radius_sq, back.from);
     const vec2 to = depths_of(ends.to, eye_distance, last, radius_sq, back.to);
-    slopes = vec2(greater(to.x, greater(from.x, slopes.x)), lesser(to.y, lesser(from.y, slopes.y)));
+    slopes = vec2(max(to.x, max(from.x, slopes.x)), min(to.y, min(from.y, slopes.y)));
     // Behind a part of the stroke alone the solid may reach into the sphere, or farther down in it than at the ends.
     const Clipped ends_back = clip_to_sphere(back, radius_sq, search.unit);
-    const bool is_solid = both(ends_back.is_within, lesser(ends_back.near.x, ends_back.far.x) > 0.0);
+    const bool is_solid = both(ends_back.is_within, min(ends_back.near.x, ends_back.far.x) > 0.0);
     const float a = slope_of(ends_back.near), b = slope_of(ends_back.far);
-    slopes = is_solid ? vec2(greater(a, greater(b, slopes.x)), lesser(a, lesser(b, slopes.y))) : slopes;
-    height = is_solid || from.x >= from.y ? greater(dot(ends.from, search.normal), height) : height;
-    height = is_solid || to.x >= to.y ? greater(dot(ends.to, search.normal), height) : height;
+    slopes = is_solid ? vec2(max(a, max(b, slopes.x)), min(a, min(b, slopes.y))) : slopes;
+    height = is_solid || from.x >= from.y ? max(dot(ends.from, search.normal), height) : height;
+    height = is_solid || to.x >= to.y ? max(dot(ends.to, search.normal), height) : height;
     if (bends) {
       vec2 unused;
       const vec2 bend = depths_of(corner.place, eye_distance, last, radius_sq, unused);
-      slopes = vec2(greater(bend.x, slopes.x), lesser(bend.y, slopes.y));
-      height = bend.x >= bend.y ? greater(dot(corner.place, search.normal), height) : height;
+      slopes = vec2(max(bend.x, slopes.x), min(bend.y, slopes.y));
+      height = bend.x >= bend.y ? max(dot(corner.place, search.normal), height) : height;
     }
   }
   const float top = both(slopes.x > search.lowest, height > corner.least) ? slopes.x : -1.0;
@@ -323,7 +323,7 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
   const bool onto_own = bottom <= blocked.own;
   blocked.sectors |=
       onto_own || top < bottom ? 0u : sectors_below(top, search.shift) & ~sectors_below(bottom, search.shift);
-  blocked.own = onto_own ? greater(blocked.own, top) : blocked.own;
+  blocked.own = onto_own ? max(blocked.own, top) : blocked.own;
 }
 
 /// The column of the nearest vertex beyond the end of a walk at `at` whose surface goes on towards the receiver behind
