@@ -17,6 +17,7 @@ step() { echo "$(date +%T) $*"; }
 
 step "build"
 scripts/setup.sh
+scripts/setup.sh --only-packages long
 step "every test in its long form"
 ALCOVE_TEST_LONG=1 ALCOVE_TEST_THREADS=1 ctest --test-dir build --output-on-failure -j "$(nproc)" --timeout 7200
 step "$draws random frames"

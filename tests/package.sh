@@ -43,7 +43,7 @@ wanted() {
     max/alcove_max.py python/pyproject.toml python/alcove/__init__.py python/alcove/_arrays.py python/alcove/py.typed
   find presets -name '*.toml' -printf 'share/alcove/%p\n'
   printf 'share/doc/alcove/%s\n' README.md CHANGELOG.md copyright examples/interior.{gbuffer.exr,beauty.exr,camera.json} \
-    examples/farm/{README.md,alcove.openjd.json,slurm.sh}
+    examples/farm/{README.md,Snakefile,alcove.flamenco.js,alcove.openjd.json,slurm.sh}
   find docs -name '*.md' -o -name '*.png' -o -name '*.svg' -o -name '*.json' | sed 's,^,share/doc/alcove/,'
 }
 expect_files() {  # what it is, then file names on two inputs: wanted, and there
