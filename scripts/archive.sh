@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes the portable archive of a build, BUILD/alcove-VERSION-linux-MACHINE.tar.xz: what is installed for users
-# of the program, every library that it needs, with the C library and its loader, and lavapipe. scripts/package.sh archive
-# calls it; scripts/launcher.sh becomes bin/alcove.
+# Makes the archive of a build, BUILD/alcove-VERSION-linux-MACHINE.tar.xz: what is installed for users
+# of the program, every library that it needs, with the C library and its loader, and lavapipe. scripts/package.sh
+# calls it for its word archive; scripts/launcher.sh becomes bin/alcove.
 #   scripts/archive.sh BUILD
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
@@ -35,7 +35,7 @@ stand_in() {  # what it stands in for, and who needs it
   comm -12 <(nm -D --defined-only "$1" | sed 's/.* //; s/@@*/ /' | sort) \
     <(nm -D --undefined-only "$2" | sed 's/.* //; s/@/ /' | sort) >"$folder/names"
   awk '{ print "void " $1 "(void) { __builtin_trap(); }" }' "$folder/names" >"$folder/empty.c"
-  awk '{ names[$2] = names[$2] $1 "; " } END { for (version in names) print version " { global: " names[version] "};" }' \
+  awk '{ names[$2] = names[$2] $1 "; " } END { for (one in names) print one " { global: " names[one] "};" }' \
     "$folder/names" >"$folder/empty.map"
   cc -w -fno-builtin -shared -s -nostdlib -Wl,-soname,"${1##*/}" -Wl,--version-script="$folder/empty.map" \
     "$folder/empty.c" -o "$root/lib/system/${1##*/}"

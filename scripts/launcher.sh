@@ -1,7 +1,7 @@
 #!/bin/sh
-# Starts Alcove from its archive on any Linux. Drivers of GPUs are the system's own and need its C library. If that is at
-# least as new as the archive's, it is taken, with what else of the system such drivers need. Elsewhere the archive's own
-# is taken, with which older drivers work.
+# Starts Alcove from its archive on any Linux. Drivers of GPUs are the system's own and need its C library. If that is
+# at least as new as the archive's, it is taken, with what else of the system such drivers need. Elsewhere the archive's
+# own is taken, with which older drivers work.
 # SPDX-License-Identifier: BSD-3-Clause
 root=$(dirname "$(dirname "$(readlink -f "$0")")")
 own=$(echo "$root"/lib/system/ld-linux-*)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# ARM64 without such a machine: this machine's compiler builds for a Debian in a folder, where qemu runs the first picture, tests, packages and the archive.
-# As root, with debootstrap and the packages [arm64] of packages.txt. An hour or more.
+# ARM64 without such a machine: this machine's compiler builds for a Debian in a folder, where qemu runs the first picture,
+# tests, packages and the archive. As root, with debootstrap. An hour or more.
 #   tests/arm64.sh [FOLDER]                FOLDER stays, and is gone on with
 #   ALCOVE_ARM64_TESTS='-R debug_view'     arguments of ctest
 # SPDX-License-Identifier: BSD-3-Clause
@@ -19,11 +19,10 @@ emulators=/proc/sys/fs/binfmt_misc
 [ -e $emulators/register ] || mount -t binfmt_misc binfmt_misc $emulators
 [ -e $emulators/qemu-aarch64 ] || cat /usr/lib/binfmt.d/qemu-aarch64.conf >$emulators/register
 make_debian bookworm arm64
-here=$PWD build=$PWD/build-arm64
+here=$PWD
 in_alcove() { inside sh -c "cd '$here' && $1"; }
 
 step "libraries"
-# Without browsers, compilers of the tests and other programs: what needs them is not tested here.
 mkdir -p "$root$here"
 mount --bind . "$root$here"
 in_alcove 'scripts/setup.sh --only-packages run build pictures package'
@@ -32,11 +31,28 @@ install --no-install-recommends libgtest-dev libgmock-dev python3 python3-jsonsc
 find "$root/usr/lib" -lname '/*' | while read -r link; do ln -rsf "$root$(readlink "$link")" "$link"; done
 
 step "cross compiling"
-export PKG_CONFIG_SYSROOT_DIR=$root PKG_CONFIG_LIBDIR=$root/usr/lib/aarch64-linux-gnu/pkgconfig:$root/usr/share/pkgconfig
-export QEMU_LD_PREFIX=$root  # the program prints its man pages
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
-  -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++-12 -DCMAKE_SYSROOT="$root" -DCMAKE_LIBRARY_ARCHITECTURE=aarch64-linux-gnu -DCMAKE_FIND_ROOT_PATH="$root" \
-  -DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY -DCMAKE_FIND_ROOT_PATH_MODE_INCLUDE=ONLY \
-  -DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=ONLY -DALCOVE_JAVASCRIPT=/usr/share/javascript -DALCOVE_TEST_CACHE=/root/.cache/alcove-tests >"$root/log" 2>&1 ||
-  fail "cmake: $(cat "$root/log")"
-nice -n 5 cmake --build "$build" >"$root/log" || fail "$(tail -n 30 "$root/log")"
+libraries=$root/usr/lib/aarch64-linux-gnu
+export PKG_CONFIG_SYSROOT_DIR=$root PKG_CONFIG_LIBDIR=$libraries/pkgconfig:$root/usr/share/pkgconfig
+export QEMU_LD_PREFIX=$root  # for the program outside the folder, which prints its man pages
+settings=(-DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DALCOVE_JAVASCRIPT=/usr/share/javascript)
+settings+=(-DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++-12)
+settings+=(-DCMAKE_SYSROOT="$root" -DCMAKE_LIBRARY_ARCHITECTURE=aarch64-linux-gnu -DCMAKE_FIND_ROOT_PATH="$root")
+settings+=(-DCMAKE_FIND_ROOT_PATH_MODE_PROGRAM=NEVER -DALCOVE_TEST_CACHE=/root/.cache/alcove-tests)
+for kind in LIBRARY INCLUDE PACKAGE; do settings+=(-DCMAKE_FIND_ROOT_PATH_MODE_$kind=ONLY); done
+cmake -S . -B build-arm64 -G Ninja "${settings[@]}" >"$root/log" 2>&1 || fail "cmake: $(cat "$root/log")"
+cmake --build build-arm64 >"$root/log" || fail "$(tail -n 30 "$root/log")"
+
+step "first picture, in $(in_alcove 'build-arm64/alcove devices')"
+scripts/setup.sh --only-program
+frame="run examples/interior.gbuffer.exr --camera examples/interior.camera.json --radius 0.35 -o build-arm64"
+build/alcove $frame/here.exr
+in_alcove "build-arm64/alcove $frame/arm64.exr"
+build/alcove compare build-arm64/arm64.exr build-arm64/here.exr --max-rmse 1e-4
+step "packages and archive"
+rm -f build-arm64/*.deb
+in_alcove 'cpack --config build-arm64/CPackConfig.cmake -B build-arm64 && scripts/archive.sh build-arm64'
+tests/first_picture.sh bookworm build-arm64/alcove_*_arm64.deb
+tests/first_picture.sh bullseye build-arm64/alcove-*-linux-aarch64.tar.xz
+step "tests"
+in_alcove "ctest --test-dir build-arm64 -LE 'long|hosts' --timeout 7200 --output-on-failure ${ALCOVE_ARM64_TESTS:-}"
+step "done"

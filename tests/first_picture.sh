@@ -56,10 +56,11 @@ case $name in
     step "$suite, $name: $taken to unpack and to the first picture; $size"
 
     mv "$home/ao.exr" "$root/inside.exr"
-    (cd "$home" && eval "$(dirname "$file")/alcove $(frame "$examples")") 2>"$root/log" || fail "$(cat "$root/log")"
+    (cd "$home" && eval "'${file%/*}/alcove' $(frame "$examples")") 2>"$root/log" || fail "$(cat "$root/log")"
     cmp "$root/inside.exr" "$home/ao.exr" || fail "it has other bits than the program that it was made of"
     rm "$home/ao.exr"
-    as_user "LD_DEBUG=libs LD_DEBUG_OUTPUT=/home/stranger/loads $folder/bin/alcove $(frame "$examples")" >"$root/log" 2>&1
+    watched="LD_DEBUG=libs LD_DEBUG_OUTPUT=/home/stranger/loads $folder/bin/alcove"
+    as_user "$watched $(frame "$examples")" >"$root/log" 2>&1
     # The shell of the launcher is the same process before it.
     loaded=$(awk -v own="/$folder/lib/" 'FNR == 1 { is_own = 0 } index($0, own) { is_own = 1 }
       is_own && /calling init: / { print $NF }' "$home"/loads.* | sort -u)

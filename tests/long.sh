@@ -22,6 +22,30 @@ step "every test in its long form"
 ALCOVE_TEST_LONG=1 ALCOVE_TEST_THREADS=1 ctest --test-dir build --output-on-failure -j "$(nproc)" --timeout 7200
 step "$draws random frames"
 ALCOVE_STABILITY_DRAWS=$draws build/tests/stability_test --gtest_filter=Grid.all_axes_at_once
+step "the newest validation layer, Chromium's, also in the kernels"
+layer=$PWD/build/validation
+mkdir -p "$layer"
+cat >"$layer/layer.json" <<'END'
+{"file_format_version": "1.2.0", "layer": {"name": "VK_LAYER_KHRONOS_validation", "type": "GLOBAL", "description": "Chromium's",
+ "library_path": "/usr/lib/chromium/libVkLayer_khronos_validation.so", "api_version": "1.4.0", "implementation_version": "1",
+ "instance_extensions": [{"name": "VK_EXT_debug_utils", "spec_version": "2"}]}}
+END
+printf 'khronos_validation.%s\n' validate_sync=true gpuav_enable=true message_id_filter=VALIDATION-SETTINGS,WARNING-Setting-Limit-Adjusted \
+  gpuav_validate_trace_ray=false gpuav_mesh_shading=false >"$layer/vk_layer_settings.txt"
+VK_LAYER_PATH=$layer VK_LAYER_SETTINGS_PATH=$layer/vk_layer_settings.txt ctest --test-dir build --output-on-failure -R '^validation_test$'
+
+step "kernels without the passes of spirv-opt"
+cmake -S . -B build-plain -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON -DALCOVE_SPIRV_PASSES= >/dev/null
+cmake --build build-plain --target alcove >build-plain/build.log || { cat build-plain/build.log; exit 1; }
+export ALCOVE_PRESETS=$PWD/presets
+for preset in draft standard production reference source/forfun-{crytek,hbao}; do
+  for program in build build-plain; do
+    $program/alcove run examples/interior.gbuffer.exr --camera examples/interior.camera.json --radius 0.35 --preset "$preset" -q \
+      --aov ao,bent-normal,confidence,specular-occlusion -o "$program/kernels.exr"
+  done
+  cmp build/kernels.exr build-plain/kernels.exr
+done
+
 seconds=${ALCOVE_FUZZ_SECONDS:-300}
 if [ "$seconds" != 0 ]; then
   step "fuzzing, $seconds s a target"

@@ -4,7 +4,8 @@ const JOB_TYPE = {
     label: "Alcove ambient occlusion",
     settings: [
         { key: "frames", type: "string", required: true, eval: "f'{C.scene.frame_start}-{C.scene.frame_end}'",
-          evalInfo: { showLinkButton: true, description: "Frames of the scene" }, description: "Such as 1001-1100, 1200" },
+          evalInfo: { showLinkButton: true, description: "Frames of the scene" },
+          description: "Such as 1001-1100, 1200" },
         { key: "chunk_size", type: "int32", default: 20, visible: "submission", description: "Frames of a task" },
         { key: "input", type: "string", subtype: "file_path", required: true,
           description: "The frames, such as /shots/shot.%04d.exr" },
@@ -12,7 +13,7 @@ const JOB_TYPE = {
           description: "Where the AO goes, such as /shots/ao/shot.%04d.exr" },
         { key: "camera", type: "string", subtype: "file_path", default: "",
           description: "A camera file; empty: the frames tell their camera, as those with a Position pass do" },
-        { key: "radius", type: "string", default: "0.5", description: "How far occluders reach, in scene units, or auto" },
+        { key: "radius", type: "string", default: "0.5", description: "How far occluders reach, scene units" },
         { key: "preset", type: "string", default: "standard" },
         { key: "alcove", type: "string", default: "alcove", visible: "submission",
           description: "The program, on each worker's path, or a variable of the manager such as {alcove}" },

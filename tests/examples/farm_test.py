@@ -102,8 +102,8 @@ with tempfile.TemporaryDirectory(prefix="alcove-farm-") as name:
     (folder / "bin").mkdir()
     (folder / "bin/alcove").write_text(KILLED_ONCE)
     (folder / "bin/alcove").chmod(0o755)
-    subprocess.run([PROGRAM, "run", "shot.%04d.exr", "-o", "local/shot.%04d.exr", "--frames", FRAMES, "--camera", "shot.json",
-                    "--radius", "0.5", "-q"], check=True, cwd=folder)
+    subprocess.run([PROGRAM, "run", "shot.%04d.exr", "-o", "local/shot.%04d.exr", "--frames", FRAMES, "--camera",
+                    "shot.json", "--radius", "0.5", "-q"], check=True, cwd=folder)
     if SYSTEM == "flamenco":
         run_flamenco(folder)
     else:
