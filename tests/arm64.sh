@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# ARM64 without such a machine: this machine's compiler builds for a Debian in a folder, where qemu runs the first picture,
+# ARM64 without such a machine: this one compiles for a Debian in a folder, where qemu runs the first picture,
 # tests, packages and the archive. As root, with debootstrap. An hour or more.
 #   tests/arm64.sh [FOLDER]                FOLDER stays, and is gone on with
 #   ALCOVE_ARM64_TESTS='-R debug_view'     arguments of ctest

@@ -55,9 +55,11 @@ case $name in
     size="$(stat -c %s "$file") bytes, $(du -sm "$home/$folder" | cut -f1) MB unpacked"
     step "$suite, $name: $taken to unpack and to the first picture; $size"
 
-    mv "$home/ao.exr" "$root/inside.exr"
-    (cd "$home" && eval "'${file%/*}/alcove' $(frame "$examples")") 2>"$root/log" || fail "$(cat "$root/log")"
-    cmp "$root/inside.exr" "$home/ao.exr" || fail "it has other bits than the program that it was made of"
+    if [ -z "$architecture" ]; then  # the program itself runs here
+      mv "$home/ao.exr" "$root/inside.exr"
+      (cd "$home" && eval "'${file%/*}/alcove' $(frame "$examples")") 2>"$root/log" || fail "$(cat "$root/log")"
+      cmp "$root/inside.exr" "$home/ao.exr" || fail "it has other bits than the program that it was made of"
+    fi
     rm "$home/ao.exr"
     watched="LD_DEBUG=libs LD_DEBUG_OUTPUT=/home/stranger/loads $folder/bin/alcove"
     as_user "$watched $(frame "$examples")" >"$root/log" 2>&1
