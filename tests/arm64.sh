@@ -26,7 +26,8 @@ step "libraries"
 mkdir -p "$root$here"
 mount --bind . "$root$here"
 in_alcove 'scripts/setup.sh --only-packages run build pictures package'
-install --no-install-recommends libgtest-dev libgmock-dev python3 python3-jsonschema python3-numpy vulkan-validationlayers
+install --no-install-recommends libgtest-dev libgmock-dev python3 python3-jsonschema python3-numpy \
+  vulkan-validationlayers
 # Links of development packages to /lib would lead out of the folder.
 find "$root/usr/lib" -lname '/*' | while read -r link; do ln -rsf "$root$(readlink "$link")" "$link"; done
 
