@@ -1,6 +1,6 @@
-# The packages of `cpack -G DEB` and `cpack -G TGZ`; scripts/package.sh calls both.
+# The Debian packages, by cpack, which scripts/package.sh calls.
 # SPDX-License-Identifier: BSD-3-Clause
-set(CPACK_GENERATOR DEB TGZ)
+set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "Alcove developers <alcove@alcove.invalid>")  # the field needs an address; this one does not exist
 set(CPACK_STRIP_FILES ON)
 # Fixed, so that the umask of the builder does not matter.
@@ -8,7 +8,7 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_THREADS 0)
 
 find_program(DPKG_DEB dpkg-deb)
-# The program, the library for other programs, and Python's package; the archive holds all. The module is loaded by its name, so that only its own
+# The program, the library for other programs, and Python's package. The module is loaded by its name, so that only its own
 # package depends on OpenImageIO.
 set(CPACK_COMPONENTS_ALL alcove library dev)
 if(DPKG_DEB)

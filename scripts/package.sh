@@ -1,10 +1,15 @@
 #!/usr/bin/env bash
-# Builds the packages into build-package/: Debian packages of the program, its module for pictures and its libraries, and an archive of all.
-#   scripts/package.sh [CMAKE ARGUMENTS]
+# Builds into build-package/ the Debian packages of the program, its module for pictures and its libraries, or the portable archive of the program.
+#   scripts/package.sh [archive] [CMAKE ARGUMENTS]
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+kind=packages
+if [ "${1:-}" = archive ]; then
+  kind=archive
+  shift
+fi
 scripts/setup.sh --only-packages run build pictures package
 # Debian's flags with all of its hardening, and without debug information, which would be stripped again.
 export DEB_BUILD_MAINT_OPTIONS=hardening=+all DEB_CXXFLAGS_MAINT_STRIP=-g
@@ -13,5 +18,9 @@ cmake -S . -B build-package -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=
   -DCMAKE_CXX_FLAGS="$(dpkg-buildflags --get CXXFLAGS) $(dpkg-buildflags --get CPPFLAGS)" \
   -DCMAKE_EXE_LINKER_FLAGS="$linker_flags" -DCMAKE_MODULE_LINKER_FLAGS="$linker_flags" "$@"
 cmake --build build-package
-rm -f build-package/*.deb build-package/*.tar.gz
-cpack --config build-package/CPackConfig.cmake -B build-package
+if [ "$kind" = archive ]; then
+  scripts/archive.sh build-package
+else
+  rm -f build-package/*.deb
+  cpack --config build-package/CPackConfig.cmake -B build-package
+fi

@@ -10,18 +10,27 @@ in_own_mounts() {
   ALCOVE_OWN_MOUNTS=yes exec unshare --mount --propagation private "$0" "$@"
 }
 
+# own_root [FOLDER]: sets root to FOLDER, which stays, or else to one that goes with the script.
+own_root() {
+  root=${1:-$(mktemp -d)}
+  mkdir -p "$root"
+  root=$(realpath "$root")
+  chmod 755 "$root"  # apt downloads as a user of its own
+  [ -n "${1:-}" ] || trap 'umount -q "$root/proc" "$root/dev/shm" "$root/dev/pts" || true; rm -rf --one-file-system "$root" "$root.log"' EXIT
+}
+
 machine_sources() { apt-get indextargets --format 'deb $(REPO_URI) $(CODENAME) $(COMPONENT)' 'Identifier: Packages' 'Origin: Debian'; }
 
-# make_debian [SUITE]: in $root. Without a suite it is this machine's Debian, with all of its archives.
+# make_debian [SUITE [ARCHITECTURE]]: in $root. Without a suite it is this machine's Debian, with all of its archives.
 make_debian() {
-  local sources mirror own_suite suite
+  local sources mirror own_suite suite architecture=${2:-$(dpkg --print-architecture)}
   sources=$(machine_sources)
   read -r _ mirror own_suite _ <<<"$(grep -v -e security -e updates <<<"$sources" | head -n 1)"
   [ -n "${own_suite:-}" ] || fail "apt knows no archive of Debian: run apt-get update"
   suite=${1:-$own_suite}
   [ "$suite" = "$own_suite" ] || sources="deb $mirror $suite main"
-  step "a fresh Debian ($suite)"
-  [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase "$suite" "$root" "$mirror" >"$root.log" 2>&1 || fail "debootstrap: $(tail "$root.log")"
+  step "a fresh Debian ($suite, $architecture)"
+  [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase --arch="$architecture" "$suite" "$root" "$mirror" >"$root.log" 2>&1 || fail "debootstrap: $(tail "$root.log")"
   mount -t proc proc "$root/proc"
   mount -t tmpfs tmpfs "$root/dev/shm"
   mount -t devpts devpts "$root/dev/pts"
@@ -35,3 +44,8 @@ make_debian() {
 }
 
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+install() { inside apt-get install -y -qq "$@" >"$root/log" 2>&1 || fail "apt-get install $*: $(cat "$root/log")"; }
+
+# A user who may write nowhere else than in a folder of their own.
+make_stranger() { rm -rf "$root/home/stranger" && mkdir -p "$root/home/stranger" && chown 1000:1000 "$root/home/stranger"; }
+as_user() { chroot --userspec=1000:1000 "$root" env -i PATH=/usr/bin:/bin HOME=/home/stranger LC_ALL=C.UTF-8 sh -c "cd /home/stranger && $1"; }

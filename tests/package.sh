@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What is installed and packaged from a finished build, and whether it works elsewhere. Nothing is compiled.
 #   tests/package.sh --install [BUILD]      `cmake --install` into a folder that is then moved: ctest's case `install`
-#   tests/package.sh [BUILD]                also the Debian packages, by lintian, and the archive
+#   tests/package.sh [BUILD]                also the Debian packages, by lintian, and the archive, which is made if it is not there
 #   tests/package.sh --bootstrap [BUILD]    also the packages in a fresh Debian without a compiler: as root, with debootstrap and the machine's own archives
 # BUILD is build/ unless given; build-package/ holds what scripts/package.sh built.
 # SPDX-License-Identifier: BSD-3-Clause
@@ -43,7 +43,7 @@ wanted() {
     max/alcove_max.py python/pyproject.toml python/alcove/__init__.py python/alcove/_arrays.py python/alcove/py.typed
   find presets -name '*.toml' -printf 'share/alcove/%p\n'
   printf 'share/doc/alcove/%s\n' README.md CHANGELOG.md copyright examples/interior.{gbuffer.exr,beauty.exr,camera.json} \
-    examples/farm/{README.md,alcove.openjd.json,slurm.sh}
+    examples/farm/{README.md,Snakefile,alcove.flamenco.js,alcove.openjd.json,slurm.sh}
   find docs -name '*.md' -o -name '*.png' -o -name '*.svg' -o -name '*.json' | sed 's,^,share/doc/alcove/,'
 }
 expect_files() {  # what it is, then file names on two inputs: wanted, and there
@@ -103,8 +103,6 @@ for package in alcove pictures library dev python; do
   files_of "${!package}" >"$folder/files"
   expect_files "${!package##*/}" "$folder/wanted.$package" "$folder/files"
 done
-tar -tf "$folder"/packages/alcove-*.tar.gz | sed '/\/$/d; s,^[^/]*/,,' >"$folder/files"
-expect_files "the archive" "$folder/wanted" "$folder/files"
 for package in alcove library; do
   ! dpkg-deb -f "${!package}" Depends | grep -q openimageio || fail "${!package##*/} depends on OpenImageIO"
 done
@@ -114,6 +112,21 @@ dpkg-deb -f "$pictures" Depends | grep -qF "alcove (= $(dpkg-deb -f "$alcove" Ve
 as_root=()
 [ "$(id -u)" != 0 ] || as_root=(--allow-root)
 lintian "${as_root[@]}" --fail-on error,warning --suppress-tags maintscript-calls-ldconfig,pkg-config-unavailable-for-cross-compilation "$alcove" "$pictures" "$library" "$dev" "$python" || fail "lintian: see above"
-(cd "$folder/packages" && stat -c '%s bytes: %n' -- *.deb *.tar.gz)
+(cd "$folder/packages" && stat -c '%s bytes: %n' -- *.deb)
+
+step "archive"
+archive=$(echo "$build"/alcove-*-linux-*.tar.xz)
+[ -e "$archive" ] || scripts/archive.sh "$build"
+archive=$(echo "$build"/alcove-*-linux-*.tar.xz)
+[ "$(stat -c %s "$archive")" -le 50000000 ] || fail "$archive has more than 50 MB"
+tar -C "$folder" -xJf "$archive"
+mv "$folder"/alcove-*-linux-* "$folder/archive of"  # no path is kept, and a space does no harm
+(cd "$folder/archive of" && find . ! -type d -printf '%P\n') | grep -vE '^lib/|^share/doc/alcove/libraries/' >"$folder/files"
+{ cat "$folder/wanted.alcove"; printf '%s\n' libexec/alcove share/vulkan/icd.d/lavapipe.json; } >"$folder/wanted.archive"
+expect_files "the archive" "$folder/wanted.archive" "$folder/files"
+ln -s "$folder/archive of/bin/alcove" "$folder/linked"
+for program in "$folder/archive of/bin/alcove" "$folder/linked"; do
+  env -i PATH=/usr/bin:/bin HOME="$folder" "$program" doctor | grep -qF "$folder/archive of/share/alcove/presets" || fail "$program has other presets than the archive's"
+done
 [ "$last" = packages ] || tests/package_bootstrap.sh "$folder/packages" "$build"
 step "done"

@@ -13,24 +13,14 @@ fail() {
 . tests/debian.sh
 in_own_mounts "$@"
 
-root=$(mktemp -d)
-chmod 755 "$root"  # apt downloads as a user of its own
-trap 'umount -q "$root/proc" "$root/dev/shm" "$root/dev/pts" || true; rm -rf --one-file-system "$root" "$root.log"' EXIT
+own_root
 begin=$(date +%s)
 step() { echo "$(date +%T) $*"; }
-# Who may write nowhere else, in a folder of their own.
-as_user() { chroot --userspec=1000:1000 "$root" env -i PATH=/usr/bin:/bin HOME=/home/stranger LC_ALL=C.UTF-8 sh -c "cd /home/stranger && $1"; }
-install() { inside apt-get install -y -qq "$@" >"$root/log" 2>&1 || fail "apt-get install $*: $(cat "$root/log")"; }
 state() { inside dpkg-query -W -f '${db:Status-Abbrev}${Installed-Size}\n' | awk '$1 == "ii" { count++; size += $2 } END { printf "%d packages, %d MB\n", count, size / 1024 }'; }
-seconds() {  # how long a command takes
-  local start=$EPOCHREALTIME
-  "$@"
-  awk -v start="$start" -v end="$EPOCHREALTIME" 'BEGIN { printf "%.1f s\n", end - start }'
-}
 
 make_debian
-mkdir "$root/packages" "$root/home/stranger"
-chown 1000:1000 "$root/home/stranger"
+make_stranger
+mkdir "$root/packages"
 cp "$packages"/*.deb "$root/packages/"
 alcove=/packages/$(basename "$packages"/alcove_*.deb) pictures=/packages/$(basename "$packages"/alcove-pictures_*.deb)
 step "fresh: $(state)"
@@ -45,14 +35,9 @@ grep -q mesa-vulkan-drivers <<<"$said" || fail "without a Vulkan driver a run do
 inside apt-get purge -y -qq --autoremove alcove >/dev/null 2>&1
 
 # As the README has it, with what is recommended.
-inside apt-get install -y -qq -d "$alcove" >"$root/log" 2>&1 || fail "apt-get install -d: $(cat "$root/log")"
-first_picture() {
-  install "$alcove"
-  as_user "cp -r $examples . && alcove run examples/interior.gbuffer.exr --camera examples/interior.camera.json --radius 0.35 -o ao.exr --preview ao.png" \
-    >"$root/log" 2>&1 || fail "the first picture: $(cat "$root/log")"
-}
-taken=$(seconds first_picture)
-step "from apt install, with archives downloaded, to the first picture: $taken"
+install "$alcove"
+as_user "cp -r $examples . && alcove run examples/interior.gbuffer.exr --camera examples/interior.camera.json --radius 0.35 -o ao.exr --preview ao.png" \
+  >"$root/log" 2>&1 || fail "the first picture: $(cat "$root/log")"
 step "with what is recommended: $(state)"
 inside ldconfig -p | grep -q OpenImageIO && fail "alcove has brought OpenImageIO"
 

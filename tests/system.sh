@@ -13,11 +13,7 @@ step() { echo "$(date +%T) $*"; }
 . tests/debian.sh
 suite=${1:?SUITE, such as trixie}
 in_own_mounts "$@"
-root=${2:-$(mktemp -d)}
-mkdir -p "$root"
-root=$(realpath "$root")
-chmod 755 "$root"  # apt downloads as a user of its own
-[ -n "${2:-}" ] || trap 'umount -q "$root/proc" "$root/dev/shm" "$root/dev/pts" || true; rm -rf --one-file-system "$root" "$root.log"' EXIT
+own_root "${2:-}"
 
 make_debian "$suite"
 mkdir -p "$root/alcove"

@@ -21,7 +21,9 @@
 #include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <cinttypes>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -85,8 +87,16 @@ bool is_unsupported(int error) { return error == EINVAL || error == ENOSYS || er
 int process_id() { return int(::getpid()); }
 
 std::string program_folder() {
-  std::error_code error;
-  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path().string();
+  // Not /proc/self/exe, which is the loader of the C library if that was told to start the program, as in the archive.
+  const auto here = reinterpret_cast<std::uintptr_t>(&program_folder);
+  std::string line;
+  for (std::ifstream maps("/proc/self/maps"); std::getline(maps, line);) {
+    std::uintptr_t begin = 0, end = 0;
+    const bool is_range = std::sscanf(line.c_str(), "%" SCNxPTR "-%" SCNxPTR, &begin, &end) == 2;
+    if (is_range && begin <= here && here < end)
+      return std::filesystem::path(line.substr(std::min(line.find('/'), line.size()))).parent_path().string();
+  }
+  return {};
 }
 
 std::string system_name() {

@@ -16,7 +16,7 @@ namespace alcove {
 /// The number of this process.
 int process_id();
 
-/// The folder of the running program; empty if the system does not tell it.
+/// The folder of the running program, or of the library that this is part of; empty if the system does not tell it.
 std::string program_folder();
 
 /// The system and its kernel, such as "Debian GNU/Linux 12 (bookworm), Linux 6.1.0 x86_64".
