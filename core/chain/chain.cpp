@@ -61,7 +61,8 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   const Visibility noisy = combine(gpu, work, seen.estimate, wanted.needs_scales());
   const FilterRuns runs = dilate(gpu, work, seen.estimate.listed, denoiser);
   const Visibility fitted = fit_sites(gpu, work, noisy, chosen, denoiser);
-  const Visibility smooth = chosen.rows ? interpolate(gpu, work, noisy, fitted, chosen, denoiser, runs)
+  const Visibility smooth = chosen.rows ? spread(gpu, work, noisy, fitted, chosen,
+                                                 interpolate(gpu, work, noisy, fitted, chosen, denoiser, runs))
                                         : denoise(gpu, work, noisy, denoiser, runs);
   seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smooth, runs));
   if (wanted.has(&FrameOutputs::error)) seen.error = cut(gpu, frame, seen.estimate.error, "error");
