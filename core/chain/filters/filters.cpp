@@ -307,7 +307,7 @@ Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibil
 
 Visibility spread(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& noisy, const Visibility& fitted,
                   const Sites& sites, Visibility smooth) {
-  if (!noisy.moments) return smooth;
+  if (!noisy.moments || !sites.rows) return smooth;
   const Lattice lattice = lattice_of(gbuffer, sites);
   smooth.moments = &denoised(gpu, kMomentsPrefix, noisy.moments->bytes());
   gpu.dispatch("spread", SpreadParams{gbuffer.view, lattice.first, lattice.sites},
