@@ -63,7 +63,8 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   const Visibility fitted = fit_sites(gpu, work, noisy, chosen, denoiser);
   const Visibility smooth = chosen.rows ? interpolate(gpu, work, noisy, fitted, chosen, denoiser, runs)
                                         : denoise(gpu, work, noisy, denoiser, runs);
-  seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smooth, runs));
+  const Visibility whole = spread(gpu, work, noisy, fitted, chosen, smooth);
+  seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, whole, runs));
   if (wanted.has(&FrameOutputs::error)) seen.error = cut(gpu, frame, seen.estimate.error, "error");
   seen.stages = {work, noisy.ao, chosen, smooth.ao, seen.estimate.completed, seen.estimate.listed.kinds};
   return seen;

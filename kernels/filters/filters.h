@@ -45,6 +45,11 @@ struct FitSitesParams {
   float reach;  // px that the radius is wide at unit depth (orthographic: at any)
 };
 
+struct SpreadParams {
+  View view;
+  ivec2 first, sites;  // of the lattice, as FitSitesParams has them
+};
+
 ALCOVE_CONSTANT uint kInterpolateColumns = 1;  // columns, after rows; else rows
 ALCOVE_CONSTANT uint kInterpolateListed = 2;   // only the runs of the list, not all
 ALCOVE_CONSTANT uint kInterpolateByDepth = 4;  // weighs by depth_sigma instead of by plane distance

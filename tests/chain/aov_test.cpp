@@ -129,10 +129,11 @@ TEST_F(Aovs, without_ao_no_radius_is_needed) {
 
 TEST_F(Aovs, unknown_ones_are_answered_with_all_there_are) {
   for (const char* list : {"nromal", "ao,nromal", "bent", "ao,,depth", ""})
-    expect_run_refused(
-        2,
-        {"--aov", "ao, ao-scales, normal, bent-normal, transfer, depth, hidden, confidence, error, specular-occlusion"},
-        {"--aov", list});
+    expect_run_refused(2,
+                       {"--aov",
+                        "ao, ao-scales, normal, bent-normal, transfer, relight, relight-open, depth, hidden, "
+                        "confidence, error, specular-occlusion"},
+                       {"--aov", list});
   expect_run_refused(2, {"did you mean normal?"}, {"--aov", "nromal"});
 }
 

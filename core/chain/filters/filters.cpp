@@ -239,7 +239,7 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
   const Lattice lattice = lattice_of(gbuffer, sites);
   params.first = lattice.first;
   params.sites = lattice.sites;
-  params.missing = prefix == kMomentsPrefix ? 0.5f : 1.0f;
+  params.missing = 1.0f;
   const uint mode =
       (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.looks_up ? kInterpolateLooksUp : 0);
   const uint of_rows = fitted ? kInterpolateFitted : 0;
@@ -299,9 +299,27 @@ Visibility fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibilit
 
 Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
                        const Visibility& fitted, const Sites& sites, const Denoiser& denoiser, const FilterRuns& runs) {
-  return filtered(visibility, runs, [&](Planes planes, const char* prefix, const FilterRuns& listed) -> gpu::Buffer& {
+  const Visibility scalar{visibility.ao, visibility.scales};
+  return filtered(scalar, runs, [&](Planes planes, const char* prefix, const FilterRuns& listed) -> gpu::Buffer& {
     return interpolate(gpu, gbuffer, *(visibility.*planes), fitted.*planes, sites, denoiser, prefix, listed);
   });
+}
+
+Visibility spread(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& noisy, const Visibility& fitted,
+                  const Sites& sites, Visibility smooth) {
+  if (!noisy.moments || !sites.rows) return smooth;
+  const Lattice lattice = lattice_of(gbuffer, sites);
+  smooth.moments = &denoised(gpu, kMomentsPrefix, noisy.moments->bytes());
+  gpu.dispatch("spread", SpreadParams{gbuffer.view, lattice.first, lattice.sites},
+               {{"Moments", noisy.moments},
+                {"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"Fitted", gpu::Optional(fitted.moments)},
+                {"Sites", sites.rows},
+                {"Result", smooth.moments}},
+               {uint(lattice.sites.x), uint(lattice.sites.y)},
+               {planes_in(*noisy.moments, gbuffer.view), fitted.moments ? 1u : 0u});
+  return smooth;
 }
 
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, gpu::Buffer& low_planes,
