@@ -70,9 +70,16 @@ void main() {
     whole[i] = 0.0;
     for (int p = 0; p < kPlanes; p++) sum[i * kPlanes + p] = 0.0;
   }
-  for (int j = -kMargin; j < kLatticeStep + kMargin; j++)
-    for (uint left = sites_of_row(corner + ivec2(-kMargin, j)); left != 0u; left &= left - 1u) {
-      const ivec2 beside = ivec2(findLSB(left) - kMargin, j), site = corner + beside;
+  // The sites of the upper and of the lower half of what the cell looks at, as bits.
+  uvec2 left = uvec2(0);
+  for (int j = 0; j < kAcross; j++)
+    left[j / 4] |= sites_of_row(corner + ivec2(-kMargin, j - kMargin)) << uint(j % 4 * kAcross);
+  if ((left.x | left.y) != 0u) {
+    do {
+      const bool is_upper = left.x != 0u;
+      const int bit = is_upper ? findLSB(left.x) : findLSB(left.y) + 32;
+      left = is_upper ? uvec2(left.x & left.x - 1u, left.y) : uvec2(0, left.y & left.y - 1u);
+      const ivec2 beside = ivec2(bit % kAcross, bit / kAcross) - kMargin, site = corner + beside;
       const int index = index_of(view, site);
       const bool is_smooth = kFitted != 0u && ((beside.x | beside.y) & (kLatticeStep - 1)) == 0;
       const ivec2 of_lattice = min(cell + beside / kLatticeStep, params.sites - 1);
@@ -85,12 +92,13 @@ void main() {
       }
       for (int i = 0; i < kCell; i++) {
         const vec2 away = vec2(beside - ivec2(i % kLatticeStep, i / kLatticeStep));
-        const vec2 tent = max(1.0 - abs(away) / kTent, 0.0);
+        const vec2 tent = max(1.0 - abs(away) * (1.0 / kTent), 0.0);
         const float share = weight * tent.x * tent.y * max(similarity(here[i], tap, away), kLeastSimilarity);
         whole[i] += share;
         for (int p = 0; p < kPlanes; p++) sum[i * kPlanes + p] += share * value[p];
       }
-    }
+    } while ((left.x | left.y) != 0u);
+  }
   for (int i = 0; i < kCell; i++) {
     const ivec2 pixel = corner + ivec2(i % kLatticeStep, i / kLatticeStep);
     if (!inside(view, pixel)) continue;
