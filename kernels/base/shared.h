@@ -38,8 +38,8 @@ layout(scalar) buffer;
 // What lavapipe (Mesa 22 to 25) makes of branches and loops: it goes through both sides of an `if` with its lanes
 // switched off, and looks only at the end of a loop's body whether any lane goes on. A loop that asks before its body,
 // as `for` does, goes through it once more than it has rounds. So loops whose bodies are long ask behind them. Values
-// that are the same for all invocations are loaded outside of conditions and loops: there lavapipe loads them once, else
-// for one lane after the other.
+// that are the same for all invocations are loaded outside of conditions and loops: there lavapipe loads them once,
+// else for one lane after the other.
 #define ALCOVE_BEGIN
 #define ALCOVE_END
 #define ALCOVE_CONSTANT const

@@ -61,26 +61,22 @@ float depth_at(Receiver r, Side side, Reach reach, ivec2 pixel, int i, int plane
 }
 
 /// For each surface the one at the last sample from which it goes on, the nearest in depth of those that are one
-/// surface with it (same_surface()), if some surface of the pixel in the middle is one with both; -1: it begins.
+/// surface with it by some surface of the pixel in the middle, see is_through(); -1: it begins.
 int[kMostSurfaces] links_of(Receiver r, Reach reach, Surfaces found, float middle_z[kMostSurfaces],
                             float last_z[kMostSurfaces], float gap) {
   int from[kMostSurfaces];
-  float left[kMostSurfaces], limit[kMostSurfaces];
-  const float slope = kRunSlope * reach.pixel_size * gap;
-  for (int j = 0; j < kSurfaces; j++) {
-    left[j] = last_z[j];
-    limit[j] = r.perspective ? slope * last_z[j] : slope;
-  }
+  float left[kMostSurfaces];
+  for (int j = 0; j < kSurfaces; j++) left[j] = last_z[j];
   for (int i = 0; i < kSurfaces; i++) {
     const float z = found.exists[i] ? found.at[i].z : kNoSurface;
-    float least = r.perspective ? slope * z : slope;
+    float least = kNoSurface;
     from[i] = -1;
     for (int j = 0; j < kSurfaces; j++) {
       bool through = false;
       for (int m = 0; m < kSurfaces; m++)
         through = is_through(r, reach, z, middle_z[m], last_z[j], gap) ? true : through;
       const float apart = abs(z - left[j]);
-      const bool goes_on = both(through, apart < min(least, limit[j]));
+      const bool goes_on = both(through, apart < least);
       least = goes_on ? apart : least;
       from[i] = goes_on ? j : from[i];
     }

@@ -195,7 +195,7 @@ TEST_F(TilesOfShots, give_the_bits_of_the_whole) {
   write_shot(3, {0, 0, 512, 288});
   expect_same("--around 1", 40);
   expect_same("--accumulate 1 --aov ao,bent-normal", 48);
-  expect_same("--accumulate 1 --aov ao,transfer", 72);
+  expect_same("--accumulate 1 --aov ao,transfer", 84);
   // What moves is known in tiles after those of sky.
   constexpr Window kTall{0, 0, 512, 400};
   write_bytes(camera, wall_camera(kTall).dump());
