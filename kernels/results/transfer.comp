@@ -22,14 +22,25 @@ layout(scalar, push_constant) uniform Push { TransferParams params; };
 readonly buffer Depth { float depth[]; };   // one float per pixel, planar depth, kSkyDepth for sky
 readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
 readonly buffer Ao { float ao[]; };         // planes of visibility in [0, 1]; not with kOpen
-readonly buffer Moments {
-  float moments[];
-};                                        // planes of moments up to second order, see stored_moment(); not with kOpen
-readonly buffer Light { vec3 light[]; };  // nine colours; only with kRelights
+// planes of moments up to second order, see stored_moment(); not with kOpen
+readonly buffer Moments { float moments[]; };
+readonly buffer Light { vec3 light[]; };      // nine colours; only with kRelights
 writeonly buffer Planes { float planes[]; };  // nine planes, or three
 
 /// The constants of Y_00, of Y_1m, of the products among Y_2m over 2, of Y_20 times 2 and of Y_22.
 const float kConstant = 0.28209479, kLinear = 0.48860251, kMixed = 0.54627422, kZonal = 0.63078313;
+
+/// The moments no larger than those of so much visibility in one direction. AO and moments are filtered apart, and
+/// beside an edge a little AO may meet moments of another surface: then no light would be that.
+mat3 possible_moments(mat3 m, float visibility) {
+  const float first = length(m[0]);
+  const float second = sqrt(0.75 * (dot(m[1], m[1]) + m[2].x * m[2].x) + m[2].y * m[2].y);
+  m[0] *= visibility / max(first, max(visibility, 1e-6));
+  const float part = visibility / max(second, max(visibility, 1e-6));
+  m[1] *= part;
+  m[2] *= part;
+  return m;
+}
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -38,8 +49,9 @@ void main() {
   const bool is_surface = depth[index] < kSkyDepth;
   mat3 m = open_moments(unpack_normal(normal[index]));
   for (int k = 0; k < kMostMoments && kOpen == 0u; k++) m[k / 3][k % 3] -= blocked_moment(moments[index + k * plane]);
-  m = turned(transpose(mat3(params.x_from_view, params.y_from_view, params.z_from_view)), m);
   const float visibility = kOpen != 0u ? 1.0 : ao[index + int(params.plane) * plane];
+  m = turned(transpose(mat3(params.x_from_view, params.y_from_view, params.z_from_view)),
+             possible_moments(m, visibility));
   const float t[9] = float[](kConstant * visibility, kLinear * m[0].y, kLinear * m[0].z, kLinear * m[0].x,
                              kMixed * m[1].x, kMixed * m[1].y, kZonal * m[2].y, kMixed * m[1].z, kMixed * m[2].x);
   if (kRelights == 0u) {

@@ -164,29 +164,49 @@ TEST(Transfer, in_another_space_means_the_same_directions) {
     }
 }
 
-// The AO is the light of an even sky, of which only the first coefficient is not 0.
-TEST(Transfer, of_an_even_sky_is_the_ao_through_every_filter) {
-  const Rendering room = furnished_room(121, 83);
-  std::vector<EstimatorSettings> all = searches(0.6);
-  all.push_back(shared_directions(0.6));
+/// Searches, and samples through every filter.
+std::vector<EstimatorSettings> filtered_searches(double radius) {
+  std::vector<EstimatorSettings> all = searches(radius);
+  all.push_back(shared_directions(radius));
   for (const auto& [resolution, denoise, stride] : {std::tuple{Resolution::full, Denoise::box, 1},
                                                     {Resolution::full, Denoise::bilateral, 16},
                                                     {Resolution::half, Denoise::bilateral, 4},
                                                     {Resolution::quarter, Denoise::none, 1}}) {
-    all.push_back(sampled(Estimator::gtao, 0.6, 1, 12));
+    all.push_back(sampled(Estimator::gtao, radius, 1, 12));
     all.back().resolution = resolution;
     all.back().denoise = denoise;
     all.back().stride = stride;
     all.push_back(all.back());
-    all.back().further_radii = {0.2};
+    all.back().further_radii = {radius / 3};
   }
-  for (const EstimatorSettings& settings : all) {
+  return all;
+}
+
+// The AO is the light of an even sky, of which only the first coefficient is not 0.
+TEST(Transfer, of_an_even_sky_is_the_ao_through_every_filter) {
+  const Rendering room = furnished_room(121, 83);
+  for (const EstimatorSettings& settings : filtered_searches(0.6)) {
     const Planes planes = planes_of(room.frame, settings, "ao-scales,transfer");
     const std::size_t pixels = room.hits.size(), last = planes.scales.size() - pixels;
     for (std::size_t i = 0; i < pixels; i++)
       ASSERT_NEAR(2 * std::sqrt(kPi) * planes.transfer[i], room.hits[i].primitive < 0 ? 0 : planes.scales[last + i],
                   1e-6)
           << name_of(settings) << " pixel " << i;
+  }
+}
+
+// No visibility is turned to one side more than one that is all in one direction.
+TEST(Transfer, of_each_band_is_possible_with_the_visibility) {
+  const Rendering room = furnished_room(121, 83);
+  for (const EstimatorSettings& settings : filtered_searches(0.6)) {
+    const Planes planes = planes_of(room.frame, settings, "ao,transfer");
+    for (std::size_t i = 0; i < room.hits.size(); i++) {
+      const Nine nine = at(planes.transfer, i);
+      const double first = std::hypot(nine[1], nine[2], nine[3]);
+      const double second = std::hypot(std::hypot(nine[4], nine[5], nine[6]), nine[7], nine[8]);
+      ASSERT_LE(first, std::sqrt(3) * nine[0] + 1e-6) << name_of(settings) << " pixel " << i;
+      ASSERT_LE(second, std::sqrt(5) * nine[0] + 1e-6) << name_of(settings) << " pixel " << i;
+    }
   }
 }
 
