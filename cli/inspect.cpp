@@ -66,7 +66,10 @@ int inspect_command(const std::vector<std::string>& arguments) {
   const InputSettings& input = options.settings.input;
   const std::string& path = main_input(input);
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
-  if (path == input.input && is_sky_picture(path)) {
+  // A beauty may be twice as wide as high, too: but it comes with depth, or with positions.
+  const bool is_alone =
+      path == input.input && input.depth.empty() && input.position.empty() && asked.write_camera.empty();
+  if (is_alone && is_sky_picture(path)) {
     const Environment sky = read_environment(path, "INPUT");
     fmt::print("{}", asked.json ? environment_json(path, sky) : environment_text(path, sky));
     return 0;

@@ -10,7 +10,8 @@ loader=$own folders=$root/lib/alcove:$root/lib/system
 for system in "/lib64/${own##*/}" "/lib/${own##*/}"; do
   if [ "$(version "$system")0" -ge "$(version "$own")0" ]; then
     loader=$system
-    folders=$root/lib/alcove:/usr/lib/$(uname -m)-linux-gnu:/usr/lib64:/usr/lib:$root/lib/system
+    of_machine=$(uname -m)-linux-gnu
+    folders=$root/lib/alcove:/lib/$of_machine:/usr/lib/$of_machine:/lib64:/usr/lib64:/lib:/usr/lib:$root/lib/system
     break
   fi
 done

@@ -98,12 +98,11 @@ Environment read_environment(const std::string& path, const char* option) {
 bool is_sky_picture(const std::string& path) {
   try {
     const Picture picture(path, "INPUT");
-    const auto is_color = [](const PictureChannel& channel) {
-      return channel.name.size() == 1 && std::string_view("RGBA").find(channel.name) != std::string_view::npos;
-    };
+    std::string names;
+    for (const PictureChannel& channel : picture.channels()) names += channel.name + ' ';
     const Window& window = picture.display();
-    return window.width == 2 * window.height && picture.channels().size() >= 3 &&
-           std::ranges::all_of(picture.channels(), is_color);
+    return window.width == 2 * window.height &&
+           (names == "R G B " || names == "R G B A " || names == "B G R " || names == "A B G R ");
   } catch (const Error&) {
     return false;
   }

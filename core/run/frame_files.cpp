@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <mutex>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -466,10 +467,25 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
   }
 }
 
+/// The light of a picture, which is read once for all frames that follow each other, unless it is written again.
+Environment sky_of(const std::string& path) {
+  static std::mutex mutex;
+  static std::string last_file;
+  static Environment last;
+  const std::lock_guard lock(mutex);
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(path, error).time_since_epoch().count();
+  const std::string file = fmt::format("{} {} {}", path, written, std::filesystem::file_size(path, error));
+  if (file == last_file) return last;
+  last = read_environment(path, "--environment");
+  last_file = file;
+  return last;
+}
+
 /// Reads the light of the settings, if they name any, and notes what nine colours miss of it.
 void read_sky(FrameSource& source, const std::string& path) {
   if (path.empty()) return;
-  source.environment = read_environment(path, "--environment");
+  source.environment = sky_of(path);
   if (source.environment->missed > kMostMissed)
     source.notes.push_back(
         {NoteCode::sun_in_sky,

@@ -34,6 +34,7 @@ struct DenoiseParams {
 };
 
 ALCOVE_CONSTANT int kLatticeStep = 4;  // px between the sites of the widest lattice
+ALCOVE_CONSTANT int kSpreadReach = 4;  // px in x and in y from which a pixel takes the moments of sites
 ALCOVE_CONSTANT int kFitReach = 12;    // px in x and in y from which a site takes others' estimates
 
 ALCOVE_CONSTANT int kFitRun = 4;  // sites in a row that one invocation computes

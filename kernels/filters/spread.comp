@@ -34,7 +34,7 @@ const int kCell = kLatticeStep * kLatticeStep;  // pixels
 const int kMargin = 2, kAcross = kLatticeStep + 2 * kMargin;
 
 /// The tent ends so many pixels from a site: beyond the next one of the lattice.
-const float kTent = 4.5;
+const float kTent = float(kSpreadReach) + 0.5;
 
 /// A site that was not smoothed weighs so much beside one that was.
 const float kNoisySite = 0.4;

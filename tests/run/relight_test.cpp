@@ -70,10 +70,36 @@ TEST_F(Relight, of_a_white_sky_is_the_ao) {
     const auto ao = image.plane(has_scales ? "scale2.Y" : "Y");
     for (const char* channel : {"relight.R", "relight.G", "relight.B"}) {
       const auto light = image.plane(channel);
+      int surfaces = 0;
       for (std::size_t i = 0; i < light.size(); i++) {
         const float white = light[i] == 0 ? 0 : ao[i];  // sky reflects nothing
         ASSERT_NEAR(light[i], white, 1e-3) << more << " " << i;
+        surfaces += light[i] > 0;
       }
+      EXPECT_GT(surfaces, 4000) << more;
+    }
+  }
+}
+
+// A surface sees 2/3 of what grows with a coordinate along its normal, and 1/4 of what grows with a product of two.
+TEST_F(Relight, of_each_direction_comes_from_there) {
+  json turned = wall_camera(kWindow);
+  turned["world_to_camera"] = {
+      {-0.780869, 0.624695, 0, 0}, {-0.399805, -0.499756, 0.768375, 0}, {0.48, 0.6, 0.64, 0}, {0, 0, 0, 1}};
+  write_bytes(camera, turned.dump());
+  const double n[] = {0.48, 0.6, 0.64};  // of the wall, which faces the camera
+  const auto factors = [](auto x, auto y, auto z) {
+    return std::array<std::array<double, 3>, 3>{
+        {{x, y, z}, {x * y, y * z, z * x}, {x * x - y * y, z * z - 1.0 / 3, 0}}};
+  };
+  for (std::size_t set = 0; set < 3; set++) {
+    write_sky([&](double x, double y, double z, std::size_t c) { return float(1 + 0.9 * factors(x, y, z)[set][c]); },
+              256, 128);
+    const Image image = computed(lit("--normal none --aov relight-open"));
+    for (std::size_t c = 0; c < 3; c++) {
+      const auto light = image.plane(std::string("relight-open.") + "RGB"[c]);
+      const double seen = 1 + 0.9 * (set == 0 ? 2.0 / 3 : 0.25) * factors(n[0], n[1], n[2])[set][c];
+      EXPECT_NEAR(light[light.size() / 2 + 10], seen, 4e-3) << "set " << set << ", channel " << c;
     }
   }
 }

@@ -133,7 +133,8 @@ Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& e
 }
 
 int filter_reach_of(const EstimatorSettings& settings) {
-  const int denoised = denoiser_of(settings).reach();
+  const int spread = spacing_of(settings) > 1 ? kSpreadReach : 0;
+  const int denoised = std::max(denoiser_of(settings).reach(), spread);
   const int refined = settings.tolerance > 0 ? kRefineReach : 0;
   return int(settings.resolution) * (denoised + refined + (settings.resolution == Resolution::full ? 0 : 2));
 }
