@@ -47,6 +47,9 @@ void require_ascii_keys(const std::string& text) {
     } else if (closing.empty() && c == '#') {
       closing.assign(1, '\n');
     } else if (!closing.empty() && c == '\\' && closing[0] == '"') {
+      // toml++ asks of it whether it is a blank, by a table that not all letters are in.
+      if (i + 1 < text.size() && (unsigned char)text[i + 1] >= 0x80)
+        fail(ErrorKind::usage, "line {}: a backslash stands before a letter beyond ASCII", line);
       i++;
     } else if (!closing.empty() && text.compare(i, closing.size(), closing) == 0) {
       i += closing.size() - 1;
