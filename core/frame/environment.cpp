@@ -1,4 +1,4 @@
-// Projects the rows of a lat-long picture: in each, longitudes matter by cos and sin of once and twice their angle.
+// Projects a lat-long picture onto nine harmonics, and tells what they miss of it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/environment.h"
 

@@ -292,8 +292,8 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
                             same_surface(r, reach, s.z, last.z, s.offset - last.offset));
     if (kHard && !joins) {
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
-      found.completed.sectors |= joins ? 0u : sectors_of(r, reach, run, true, thickness, draw.shift);
-      take_before(before, run, both(!joins, is_before), thickness, within_of(run, thickness));
+      found.completed.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
+      take_before(before, run, is_before, thickness, within_of(run, thickness));
     }
     is_before = joins ? is_before : false;
     run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0, gap);

@@ -64,7 +64,6 @@ struct InterpolateParams {
   View view;
   ivec2 axis;          // (1, 0): along rows; (0, 1): along columns
   float depth_sigma;   // of the depth: a step by this part of it weighs 1/e
-  float missing;       // what a pixel gets that no site is in reach of: 1, or the middle of what a plane holds
   float reach;         // px, of the parabola at unit depth (orthographic: at any): from so far a site counts, in the
                        // limits of the kernel
   float most;          // px: the user's radius, from which a site counts at most

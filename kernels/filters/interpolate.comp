@@ -162,8 +162,7 @@ void interpolate(ivec2 first, uint sites, int plane) {
     for (int p = 0; p < kPlanes; p++) {
       const float mean = value[p * kDenoiseRun + i] * over;
       const float rise = (slope[p * kDenoiseRun + i] - sums[i].along * mean) / max(spread, 1e-30);
-      const float missing = taps[i].z < kSkyDepth ? 1.0 - params.missing : 0.0;
-      const float blocked = is_known ? clamp(mean - rise * away, 0.0, 1.0) : missing;
+      const float blocked = is_known ? clamp(mean - rise * away, 0.0, 1.0) : 0.0;
       result[index_of(params.view, pixel) + p * plane] =
           kColumns ? floatBitsToUint(1.0 - blocked) : pack_blocked(blocked, is_known ? sums[i].whole * sureness : 0.0);
     }
@@ -206,6 +205,6 @@ void main() {
     for (int i = 0; i < kDenoiseRun * kPlanes; i++) {
       const ivec2 pixel = first + i % kDenoiseRun * params.axis;
       if (inside(params.view, pixel))
-        result[index_of(params.view, pixel) + i / kDenoiseRun * plane] = floatBitsToUint(params.missing);
+        result[index_of(params.view, pixel) + i / kDenoiseRun * plane] = floatBitsToUint(1.0);
     }
 }

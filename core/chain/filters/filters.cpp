@@ -240,7 +240,6 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
   const Lattice lattice = lattice_of(gbuffer, sites);
   params.first = lattice.first;
   params.sites = lattice.sites;
-  params.missing = 1.0f;
   const uint mode =
       (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.looks_up ? kInterpolateLooksUp : 0);
   const uint of_rows = fitted ? kInterpolateFitted : 0;
