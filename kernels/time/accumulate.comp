@@ -6,9 +6,10 @@
 //
 // True AO of what stands still does not change with the camera. So what another frame estimates counts where it shows
 // the same point: each lies in the plane of the other, as exactly as the depth is and half a pixel's slope, and their
-// normals agree; and where nothing within the radius of it moves from the one frame to the other. What a frame cannot
-// tell of a point is left out, so that nothing has to be clamped, and no result is made from an earlier one. All count
-// the same: weights by distance, by the angle or by how sure an estimate is were no nearer to ray tracing.
+// normals agree; and where nothing within the radius of it moves from the one frame to the other. There it counts less
+// and less over the width of a cell, so that no line shows where the mean ends. What a frame cannot tell of a point is
+// left out, so that nothing has to be clamped, and no result is made from an earlier one. Else all count the same:
+// weights by distance, by the angle or by how sure an estimate is were no nearer to ray tracing.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -65,6 +66,32 @@ int index_in(TakenFrame other, vec3 here, vec3 n, out uint second) {
   return is_same ? index : -1;
 }
 
+/// The cells about a place: what their words say, and how much of each lies in a cell about the place.
+struct Around {
+  uint moves[8];
+  float shares[8];
+};
+
+Around around(vec3 here) {
+  const vec3 place = in_cells(here, params.radius) - 0.5, within = fract(place);
+  const ivec3 first = ivec3(floor(place));
+  Around cells;
+  [[unroll]] for (int k = 0; k < 8; k++) {
+    const ivec3 corner = ivec3(k, k >> 1, k >> 2) & 1;
+    cells.moves[k] = near[place_of_cell(first + corner)];
+    const vec3 share = mix(1.0 - within, within, vec3(corner));
+    cells.shares[k] = share.x * share.y * share.z;
+  }
+  return cells;
+}
+
+/// How much of what lies about a place stands still from the other frame of that bit to this one, 0 to 1.
+float still_share(Around cells, uint bit) {
+  float still = 1.0;
+  [[unroll]] for (int k = 0; k < 8; k++) still -= (cells.moves[k] >> bit & 1u) != 0u ? cells.shares[k] : 0.0;
+  return max(still, 0.0);
+}
+
 void main() {
   // All is loaded before the condition: see shared.h.
   const ivec2 invoked = ivec2(gl_GlobalInvocationID.xy), pixel = min(invoked, params.size - 1);
@@ -80,15 +107,15 @@ void main() {
   const uint word = normal[index];
   const bool is_surface = z < kSkyDepth && word != kNoNormal;
   const vec3 here = position_of(params.view, vec2(in_frame) + 0.5, min(z, 1e15)), n = unpack_normal(word);
-  const uint moves = near[place_of_cell(cell_of(here, params.radius))];
+  const Around cells = around(here);
   [[unroll]] for (int i = 0; i < kListed; i++) {
-    const bool moved = (moves >> (params.place + uint(i)) & 1u) != 0u;
     const TakenFrame other = frames[i];
     uint words[(kPlanes + 2) / 2];
     const int at = index_in(other, here, n, words[0]), there = pixels_of(other.view.size);
-    const bool is_taken = is_surface && !moved && at >= 0 && uint(i) < params.frames;
+    const bool is_taken = is_surface && at >= 0 && uint(i) < params.frames;
+    const float weight = is_taken ? still_share(cells, params.place + uint(i)) : 0.0;
     for (int k = 1; k < (kPlanes + 2) / 2; k++) words[k] = others[other.first + uint(max(at, 0) + (k + 1) * there)];
-    count += is_taken ? 1.0 : 0.0;
+    count += weight;
     float theirs[kPlanes + 2];
     for (int k = 0; k < kPlanes; k++) {
       const vec2 halves = unpackUnorm2x16(words[(k + 1) / 2]);
@@ -100,7 +127,7 @@ void main() {
     for (int k = 0; k < moments_in(kOrder); k++) turns[k / 3][k % 3] = blocked_moment(theirs[first + k]);
     turns = turned(mat3(other.row_x, other.row_y, other.row_z), turns);
     for (int k = 0; k < moments_in(kOrder); k++) theirs[first + k] = stored_moment(moment(turns, k));
-    for (int k = 0; k < kPlanes; k++) blocked[k] += is_taken ? 1.0 - theirs[k] : 0.0;
+    for (int k = 0; k < kPlanes; k++) blocked[k] += weight * (1.0 - theirs[k]);
   }
   if (any(greaterThanEqual(invoked, params.size))) return;
   sums[index] = count;

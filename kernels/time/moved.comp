@@ -94,6 +94,12 @@ bool is_patch(bool of_own, uint first, View view, ivec2 pixel, float z) {
 
 Box both(Box a, Box b) { return Box(min(a.low, b.low), max(a.high, b.high)); }
 
+Box between(vec3 a, vec3 b) { return Box(min(a, b), max(a, b)); }
+
+/// Where what moves may end behind what a view shows of it. It blocks and it hides as far as that, most of what lies
+/// below it: taken as a sheet, a ball that lands lost its shadow on the floor.
+vec3 back_of(View view, vec3 position) { return position - params.radius * toward_eye(view, position); }
+
 /// Whether no more cells than that lie within the radius of a box.
 bool is_small(Box box) {
   const ivec3 first = cell_of(box.low - params.radius, params.radius),
@@ -164,8 +170,8 @@ Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other, uint fr
     bool lifted =
         !moved && is_seen_through(!from_own, other.first, to, sight.at, kPatch, sight.same + kLifted * sight.width);
     if (lifted) moved = is_patch(from_own, other.first, from, pixel, z);
-    const vec3 place = from_own ? here : there;
-    if (moved) add(box, Box(place, place), frames);
+    const vec3 back = back_of(from, here);
+    if (moved) add(box, from_own ? between(here, back) : between(there, position_here(other, back)), frames);
   }
   return box;
 }
@@ -188,8 +194,10 @@ void add_moving(inout Box box, ivec2 tile, bool of_own, TakenFrame other, uint f
     const ivec2 pixel = min(pixel_of_tile(tile, uint(k)), view.size - 1);
     const float z = depth_at(of_own, other.first, index_of(view, pixel));
     const vec3 position = position_of(view, vec2(pixel) + 0.5, -z);
-    const vec3 place = of_own ? position : position_here(other, position);
-    if (z < 0.0) add(box, Box(place, place), frames);
+    const vec3 back = back_of(view, position);
+    const Box moving = between(position, back);
+    const Box there = between(position_here(other, position), position_here(other, back));
+    if (z < 0.0) add(box, of_own ? moving : there, frames);
   }
 }
 

@@ -35,8 +35,9 @@ Sight sight_of(View view, vec3 position, vec3 error) {
 // Cells of a frame's view space have words in a table that some of them share (Teschner et al., "Optimized Spatial
 // Hashing for Collision Detection of Deformable Objects", 2003).
 
-/// The cell in which a position lies.
-ivec3 cell_of(vec3 position, float radius) { return ivec3(floor(clamp(position / (kMovedCell * radius), -1e9, 1e9))); }
+/// A position in widths of a cell, and the cell in which it lies.
+vec3 in_cells(vec3 position, float radius) { return clamp(position / (kMovedCell * radius), -1e9, 1e9); }
+ivec3 cell_of(vec3 position, float radius) { return ivec3(floor(in_cells(position, radius))); }
 
 /// The index of the cell's word.
 uint place_of_cell(ivec3 cell) {
