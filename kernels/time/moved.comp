@@ -117,7 +117,10 @@ void mark(Box box, uint frames) {
       for (int x = first.x; x <= last.x; x++) {
         const vec3 low = vec3(x, y, z) * (kMovedCell * params.radius), high = low + kMovedCell * params.radius;
         const vec3 apart = max(max(low - box.high, box.low - high), vec3(0));
-        if (dot(apart, apart) < params.radius * params.radius) atomicOr(near[place_of_cell(ivec3(x, y, z))], frames);
+        const uint place = place_of_cell(ivec3(x, y, z));
+        // Tiles beside each other mark the same cells, and lavapipe takes long for an atomic.
+        const bool is_new = (near[place] & frames) != frames;
+        if (is_new && dot(apart, apart) < params.radius * params.radius) atomicOr(near[place], frames);
       }
 }
 
