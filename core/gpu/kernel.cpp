@@ -5,7 +5,8 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include <algorithm>
-#include <map>
+#include <ranges>
+#include <set>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -32,7 +33,7 @@ std::size_t words_at(std::span<const std::uint32_t> code, std::size_t at) {
 /// The parts of a SPIR-V module that `reflect` needs, by result id.
 struct Module {
   std::map<std::uint32_t, std::string> names;
-  std::map<std::uint32_t, std::uint32_t> binding, set;
+  std::map<std::uint32_t, std::uint32_t> binding, set, constant_id;
   std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> member_offsets;
   std::map<std::uint32_t, std::uint32_t> array_stride, constants;
   std::map<std::uint32_t, std::vector<std::uint32_t>> types;  // opcode, then operands
@@ -61,14 +62,14 @@ struct Module {
   }
 };
 
-void read_decoration(Module& module, Reflection& reflection, std::span<const std::uint32_t> words) {
+void read_decoration(Module& module, std::span<const std::uint32_t> words) {
   if (words[2] == spv::DecorationNonWritable) module.not_writable.insert(words[1]);
   if (words[2] == spv::DecorationNonReadable) module.not_readable.insert(words[1]);
   if (words.size() < 4) return;
   if (words[2] == spv::DecorationBinding) module.binding[words[1]] = words[3];
   if (words[2] == spv::DecorationDescriptorSet) module.set[words[1]] = words[3];
   if (words[2] == spv::DecorationArrayStride) module.array_stride[words[1]] = words[3];
-  if (words[2] == spv::DecorationSpecId) reflection.constant_ids.insert(words[3]);
+  if (words[2] == spv::DecorationSpecId) module.constant_id[words[1]] = words[3];
 }
 
 std::string name_of(std::span<const std::uint32_t> words) {
@@ -85,7 +86,7 @@ void read_instruction(Module& module, Reflection& reflection, std::span<const st
   const auto opcode = words[0] & spv::OpCodeMask;
   switch (opcode) {
     case spv::OpName: module.names[words[1]] = name_of(words); break;
-    case spv::OpDecorate: read_decoration(module, reflection, words); break;
+    case spv::OpDecorate: read_decoration(module, words); break;
     case spv::OpMemberDecorate:
       if (words[3] == spv::DecorationOffset) module.member_offsets[words[1]][words[2]] = words[4];
       if (words[3] == spv::DecorationNonWritable) module.not_writable.insert(words[1]);
@@ -95,6 +96,7 @@ void read_instruction(Module& module, Reflection& reflection, std::span<const st
       if (words[2] == spv::ExecutionModeLocalSize) std::copy_n(words.begin() + 3, 3, reflection.group);
       break;
     case spv::OpConstant: module.constants[words[2]] = words[3]; break;
+    case spv::OpSpecConstant: reflection.constants[module.constant_id.at(words[2])] = words[3]; break;
     case spv::OpVariable: read_variable(module, words); break;
     case spv::OpTypeInt:
     case spv::OpTypeFloat:
@@ -109,6 +111,19 @@ void read_instruction(Module& module, Reflection& reflection, std::span<const st
     }
     default: break;
   }
+}
+
+/// The code of a kernel for these constants: of its twin, if it has one whose constants they are.
+std::span<const std::uint32_t> code_for(const std::string& stem, const Reflection& reflection,
+                                        const std::vector<std::uint32_t>& specialization) {
+  const auto usual = kernel_code(stem + "_usual");
+  if (usual.empty()) return kernel_code(stem);
+  const auto left = reflect(usual).constants;
+  const bool is_usual = std::ranges::all_of(reflection.constants, [&](const auto& constant) {
+    const auto [id, value] = constant;
+    return left.contains(id) || specialization[id] == value;
+  });
+  return is_usual ? usual : kernel_code(stem);
 }
 
 /// The first word of an instruction.
@@ -157,18 +172,20 @@ Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::u
   const auto code = kernel_code(stem);
   if (code.empty()) fail(ErrorKind::device, "there is no kernel {}", stem);
   reflection_ = reflect(code);
-  if (reflection_.constant_ids.size() != specialization.size() ||
-      (!specialization.empty() && *reflection_.constant_ids.rbegin() != specialization.size() - 1))
+  const auto& constants = reflection_.constants;
+  if (constants.size() != specialization.size() ||
+      (!specialization.empty() && constants.rbegin()->first != specialization.size() - 1))
     fail(ErrorKind::device, "kernel {} has specialization constants {{{}}}, and {} are given", stem,
-         fmt::join(reflection_.constant_ids, ", "), specialization.size());
+         fmt::join(std::views::keys(constants), ", "), specialization.size());
   if (const std::uint32_t most = std::min(kMostBlocks, device.most_blocks()); reflection_.blocks.size() > most)
     fail(ErrorKind::device, "kernel {} has {} storage buffers, and {} takes {}", stem, reflection_.blocks.size(),
          device.info().name, most);
   create_layouts(device);
+  const auto own = code_for(stem, reflection_, specialization);
   if (device.preserves_nan())
-    create_pipeline(device, with_preserved_nan(code), specialization);
+    create_pipeline(device, with_preserved_nan(own), specialization);
   else
-    create_pipeline(device, code, specialization);
+    create_pipeline(device, own, specialization);
 }
 
 void Kernel::create_layouts(Device& device) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <set>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,9 +27,9 @@ struct Block {
 /// The declarations of a kernel, read from its SPIR-V.
 struct Reflection {
   std::vector<Block> blocks;
-  std::uint32_t parameter_bytes = 0;     // of the push constant block
-  std::uint32_t group[3] = {1, 1, 1};    // invocations of a workgroup
-  std::set<std::uint32_t> constant_ids;  // specialization constants
+  std::uint32_t parameter_bytes = 0;                 // of the push constant block
+  std::uint32_t group[3] = {1, 1, 1};                // invocations of a workgroup
+  std::map<std::uint32_t, std::uint32_t> constants;  // by the id of a specialization constant its value without one
 };
 /// Reads the declarations. Fails with ErrorKind::device on code that is not SPIR-V of the kind that our kernels compile
 /// to.
@@ -40,7 +40,9 @@ Reflection reflect(std::span<const std::uint32_t> code);
 /// SPIR-V 1.4 or later with one entry point, and the device must have shaderSignedZeroInfNanPreserveFloat32.
 std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> code);
 
-/// The SPIR-V of kernels/FOLDER/STEM.comp, embedded at build time; empty if no kernel has that stem.
+/// The SPIR-V of kernels/FOLDER/STEM.comp, embedded at build time; empty if no kernel has that stem. STEM_usual is its
+/// twin, where it has one: the same source, in which some specialization constants are fixed at the values that they
+/// have without specialization. Drivers leave out what constants rule out only once they have read all of it.
 std::span<const std::uint32_t> kernel_code(std::string_view stem);
 
 class Kernel {

@@ -47,32 +47,39 @@
 #include "kernels/estimate/sectors.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = 0) const uint kSlices = 3;           // slices per pixel
-layout(constant_id = 1) const uint kSteps = 6;            // steps to each side of a slice
-layout(constant_id = 2) const uint kMode = kFalloffNone;  // one of kFalloff* of slice.glsl, and kWith* or not
+layout(constant_id = 0) const uint kSlices = 3;  // slices per pixel
+layout(constant_id = 1) const uint kSteps = 6;   // steps to each side of a slice
+#ifdef ALCOVE_USUAL
+#define ALCOVE_UNUSUAL(id)
+#else
+#define ALCOVE_UNUSUAL(id) layout(constant_id = id)
+#endif
+ALCOVE_UNUSUAL(2) const uint kMode = kFalloffNone;  // one of kFalloff* of slice.glsl, and kWith* or not
 // one of kThickness*, of what is not connected to the receiver, kCompletes* and kInSectors or not, and
 // kHiddenSurface times as many surfaces as a pixel may have behind the first
-layout(constant_id = 4) const uint kSolid = kThicknessWidth;
+ALCOVE_UNUSUAL(4) const uint kSolid = kThicknessWidth | kCompletesBorder | kCompletesHidden;
 // 0: all pixels are estimated; else only the sites of the list, and those of the widest lattice by so many slices
 layout(constant_id = 3) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
-readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
+// Bindings have their numbers here, so that those of the twin are the same: it leaves out what it does not use.
+layout(binding = 0) readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
 // one float per pixel, depth of the first surfaces that may block
-readonly buffer Occluders { float occluder_depth[]; };
-readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+layout(binding = 1) readonly buffer Occluders { float occluder_depth[]; };
+layout(binding = 2) readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
 // one float per pixel, visibility in [0, 1], 1 = open; the plane of the parameters
-writeonly buffer Ao { float ao[]; };
-readonly buffer List { uint list[]; };                         // one uint per listed tile, from classify
-readonly buffer Sites { uint sites[]; };                       // one uint per site, from list_sites; only if sparse
-readonly buffer SiteCountsBuffer { SiteCounts site_counts; };  // only if sparse
-readonly buffer Counts { TileCounts counts; };
+layout(binding = 3) writeonly buffer Ao { float ao[]; };
+layout(binding = 4) readonly buffer List { uint list[]; };    // one uint per listed tile, from classify
+layout(binding = 5) readonly buffer Sites { uint sites[]; };  // one uint per site, from list_sites; only if sparse
+layout(binding = 6) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };  // only if sparse
+layout(binding = 7) readonly buffer Counts { TileCounts counts; };
 // planes of the moments of the blocked directions in view space, see stored_moment(); only with kWithFirst
-writeonly buffer Moments { float moments[]; };
+layout(binding = 8) writeonly buffer Moments { float moments[]; };
 // one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
-writeonly buffer Completed { float completed[]; };
-readonly buffer Hidden { float hidden[]; };  // planes of hidden surfaces that may block, see GBuffer; with layers only
+layout(binding = 9) writeonly buffer Completed { float completed[]; };
+// planes of hidden surfaces that may block, see GBuffer; with layers only
+layout(binding = 10) readonly buffer Hidden { float hidden[]; };
 
-// How many surfaces a pixel has at most: 1, or for horizon_layers as kSolid says. CMakeLists.txt makes two kernels of
+// How many surfaces a pixel has at most: 1, or for horizon_layers as kSolid says. CMakeLists.txt makes kernels of
 // this file, since drivers take long over code that is left out by a specialization constant alone.
 const int kSurfaces = ALCOVE_SURFACES;
 

@@ -33,5 +33,16 @@ TEST(WarmUp, begins_with_what_has_the_most_code) {
   EXPECT_EQ(warm_up.names().front().first, "horizon");
 }
 
+TEST(WarmUp, of_all_presets_of_steps_can_do_with_the_twin_of_the_search) {
+  for (const char* name : {"draft", "standard", "production"}) {
+    const WarmUp warm_up(device(), preset(name, 0.5), {}, 0);
+    const auto search = std::ranges::find(warm_up.names(), "horizon", &gpu::KernelName::first);
+    ASSERT_NE(search, warm_up.names().end()) << name;
+    const auto left = gpu::reflect(gpu::kernel_code("horizon_usual")).constants;
+    for (const auto& [id, value] : gpu::reflect(gpu::kernel_code("horizon")).constants)
+      EXPECT_TRUE(left.contains(id) || search->second.at(id) == value) << name << ": constant " << id;
+  }
+}
+
 }  // namespace
 }  // namespace alcove::warm_up_test

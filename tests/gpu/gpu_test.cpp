@@ -42,7 +42,20 @@ TEST(Reflection, reads_blocks_groups_and_constants) {
                                    "SiteCountsBuffer", "Occluders"));
   EXPECT_THAT(block_names(gpu::kernel_code("horizon_layers")), Contains("Hidden"));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
-  EXPECT_THAT(horizon.constant_ids, ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(horizon.constants,
+              ElementsAre(testing::Key(0), testing::Key(1), testing::Pair(2, 0), testing::Key(3), testing::Key(4)));
+}
+
+TEST(Reflection, of_a_twin_has_the_same_parameters_and_bindings) {
+  const auto all = gpu::reflect(gpu::kernel_code("horizon")), usual = gpu::reflect(gpu::kernel_code("horizon_usual"));
+  EXPECT_THAT(usual.constants, ElementsAre(testing::Key(0), testing::Key(1), testing::Key(3)));
+  EXPECT_EQ(usual.parameter_bytes, all.parameter_bytes);
+  ASSERT_GT(usual.blocks.size(), 5);
+  for (const auto& block : usual.blocks) {
+    const auto same = std::ranges::find(all.blocks, block.name, &gpu::Block::name);
+    ASSERT_NE(same, all.blocks.end()) << block.name;
+    EXPECT_EQ(same->binding, block.binding) << block.name;
+  }
 }
 
 TEST(Reflection, tells_blocks_that_are_read_from_blocks_that_are_written) {

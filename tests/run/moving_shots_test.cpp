@@ -115,8 +115,8 @@ class MovingShots : public SequenceFolder {
   std::vector<float> ao(const MovingShot& shot, const Options& more) const {
     remove_outputs();
     const Options plain = typed("--set stride=1 --denoise none --slices 16 --steps 32 --type float");
-    done(joined(joined(plain, more),
-                {"--frames", std::to_string(kMiddle), "--radius", fmt::format("{}", shot.radius)}));
+    done(
+        joined(joined(plain, more), {"--frames", std::to_string(kMiddle), "--radius", fmt::format("{}", shot.radius)}));
     return read_exr_image(output(kMiddle), {"Y"}).pixels;
   }
 
@@ -125,7 +125,8 @@ class MovingShots : public SequenceFolder {
     const auto still = ao(shot, {"--accumulate", "4"});
     write(shot, true);
     const Scene scene = shot.scene(kMiddle);
-    return {ao(shot, {}), ao(shot, {"--accumulate", "4"}), still, scene, render(scene, shot.shot(kMiddle)), shot.radius};
+    return {ao(shot, {}), ao(shot, {"--accumulate", "4"}),   still,
+            scene,        render(scene, shot.shot(kMiddle)), shot.radius};
   }
 };
 
