@@ -23,7 +23,6 @@ struct LayersParams {
   View view;
   uint planes;           // that were found
   uint open_planes;      // bit i: surfaces of plane i are of unknown kind
-  uint warped;           // planes from other views
   vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
   float separation;      // scene units: surfaces closer than it are one; below 0: by precision and a pixel's slope
 };

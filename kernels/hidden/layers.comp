@@ -14,6 +14,9 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kKept = kMostHidden;  // planes of `hidden`, 1 to kMostHidden
+// planes that were found where they are few, since loops of a known length take half the time; 0: as params says
+layout(constant_id = 1) const uint kPlanes = 0;
+layout(constant_id = 2) const uint kWarped = 0;  // planes from other views
 layout(scalar, push_constant) uniform Push { LayersParams params; };
 // planes of floats: planar depth > 0 of surfaces in any order, below 0 of those that close the solid before them;
 // kSkyDepth where there is none
@@ -35,6 +38,8 @@ float separation_at(float z) {
   return kPrecisions * (by.x + z * (by.y + z * by.z)) + pixel;
 }
 
+uint planes() { return kPlanes != 0u ? kPlanes : params.planes; }
+
 float warped_depth(int at) { return warped[at] == 0u ? kSkyDepth : depth_of(warped[at]); }
 
 struct Surface {
@@ -46,7 +51,7 @@ struct Surface {
 /// solid, or else a front.
 Surface next_surface(int index, int plane, float beyond) {
   Surface next = Surface(kSkyDepth, false);
-  for (uint i = 0u; i < params.planes; i++) {
+  for (uint i = 0u; i < planes(); i++) {
     const float z = found[index + int(i) * plane];
     const bool is_open = (params.open_planes >> i & 1u) != 0u;
     const bool is_better = z < next.z || z == next.z && next.is_open && !is_open;
@@ -54,7 +59,7 @@ Surface next_surface(int index, int plane, float beyond) {
     next.z = is_next ? z : next.z;
     next.is_open = is_next ? is_open : next.is_open;
   }
-  for (uint i = 0u; i < params.warped; i++) {
+  for (uint i = 0u; i < kWarped; i++) {
     const float z = warped_depth(index + int(i) * plane);
     const bool is_next = z > beyond && z < abs(next.z);
     next.z = is_next ? z : next.z;
@@ -69,7 +74,7 @@ void main() {
   const int index = index_of(params.view, pixel), plane = params.view.size.x * params.view.size.y;
   const float first = depth[index];
   uint before = 0u;
-  for (uint i = 0u; i < params.planes; i++)
+  for (uint i = 0u; i < planes(); i++)
     before += abs(found[index + int(i) * plane]) < first - separation_at(first) ? 1u : 0u;
   float last = first;
   uint unknown = 0u;

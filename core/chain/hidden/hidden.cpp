@@ -88,6 +88,9 @@ void pair(gpu::Recorder& gpu, const GBuffer& layered, const gpu::Buffer& open, c
 
 Layering layering_of(const EstimatorSettings& settings) { return {settings.hidden, settings.separation.value_or(-1)}; }
 
+/// As many planes have a kernel of their own: those of files, while the samples of deep frames differ in number.
+constexpr uint kFewPlanes = 4;
+
 GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& frame, const Layering& layering) {
   const gpu::Buffer* warped = prepared.warped;
   if ((frame.behind.empty() && !warped) || layering.kept == 0) return prepared;
@@ -103,11 +106,7 @@ GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& f
   gbuffer.layer_counts = &gpu.buffer("layer counts", sizeof(LayerCounts));
   gpu.clear(*gbuffer.layer_counts);
   const gpu::Buffer& open = gpu.buffer("open surfaces", plane_bytes(prepared.view));
-  const LayersParams params{prepared.view,
-                            planes,
-                            open_planes(frame),
-                            warped_planes,
-                            to_vec3(frame.hidden_precision.at),
+  const LayersParams params{prepared.view, planes, open_planes(frame), to_vec3(frame.hidden_precision.at),
                             float(layering.separation)};
   gpu.dispatch("layers", params,
                {{"Found", gpu::Optional(found)},
@@ -116,7 +115,7 @@ GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& f
                 {"Counts", gbuffer.layer_counts},
                 {"Warped", gpu::Optional(warped)},
                 {"Open", open}},
-               extent_of(prepared.view), {kept});
+               extent_of(prepared.view), {kept, planes <= kFewPlanes ? planes : 0, warped_planes});
   if (params.open_planes == 0) return gbuffer;
   const gpu::Buffer& ended = ends(gpu, gbuffer);
   pair(gpu, gbuffer, open, ended);
