@@ -16,7 +16,7 @@ in_own_mounts "$@"
 scripts/setup.sh --only-packages run build test arm64
 own_root "${1:-}"
 emulators=/proc/sys/fs/binfmt_misc
-# Who registers the emulator takes it away: unlike the mount, it would outlive the script.
+# Who registers the emulator takes it away: where binfmt_misc was mounted before, it would outlive the script.
 [ -e $emulators/register ] || mount -t binfmt_misc binfmt_misc $emulators
 if [ ! -e $emulators/qemu-aarch64 ]; then
   cat /usr/lib/binfmt.d/qemu-aarch64.conf >$emulators/register
