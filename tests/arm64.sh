@@ -16,8 +16,12 @@ in_own_mounts "$@"
 scripts/setup.sh --only-packages run build test arm64
 own_root "${1:-}"
 emulators=/proc/sys/fs/binfmt_misc
+# Who registers the emulator takes it away: where binfmt_misc was mounted before, it would outlive the script.
 [ -e $emulators/register ] || mount -t binfmt_misc binfmt_misc $emulators
-[ -e $emulators/qemu-aarch64 ] || cat /usr/lib/binfmt.d/qemu-aarch64.conf >$emulators/register
+if [ ! -e $emulators/qemu-aarch64 ]; then
+  cat /usr/lib/binfmt.d/qemu-aarch64.conf >$emulators/register
+  at_exit "echo -1 >$emulators/qemu-aarch64 || true"
+fi
 make_debian bookworm arm64
 here=$PWD
 in_alcove() { inside sh -c "cd '$here' && $1"; }

@@ -10,13 +10,20 @@ in_own_mounts() {
   ALCOVE_OWN_MOUNTS=yes exec unshare --mount --propagation private "$0" "$@"
 }
 
+# at_exit COMMAND: runs it when the script ends, before those that were passed earlier.
+at_exit() {
+  exit_commands="$1; ${exit_commands:-}"
+  # shellcheck disable=SC2064  # expanded now
+  trap "$exit_commands" EXIT
+}
+
 # own_root [FOLDER]: sets root to FOLDER, which stays, or else to one that goes with the script.
 own_root() {
   root=${1:-$(mktemp -d)}
   mkdir -p "$root"
   root=$(realpath "$root")
   chmod 755 "$root"  # apt downloads as a user of its own
-  [ -n "${1:-}" ] || trap 'umount -q "$root/proc" "$root/dev/shm" "$root/dev/pts" || true; rm -rf --one-file-system "$root" "$root.log"' EXIT
+  [ -n "${1:-}" ] || at_exit 'umount -q "$root/proc" "$root/dev/shm" "$root/dev/pts" || true; rm -rf --one-file-system "$root" "$root.log"'
 }
 
 machine_sources() { apt-get indextargets --format 'deb $(REPO_URI) $(CODENAME) $(COMPONENT)' 'Identifier: Packages' 'Origin: Debian'; }

@@ -22,7 +22,7 @@ make_debian "$suite" $architecture
 make_stranger
 seconds() {  # how long a command takes
   local start=$EPOCHREALTIME
-  "$@"
+  "$@" || return
   awk -v start="$start" -v end="$EPOCHREALTIME" 'BEGIN { printf "%.1f s\n", end - start }'
 }
 system() {

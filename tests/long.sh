@@ -3,7 +3,7 @@
 # from where the last run ended. docs/testing.md says what each adds. Half an hour or more; continuous integration does not call it.
 #   tests/long.sh [--device NAME]        on another Vulkan device
 #   ALCOVE_STABILITY_DRAWS=2000          random frames; 500 without it
-#   ALCOVE_FUZZ_SECONDS=600              of each of seven targets, two at a time; 300 without it, 0: no fuzzing
+#   ALCOVE_FUZZ_SECONDS=600              of each target, two at a time; 300 without it, 0: no fuzzing
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -255,7 +255,7 @@ Pictures insides_of_a_sphere() {
                          "in a sphere", {{Sphere{.center = {}, .radius = 2}}}, radius,
                          [](const Hit&, double r) { return 1 - std::pow(r / 4, 2); },
                          {Shot::perspective({0, 0, 0}, {1, 0, 0}, 100, 160, 120),
-                          Shot::perspective({0.5, 1, 0.7}, {-0.5, -2, -0.4}, 80, 120, 90),
+                          Shot::perspective({0.5, 1, 0.7}, {-0.5, -2, -0.4}, 80, 200, 150),
                           Shot::perspective({-1.5, 0.5, 0}, {2, 0, 0.2}, 60, 120, 90)},
                          250, number));
   return pictures;

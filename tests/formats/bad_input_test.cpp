@@ -135,7 +135,7 @@ TEST_F(BadInput, of_every_kind_ends_with_its_code) {
 TEST_F(BadInput, a_pipe_is_refused_and_not_waited_for) {
   const std::string pipe = folder / "pipe.exr";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  expect_refused(3, {"pipe.exr"}, good(pipe), {.environment = {}, .seconds = 3});
+  expect_refused(3, {"pipe.exr"}, good(pipe), {.environment = {}, .seconds = 60});
 }
 
 // Outputs.
