@@ -113,19 +113,6 @@ void read_instruction(Module& module, Reflection& reflection, std::span<const st
   }
 }
 
-/// The code of a kernel for these constants: of its twin, if it has one whose constants they are.
-std::span<const std::uint32_t> code_for(const std::string& stem, const Reflection& reflection,
-                                        const std::vector<std::uint32_t>& specialization) {
-  const auto usual = kernel_code(stem + "_usual");
-  if (usual.empty()) return kernel_code(stem);
-  const auto left = reflect(usual).constants;
-  const bool is_usual = std::ranges::all_of(reflection.constants, [&](const auto& constant) {
-    const auto [id, value] = constant;
-    return left.contains(id) || specialization[id] == value;
-  });
-  return is_usual ? usual : kernel_code(stem);
-}
-
 /// The first word of an instruction.
 std::uint32_t opening(spv::Op opcode, std::uint32_t words) {
   return words << spv::WordCountShift | std::uint32_t(opcode);
@@ -167,6 +154,16 @@ std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> cod
   fail(ErrorKind::device, "a kernel's SPIR-V has no entry point");
 }
 
+std::span<const std::uint32_t> code_for(const std::string& stem, const std::vector<std::uint32_t>& specialization) {
+  const auto all = kernel_code(stem), usual = kernel_code(stem + "_usual");
+  if (usual.empty()) return all;
+  const auto left = reflect(usual).constants;
+  const bool is_usual = std::ranges::all_of(reflect(all).constants, [&](const auto& constant) {
+    return left.contains(constant.first) || specialization.at(constant.first) == constant.second;
+  });
+  return is_usual ? usual : all;
+}
+
 Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization)
     : stem_(stem) {
   const auto code = kernel_code(stem);
@@ -181,7 +178,7 @@ Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::u
     fail(ErrorKind::device, "kernel {} has {} storage buffers, and {} takes {}", stem, reflection_.blocks.size(),
          device.info().name, most);
   create_layouts(device);
-  const auto own = code_for(stem, reflection_, specialization);
+  const auto own = code_for(stem, specialization);
   if (device.preserves_nan())
     create_pipeline(device, with_preserved_nan(own), specialization);
   else

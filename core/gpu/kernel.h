@@ -45,6 +45,9 @@ std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> cod
 /// have without specialization. Drivers leave out what constants rule out only once they have read all of it.
 std::span<const std::uint32_t> kernel_code(std::string_view stem);
 
+/// The code that a pipeline with these constants is made of: that of the kernel's twin, if they are its own.
+std::span<const std::uint32_t> code_for(const std::string& stem, const std::vector<std::uint32_t>& specialization);
+
 class Kernel {
  public:
   /// Fails with ErrorKind::device if there is no such kernel, if its specialization constants are not 0 .. n-1, or if

@@ -49,15 +49,11 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kSlices = 3;  // slices per pixel
 layout(constant_id = 1) const uint kSteps = 6;   // steps to each side of a slice
-#ifdef ALCOVE_USUAL
-#define ALCOVE_UNUSUAL(id)
-#else
-#define ALCOVE_UNUSUAL(id) layout(constant_id = id)
-#endif
-ALCOVE_UNUSUAL(2) const uint kMode = kFalloffNone;  // one of kFalloff* of slice.glsl, and kWith* or not
+// CMakeLists.txt makes specialization constants of these two, 2 and 4, but in the twin.
+ALCOVE_MODE const uint kMode = kFalloffNone;  // one of kFalloff* of slice.glsl, and kWith* or not
 // one of kThickness*, of what is not connected to the receiver, kCompletes* and kInSectors or not, and
 // kHiddenSurface times as many surfaces as a pixel may have behind the first
-ALCOVE_UNUSUAL(4) const uint kSolid = kThicknessWidth | kCompletesBorder | kCompletesHidden;
+ALCOVE_SOLID const uint kSolid = kThicknessWidth | kCompletesBorder | kCompletesHidden;
 // 0: all pixels are estimated; else only the sites of the list, and those of the widest lattice by so many slices
 layout(constant_id = 3) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };

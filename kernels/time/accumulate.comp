@@ -66,30 +66,29 @@ int index_in(TakenFrame other, vec3 here, vec3 n, out uint second) {
   return is_same ? index : -1;
 }
 
-/// The cells about a place: what their words say, and how much of each lies in a cell about the place.
+/// The eight cells about a place: what their words say, and how far from the first towards the last it lies, 0 to 1.
 struct Around {
   uint moves[8];
-  float shares[8];
+  vec3 within;
 };
 
 Around around(vec3 here) {
-  const vec3 place = in_cells(here, params.radius) - 0.5, within = fract(place);
-  const ivec3 first = ivec3(floor(place));
+  const vec3 place = in_cells(here, params.radius) - 0.5;
   Around cells;
-  [[unroll]] for (int k = 0; k < 8; k++) {
-    const ivec3 corner = ivec3(k, k >> 1, k >> 2) & 1;
-    cells.moves[k] = near[place_of_cell(first + corner)];
-    const vec3 share = mix(1.0 - within, within, vec3(corner));
-    cells.shares[k] = share.x * share.y * share.z;
-  }
+  [[unroll]] for (int k = 0; k < 8; k++) cells.moves[k] =
+      near[place_of_cell(ivec3(floor(place)) + (ivec3(k, k >> 1, k >> 2) & 1))];
+  cells.within = fract(place);
   return cells;
 }
 
-/// How much of what lies about a place stands still from the other frame of that bit to this one, 0 to 1.
+/// How much of what lies about a place stands still from the other frame of that bit to this one: 1 where no cell tells
+/// of movement near it, 0 where all do, and a linear function between their middles.
 float still_share(Around cells, uint bit) {
-  float still = 1.0;
-  [[unroll]] for (int k = 0; k < 8; k++) still -= (cells.moves[k] >> bit & 1u) != 0u ? cells.shares[k] : 0.0;
-  return max(still, 0.0);
+  float still[8];
+  [[unroll]] for (int k = 0; k < 8; k++) still[k] = (cells.moves[k] >> bit & 1u) != 0u ? 0.0 : 1.0;
+  [[unroll]] for (int k = 0; k < 4; k++) still[k] = still[2 * k] + cells.within.x * (still[2 * k + 1] - still[2 * k]);
+  [[unroll]] for (int k = 0; k < 2; k++) still[k] = still[2 * k] + cells.within.y * (still[2 * k + 1] - still[2 * k]);
+  return still[0] + cells.within.z * (still[1] - still[0]);
 }
 
 void main() {

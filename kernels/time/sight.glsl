@@ -39,8 +39,10 @@ Sight sight_of(View view, vec3 position, vec3 error) {
 vec3 in_cells(vec3 position, float radius) { return clamp(position / (kMovedCell * radius), -1e9, 1e9); }
 ivec3 cell_of(vec3 position, float radius) { return ivec3(floor(in_cells(position, radius))); }
 
-/// The index of the cell's word.
+/// The index of the cell's word. All bits of the sum are mixed: of products joined bit by bit, cells on opposite sides
+/// of the view's axis would share a word.
 uint place_of_cell(ivec3 cell) {
   const uvec3 product = uvec3(cell) * uvec3(73856093u, 19349663u, 83492791u);
-  return (product.x ^ product.y ^ product.z) & (kMovedCells - 1u);
+  const uint sum = product.x + product.y + product.z;
+  return ((sum ^ sum >> 16) * 0x45d9f3bu >> 12) & (kMovedCells - 1u);
 }

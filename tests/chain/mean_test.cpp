@@ -99,14 +99,30 @@ TEST_F(Means, leave_out_all_within_the_radius_of_what_moves_and_nothing_far) {
   for (const auto& values : {near_own, near_other}) {
     EXPECT_EQ(values[at(4, 4)], kOwn);
     EXPECT_EQ(values[at(10, 4)], kOwn) << "3 px beside it";
-    EXPECT_NEAR(values[at(20, 20)], kMean, 1e-4);
+    for (int y = 0; y < kSide; y++)
+      for (int x = 0; x < kSide; x++)
+        if (std::max(x, y) >= 16) EXPECT_NEAR(values[at(x, y)], kMean, 1e-4) << x << " " << y;
   }
+}
+
+TEST_F(Means, begin_over_the_width_of_a_cell) {
+  Facing moving;
+  for (int y = 0; y < kSide; y++)
+    for (int x = 0; x < 8; x++) moving.depth[at(x, y)] = -4.0f;
+  const auto values = mean(moving, {});
+  double most = 0;
+  for (int x = 8; x + 1 < kSide; x++) {
+    EXPECT_GE(values[at(x + 1, 12)], values[at(x, 12)] - 1e-6) << x;
+    most = std::max(most, double(values[at(x + 1, 12)]) - values[at(x, 12)]);
+  }
+  // A cell is 1.7 px wide here.
+  EXPECT_LT(most, 0.75 * (kMean - kOwn));
 }
 
 TEST_F(Means, leave_out_what_is_near_each_of_two_things_of_a_tile_that_lie_far_apart) {
   const Facing still = near_and_far(1, 9), by_vectors = near_and_far(-1, -9), gone = near_and_far(0.9f, 8);
   for (const auto& values : {mean(by_vectors, still), mean(still, by_vectors)})
-    EXPECT_EQ(values[at(6, 9)], kOwn) << "beside the far one";
+    EXPECT_EQ(values[at(6, 8)], kOwn) << "beside the far one";
   for (const auto& values : {mean(by_vectors, still), mean(still, by_vectors), mean(gone, still), mean(still, gone)}) {
     EXPECT_EQ(values[at(10, 4)], kOwn) << "beside the near one";
     EXPECT_NEAR(values[at(6, 20)], kMean, 1e-4) << "beside neither";
