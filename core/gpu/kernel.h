@@ -29,7 +29,7 @@ struct Reflection {
   std::vector<Block> blocks;
   std::uint32_t parameter_bytes = 0;                 // of the push constant block
   std::uint32_t group[3] = {1, 1, 1};                // invocations of a workgroup
-  std::map<std::uint32_t, std::uint32_t> constants;  // by the id of a specialization constant its value without one
+  std::map<std::uint32_t, std::uint32_t> constants;  // values of specialization constants by id, where none is given
 };
 /// Reads the declarations. Fails with ErrorKind::device on code that is not SPIR-V of the kind that our kernels compile
 /// to.
@@ -42,7 +42,8 @@ std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> cod
 
 /// The SPIR-V of kernels/FOLDER/STEM.comp, embedded at build time; empty if no kernel has that stem. STEM_usual is its
 /// twin, where it has one: the same source, in which some specialization constants are fixed at the values that they
-/// have without specialization. Drivers leave out what constants rule out only once they have read all of it.
+/// have where none is given. A Kernel takes it by itself where these are its values. It saves time, since drivers leave
+/// out what constants rule out only once they have read all of it.
 std::span<const std::uint32_t> kernel_code(std::string_view stem);
 
 /// The code that a pipeline with these constants is made of: that of the kernel's twin, if they are its own.

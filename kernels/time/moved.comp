@@ -96,8 +96,8 @@ Box both(Box a, Box b) { return Box(min(a.low, b.low), max(a.high, b.high)); }
 
 Box between(vec3 a, vec3 b) { return Box(min(a, b), max(a, b)); }
 
-/// Where what moves may end behind what a view shows of it. It blocks and it hides as far as that, most of what lies
-/// below it: taken as a sheet, a ball that lands lost its shadow on the floor.
+/// Where what moves may end, behind the front that a view shows of it: a radius farther from the eye. What lies about
+/// its hidden part loses its mean, too: taken as a sheet, a ball that lands lost its shadow on the floor.
 vec3 back_of(View view, vec3 position) { return position - params.radius * toward_eye(view, position); }
 
 /// Whether no more cells than that lie within the radius of a box.
@@ -107,7 +107,7 @@ bool is_small(Box box) {
   return all(lessThanEqual(last - first, ivec3(kMostCells)));
 }
 
-/// Marks the cells within the radius of a small box for some frames. One of a single place is small, unless cells are
+/// Marks the cells within the radius of a small box for some frames. One of a single pixel is small, unless cells are
 /// finer than floats.
 void mark(Box box, uint frames) {
   const ivec3 first = cell_of(box.low - params.radius, params.radius);
@@ -118,7 +118,8 @@ void mark(Box box, uint frames) {
         const vec3 low = vec3(x, y, z) * (kMovedCell * params.radius), high = low + kMovedCell * params.radius;
         const vec3 apart = max(max(low - box.high, box.low - high), vec3(0));
         const uint place = place_of_cell(ivec3(x, y, z));
-        // Tiles beside each other mark the same cells, and lavapipe takes long for an atomic.
+        // Tiles beside each other mark the same cells, and lavapipe takes long for an atomic. Bits are never taken
+        // away: whoever misses what is marked meanwhile marks it again.
         const bool is_new = (near[place] & frames) != frames;
         if (is_new && dot(apart, apart) < params.radius * params.radius) atomicOr(near[place], frames);
       }

@@ -10,7 +10,7 @@ namespace alcove {
 /// The mean of many frames.
 struct Accumulation {
   Visibility visibility;
-  gpu::Buffer* count = nullptr;  // a plane: how many frames' estimates a pixel is the mean of; and the sums
+  gpu::Buffer* count = nullptr;  // a plane: how many estimates, or parts of them, a pixel is the mean of; and the sums
 };
 
 /// Finds the pixels that frames of the group may see past, or the frame past theirs: see suspects.comp. The words are
@@ -23,7 +23,8 @@ void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& gr
            float radius, uint place, const gpu::Buffer& near);
 
 /// Takes the mean of the estimates, each where it sees what the G-buffer shows and nothing within the largest radius of
-/// it has moved. They have planes of so many radii beside the visibility, and moments of that order.
+/// it has moved, and in part about the border of where something has. They have planes of so many radii beside the
+/// visibility, and moments of that order.
 Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimateSet& estimates,
                         const EstimatorSettings& settings, std::size_t scales, uint order);
 
