@@ -216,6 +216,13 @@ void FramePlan::find_shot() {
          "--frames for this frame alone, or leave {} out",
          file, option, pattern.empty() ? "shot.####.exr" : pattern, option);
   }
+  const std::string& motion = settings_.input.motion;
+  const auto is_motion = [](const Pattern& pattern) { return pattern.path.option == std::string_view("--motion"); };
+  if (!motion.empty() && std::ranges::none_of(patterns_, is_motion)) {
+    const std::string pattern = pattern_for(motion);
+    fail(ErrorKind::usage, "--motion {}: one frame's vectors say nothing of the others: give a pattern such as {}",
+         motion, pattern.empty() ? "motion.####.exr" : pattern);
+  }
   shot_ = frames_on_disk(input->name, input->path.option);
   const std::vector<int> holes = holes_in(shot_);
   shot_.insert(shot_.end(), holes.begin(), holes.end());

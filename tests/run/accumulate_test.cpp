@@ -285,6 +285,8 @@ TEST_F(Accumulated, refusals_say_what_to_do) {
                                                       {"--accumulate 1 --search exact --tolerance 0.01", "--tolerance"},
                                                       {"--accumulate 1 --set debug=raw-ao", "mean of many"}};
   for (const auto& [more, text] : rows) expect_refused(2, typed(more), {text});
+  for (const char* option : {"--accumulate", "--around"})
+    expect_refused(2, {option, "1", "--motion", input(1)}, {"--motion", "f.0001.exr", "give a pattern such as"});
   json cameras = json::parse(read_bytes(camera));
   cameras.erase("world_to_camera");
   for (auto& frame : cameras["frames"]) frame.erase("world_to_camera");
