@@ -139,12 +139,14 @@ VkResult vkMapMemory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset
 
 VkResult vkCreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* info,
                               const VkAllocationCallbacks* callbacks, VkShaderModule* module) {
+  const std::lock_guard lock(mutex);  // kernels are made on several threads
   fake().modules.emplace_back(info->pCode, info->pCode + info->codeSize / 4);
   return NEXT(vkCreateShaderModule)(device, info, callbacks, module);
 }
 
 VkResult vkCreatePipelineCache(VkDevice device, const VkPipelineCacheCreateInfo* info,
                                const VkAllocationCallbacks* callbacks, VkPipelineCache* cache) {
+  const std::lock_guard lock(mutex);
   fake().caches.emplace_back(static_cast<const char*>(info->pInitialData), info->initialDataSize);
   return NEXT(vkCreatePipelineCache)(device, info, callbacks, cache);
 }
