@@ -5,7 +5,6 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include <algorithm>
-#include <ranges>
 #include <set>
 #include <string_view>
 
@@ -169,11 +168,11 @@ Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::u
   const auto code = kernel_code(stem);
   if (code.empty()) fail(ErrorKind::device, "there is no kernel {}", stem);
   reflection_ = reflect(code);
-  const auto& constants = reflection_.constants;
-  if (constants.size() != specialization.size() ||
-      (!specialization.empty() && constants.rbegin()->first != specialization.size() - 1))
+  std::vector<std::uint32_t> ids;
+  for (const auto& constant : reflection_.constants) ids.push_back(constant.first);
+  if (ids.size() != specialization.size() || (!specialization.empty() && ids.back() != specialization.size() - 1))
     fail(ErrorKind::device, "kernel {} has specialization constants {{{}}}, and {} are given", stem,
-         fmt::join(std::views::keys(constants), ", "), specialization.size());
+         fmt::join(ids, ", "), specialization.size());
   if (const std::uint32_t most = std::min(kMostBlocks, device.most_blocks()); reflection_.blocks.size() > most)
     fail(ErrorKind::device, "kernel {} has {} storage buffers, and {} takes {}", stem, reflection_.blocks.size(),
          device.info().name, most);
