@@ -153,14 +153,15 @@ std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> cod
   fail(ErrorKind::device, "a kernel's SPIR-V has no entry point");
 }
 
-std::span<const std::uint32_t> code_for(const std::string& stem, const std::vector<std::uint32_t>& specialization) {
-  const auto all = kernel_code(stem), usual = kernel_code(stem + "_usual");
-  if (usual.empty()) return all;
+std::span<const std::uint32_t> code_for(const std::string& stem, const Reflection& all,
+                                        const std::vector<std::uint32_t>& specialization) {
+  const auto usual = kernel_code(stem + "_usual");
+  if (usual.empty()) return kernel_code(stem);
   const auto left = reflect(usual).constants;
-  const bool is_usual = std::ranges::all_of(reflect(all).constants, [&](const auto& constant) {
+  const bool is_usual = std::ranges::all_of(all.constants, [&](const auto& constant) {
     return left.contains(constant.first) || specialization.at(constant.first) == constant.second;
   });
-  return is_usual ? usual : all;
+  return is_usual ? usual : kernel_code(stem);
 }
 
 Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization)
@@ -177,7 +178,7 @@ Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::u
     fail(ErrorKind::device, "kernel {} has {} storage buffers, and {} takes {}", stem, reflection_.blocks.size(),
          device.info().name, most);
   create_layouts(device);
-  const auto own = code_for(stem, specialization);
+  const auto own = code_for(stem, reflection_, specialization);
   if (device.preserves_nan())
     create_pipeline(device, with_preserved_nan(own), specialization);
   else

@@ -46,8 +46,10 @@ std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> cod
 /// out what constants rule out only once they have read all of it.
 std::span<const std::uint32_t> kernel_code(std::string_view stem);
 
-/// The code that a pipeline with these constants is made of: that of the kernel's twin, if they are its own.
-std::span<const std::uint32_t> code_for(const std::string& stem, const std::vector<std::uint32_t>& specialization);
+/// The code that a pipeline with these constants is made of: that of the kernel's twin, if they are its own. `all`: the
+/// kernel's declarations.
+std::span<const std::uint32_t> code_for(const std::string& stem, const Reflection& all,
+                                        const std::vector<std::uint32_t>& specialization);
 
 class Kernel {
  public:

@@ -178,7 +178,7 @@ def command_for(read, source, settings):
 def run_program(command, task):
     """Runs the program, reports its progress to the task, and gives its warnings; None if the user has cancelled, which ends
     it. Fails with the program's message."""
-    percents, messages, told = [0], [], 0
+    percents, messages = [0], []
 
     def follow(stream):
         percents.extend(int(number) for line in stream for number in re.findall(r"(\d+)\s*%", line))
@@ -195,9 +195,8 @@ def run_program(command, task):
                 if task.isCancelled() and not is_cancelled:
                     is_cancelled = True
                     running.terminate()
-                while told < len(percents):
-                    task.setProgress(percents[told])
-                    told += 1
+                while percents:
+                    task.setProgress(percents.pop(0))
                 time.sleep(POLL_S)
         except BaseException:
             running.terminate()
@@ -210,7 +209,7 @@ def run_program(command, task):
     if running.returncode != 0:
         errors = [line for line in lines if "error" in line] or lines or ["it said nothing"]
         raise ValueError("%s (exit code %d)" % (errors[-1], running.returncode))
-    for percent in percents[told:] + [100]:
+    for percent in percents + [100]:
         task.setProgress(percent)
     return [line for line in lines if "warning: " in line]
 

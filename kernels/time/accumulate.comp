@@ -6,10 +6,10 @@
 //
 // True AO of what stands still does not change with the camera. So what another frame estimates counts where it shows
 // the same point: each lies in the plane of the other, as exactly as the depth is and half a pixel's slope, and their
-// normals agree; and where nothing within the radius of it moves from the one frame to the other. Toward
-// that it counts less and less over the width of a cell, so that no line shows where the mean ends. What a frame cannot
-// tell of a point is left out, so that nothing has to be clamped, and no result is made from an earlier one. Else all
-// count the same: weights by distance, by the angle or by how sure an estimate is were no nearer to ray tracing.
+// normals agree; and where nothing within the radius of it moves from the one frame to the other. Toward what moves it
+// counts less and less over the width of a cell, so that no line shows where the mean ends. What a frame cannot tell of
+// a point is left out, so that nothing has to be clamped, and no result is made from an earlier one. Else all count the
+// same: weights by distance, by the angle or by how sure an estimate is were no nearer to ray tracing.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

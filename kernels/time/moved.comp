@@ -94,11 +94,14 @@ bool is_patch(bool of_own, uint first, View view, ivec2 pixel, float z) {
 
 Box both(Box a, Box b) { return Box(min(a.low, b.low), max(a.high, b.high)); }
 
-Box between(vec3 a, vec3 b) { return Box(min(a, b), max(a, b)); }
-
-/// Where what moves may end, behind the front that a view shows of it: a radius farther from the eye. What lies about
-/// its hidden part loses its mean, too: taken as a sheet, a ball that lands lost its shadow on the floor.
-vec3 back_of(View view, vec3 position) { return position - params.radius * toward_eye(view, position); }
+/// The box of what moves at a position that a view shows, the frame's own or another one's: from the front that is seen
+/// to a radius farther from the eye. What lies about its hidden part loses its mean, too: taken as a sheet, a ball that
+/// lands lost its shadow on the floor.
+Box box_at(bool of_own, View view, TakenFrame other, vec3 position) {
+  const vec3 back = position - params.radius * toward_eye(view, position);
+  const vec3 a = of_own ? position : position_here(other, position), b = of_own ? back : position_here(other, back);
+  return Box(min(a, b), max(a, b));
+}
 
 /// Whether no more cells than that lie within the radius of a box.
 bool is_small(Box box) {
@@ -174,8 +177,7 @@ Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other, uint fr
     bool lifted =
         !moved && is_seen_through(!from_own, other.first, to, sight.at, kPatch, sight.same + kLifted * sight.width);
     if (lifted) moved = is_patch(from_own, other.first, from, pixel, z);
-    const vec3 back = back_of(from, here);
-    if (moved) add(box, from_own ? between(here, back) : between(there, position_here(other, back)), frames);
+    if (moved) add(box, box_at(from_own, from, other, here), frames);
   }
   return box;
 }
@@ -198,10 +200,7 @@ void add_moving(inout Box box, ivec2 tile, bool of_own, TakenFrame other, uint f
     const ivec2 pixel = min(pixel_of_tile(tile, uint(k)), view.size - 1);
     const float z = depth_at(of_own, other.first, index_of(view, pixel));
     const vec3 position = position_of(view, vec2(pixel) + 0.5, -z);
-    const vec3 back = back_of(view, position);
-    const Box moving = between(position, back);
-    const Box there = between(position_here(other, position), position_here(other, back));
-    if (z < 0.0) add(box, of_own ? moving : there, frames);
+    if (z < 0.0) add(box, box_at(of_own, view, other, position), frames);
   }
 }
 

@@ -88,7 +88,7 @@ void pair(gpu::Recorder& gpu, const GBuffer& layered, const gpu::Buffer& open, c
 
 Layering layering_of(const EstimatorSettings& settings) { return {settings.hidden, settings.separation.value_or(-1)}; }
 
-/// Up to so many planes have a kernel for their number. More come from deep frames alone, whose numbers differ.
+/// Up to so many planes have a kernel for their number. More come from deep frames, whose numbers differ.
 constexpr uint kFewPlanes = 4;
 
 GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& frame, const Layering& layering) {
