@@ -76,6 +76,7 @@ constexpr std::array kTable = {
     NoteFacts{NoteCode::computed_again, "computed-again", false, "why --resume computes frames that are there"},
     NoteFacts{NoteCode::ao_layer, "ao-layer", false, "the AO of a comparison was found by its layer's name"},
     NoteFacts{NoteCode::sky_differs, "sky-differs", true, "sky of 0 against 1 decides a comparison"},
+    NoteFacts{NoteCode::holes, "holes", true, "pixels of a comparison are NaN or infinite in one file only"},
 };
 
 constexpr bool is_in_order() {

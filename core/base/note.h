@@ -71,6 +71,7 @@ enum class NoteCode {
   // comparisons
   ao_layer,
   sky_differs,
+  holes,
 };
 
 /// The form of a note in the header of an output. Headers are the same bits for the same inputs.
