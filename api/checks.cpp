@@ -9,6 +9,7 @@
 #include "core/base/option_words.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/frame/evidence.h"
+#include "core/frame/precision.h"
 #include "core/frame/radius.h"
 #include "core/frame/settle.h"
 
@@ -70,19 +71,23 @@ void check_normals(const Reading& reading, const HostPlanes& planes, Notes& note
 
 }  // namespace
 
-Notes check_planes(const Reading& reading, const HostPlanes& planes, const EstimatorSettings& settings) {
-  const View view = view_of(reading.camera, reading.data, reading.display);
+Notes check_planes(Reading& reading, const HostPlanes& planes) {
   const auto depth = planes[RawPlane::depth];
-  check_depth(reading, depth, view);
-  Notes notes;
+  const char* const name = reading.depth_kind == DepthKind::position ? "position" : "depth";
+  check_depth(reading, depth, view_of(reading, reading.data));
+  const Grain grain = measure_rounding(reading, reading.data, depth, name);
+  measure_levels(reading, depth);
+  Notes notes = precision_notes(reading, reading.data, depth, grain, name);
   if (!planes[RawPlane::normal].empty()) check_normals(reading, planes, notes);
-  if (settings.radius) {
-    DepthSample sample;
-    sample.add(view, depth_map_of(reading), depth_precision_of(reading), depth);
-    const auto radii = radii_of(settings);
-    add_new(notes, sample.notes(radii.front(), radii.back(), reading.data.width, reading.data.height));
-  }
   return notes;
+}
+
+Notes check_radius(const Reading& reading, std::span<const float> depth, const EstimatorSettings& settings) {
+  if (!settings.radius) return {};
+  DepthSample sample;
+  sample.add(view_of(reading, reading.data), depth_map_of(reading), depth_precision_of(reading), depth);
+  const auto radii = radii_of(settings);
+  return sample.notes(radii.front(), radii.back(), reading.data.width, reading.data.height);
 }
 
 }  // namespace alcove

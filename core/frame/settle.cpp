@@ -14,6 +14,7 @@
 #include "core/frame/behind.h"
 #include "core/frame/evidence.h"
 #include "core/frame/position_pass.h"
+#include "core/frame/precision.h"
 #include "core/frame/radius.h"
 
 namespace alcove {
@@ -52,14 +53,8 @@ void Settlement::guess(const std::string& what, const std::string& chosen, const
 
 namespace {
 
-constexpr double kStep = 0.1;     // relative change of depth that is an edge
-constexpr double kSmooth = 0.02;  // relative change within a surface
-constexpr double kBetween = 0.1;  // part of a step within which a value belongs to the surface on that side
-constexpr int kLeastEdges = 100;
-constexpr double kMostBlended = 0.3;            // of the edges; thin things give some by themselves
 constexpr double kMostShortened = 0.02;         // of the normals
 constexpr double kMostOfOtherLength = 0.1;      // of normals that were all scaled alike; edges are shorter
-constexpr std::size_t kEdgePixels = 1 << 18;    // of whole rows: enough for edges, and no cost beside reading
 constexpr std::size_t kNormalPixels = 1 << 16;  // enough for shares to a percent
 
 bool is_lossy(const FrameSource& source, const ChannelRef& ref) {
@@ -83,66 +78,6 @@ Notes cut_parts(ExrFile& file, const std::set<int>& needed) {
     }
   }
   return found;
-}
-
-/// Depth that was averaged over the pixels, by some of its rows.
-Notes averaged_depth(const FrameSource& source, const RawPart& raw) {
-  const int step = int(std::min<std::size_t>(raw.window.pixels() / kEdgePixels + 1, std::size_t(raw.window.height)));
-  const View view = view_of(source.reading, raw.window);
-  const double blended =
-      blended_edges(planar_depths(raw.depth, depth_map_of(source.reading), view, step), raw.window.width);
-  if (blended <= kMostBlended) return {};
-  return {{NoteCode::antialiased_depth,
-           fmt::format("{:.0f} % of the depth's edges have a pixel in between: the depth is anti-aliased, and AO shows "
-                       "seams there; render it without filtering",
-                       100 * blended)}};
-}
-
-/// The rows, or columns, along a border that have no surface.
-struct BorderRows {
-  int empty = 0;        // how many have none, and one value
-  bool is_bar = false;  // the next one is mostly of surfaces, unlike that below a sky
-};
-
-BorderRows border_rows(const RawPart& raw, const DepthMap& map, bool columns, bool last) {
-  constexpr double kLeastSurfaces = 0.5;
-  const int width = raw.window.width, height = raw.window.height;
-  const int rows = columns ? width : height, across = columns ? height : width;
-  const auto value = [&](int row, int i) {
-    const int at = last ? rows - 1 - row : row;
-    return raw.depth[columns ? std::size_t(i) * std::size_t(width) + std::size_t(at)
-                             : std::size_t(at) * std::size_t(width) + std::size_t(i)];
-  };
-  for (int row = 0; row < rows; row++) {
-    int surfaces = 0;
-    bool is_one = true;
-    for (int i = 0; i < across; i++) {
-      surfaces += std::isfinite(planar_depth(map, {value(row, i), 0, 0}, 1));
-      is_one = is_one && !(value(row, i) != value(row, 0) && !std::isnan(value(row, i)));
-    }
-    if (surfaces == 0 && is_one) continue;
-    return {row, surfaces >= kLeastSurfaces * across};
-  }
-  return {rows, false};
-}
-
-/// Bars above and below a picture, or on both its sides, that are as wide: a sky is on one side alone. Between them the
-/// picture reaches both other borders; a thing before an empty background does not.
-Notes letterbox(const FrameSource& source, const RawPart& raw) {
-  if (raw.window != source.reading.data || source.channels[RawPlane::depth].size() != 1) return {};
-  const DepthMap map = depth_map_of(source.reading);
-  for (const bool columns : {false, true}) {
-    const auto border = [&](bool of_columns, bool is_last) { return border_rows(raw, map, of_columns, is_last); };
-    const BorderRows first = border(columns, false), last = border(columns, true);
-    if (!first.is_bar || !last.is_bar || first.empty == 0 || std::abs(first.empty - last.empty) > 1) continue;
-    if (border(!columns, false).empty > 0 || border(!columns, true).empty > 0) continue;
-    return {{NoteCode::letterbox_bars,
-             fmt::format("the first {} and the last {} {} are empty: they look like bars around the picture, and count "
-                         "as sky, so that AO next to them is too light; crop the data window of the file to the "
-                         "picture between them, and keep its display window",
-                         first.empty, last.empty, columns ? "columns" : "rows")}};
-  }
-  return {};
 }
 
 /// Normals that were averaged over the pixels, by some of them. It is no warning where the program does so always, for
@@ -215,116 +150,17 @@ bool has_lengths(const FrameSource& source) {
           source.reading.normal_encoding == NormalEncoding::unorm);
 }
 
-double blended_edges(std::span<const float> planar, int width) {
-  int sharp = 0, blended = 0;
-  const auto close = [](double a, double b) { return std::abs(a - b) < kSmooth * std::min(a, b); };
-  for (std::size_t row = 0; row + std::size_t(width) <= planar.size(); row += std::size_t(width))
-    for (int x = 2; x + 2 < width; x++) {
-      const float* z = &planar[row + std::size_t(x)];
-      if (std::any_of(z - 2, z + 3, [](float v) { return std::isinf(v); })) continue;
-      const double before = z[-1], here = z[0], after = z[1];
-      if (!close(z[-2], before) || !close(after, z[2]) || std::abs(after - before) < kStep * std::min(before, after))
-        continue;
-      const double place = (here - before) / (after - before);
-      if (place > kBetween && place < 1 - kBetween) blended++;
-      // An edge without a pixel in between is seen from both of its sides, and is counted once.
-      else if (place <= kBetween)
-        sharp++;
-    }
-  return sharp + blended < kLeastEdges ? 0 : double(blended) / (sharp + blended);
-}
-
 // The order of settling.
 
 namespace {
 
-/// Gives one sentence for each finding: anti-aliased depth, shortened normals, channels that a lossy codec has damaged,
-/// other parts that are cut short or have other windows, overscan and crops. The frame's meaning is settled; of large
+/// Gives one sentence for each finding: shortened normals, channels that a lossy codec has damaged, other parts that are cut short or have other windows, overscan and crops. The frame's meaning is settled; of large
 /// frames a part of the pixels is looked at.
 Notes findings(FrameSource& source, const RawPart& raw) {
   Notes found;
-  for (Notes some : {averaged_depth(source, raw), averaged_normals(source, raw), letterbox(source, raw), damage(source),
-                     windows(source)})
+  for (Notes some : {averaged_normals(source, raw), damage(source), windows(source)})
     std::ranges::move(some, std::back_inserter(found));
   return found;
-}
-
-/// Refuses depth that was saved as a grey picture: it has no more than 256 distances.
-void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
-  if (source.channels[RawPlane::depth].size() != 1) return;
-  constexpr std::size_t kLeastLevels = 16;  // fewer may be a few walls that happen to lie there
-  std::set<double> levels;
-  for (std::size_t i = 0; i < depth.size(); i += kSparse) {
-    const double level = 255.0 * depth[i];
-    if (!(level >= 0 && level <= 255) || std::abs(level - std::round(level)) > 1e-4) return;
-    levels.insert(std::round(level));
-  }
-  if (levels.size() >= kLeastLevels)
-    fail(ErrorKind::input,
-         "{}: {} holds only values of 8 bits, too few distances for AO: save depth as EXR, or as DDS (--depth)",
-         source.depth_path(), source.channels[RawPlane::depth][0].channel);
-}
-
-/// Takes down how the values were rounded. It changes how they are judged, and how near occluders may be.
-void measure_grain(FrameSource& source, const Grain& grain, std::span<const float> depth) {
-  source.reading.depth_is_coarse = grain.is_coarse;
-  const auto is_beyond = [&](float d) { return std::abs(d) > kLargestHalf && std::abs(d) < source.reading.sky; };
-  if (grain.is_half && std::ranges::none_of(depth, is_beyond)) source.reading.found_sky = kLargestHalf;
-  if (!grain.is_coarse) return;
-  if (grain.is_fixed)
-    source.reading.depth_step = grain.step;
-  else
-    source.reading.depth_rounding =
-        grain.is_half ? kHalfPrecision : 0.5 * std::exp2(std::ceil(std::log2(grain.step / grain.median)));
-}
-
-/// Notes values that are coarser than floats: half floats step by a 1024th of the power of two below the value.
-void note_grain(FrameSource& source, const Grain& grain) {
-  if (!has_coarse_depth(source.reading) || grain.median == 0) return;
-  const bool has_half_type = source.reading.depth_is_half;
-  const double step = grain.is_coarse ? grain.step : std::exp2(std::floor(std::log2(grain.median)) - 10);
-  source.suspicious.push_back(
-      {NoteCode::half_depth,
-       fmt::format("{} {}: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as bands; {}",
-                   source.channels[RawPlane::depth][0].channel,
-                   has_half_type   ? "is stored as half float"
-                   : grain.is_half ? "holds the values of half floats"
-                                   : "was rounded",
-                   grain.median, step,
-                   has_half_type ? "write it as float" : "write it as float, without rounding it before")});
-}
-
-/// Notes half floats whose sky may be surfaces: those beyond the largest number became infinite.
-void note_overflow(FrameSource& source, std::span<const float> depth) {
-  constexpr float kNear = 0.9f * float(kLargestHalf);
-  if (!is_distance(source.reading.depth_kind) ||
-      !(source.reading.depth_is_half || source.reading.found_sky == kLargestHalf))
-    return;
-  std::size_t beyond = 0, near = 0;
-  for (const float d : depth) {
-    beyond += std::abs(d) >= kLargestHalf;
-    near += std::abs(d) >= kNear && std::abs(d) < kLargestHalf;
-  }
-  if (!beyond || !near) return;
-  source.suspicious.push_back(
-      {NoteCode::overflown_depth,
-       fmt::format(
-           "{:.0f} % of {} is infinite or 65504, the largest half float, and surfaces reach up to it: what lies "
-           "beyond counts as sky; write depth as float, or in larger units",
-           100 * double(beyond) / double(depth.size()), source.channels[RawPlane::depth][0].channel)});
-}
-
-/// Notes depth that was sampled at random places within the pixels, or averaged over few of them.
-void note_jitter(FrameSource& source, const RawPart& raw, const Grain& grain) {
-  const View view = view_of(source.reading, raw.window);
-  const auto jitter = jitter_of(raw.depth, depth_map_of(source.reading), view, grain);
-  if (!jitter) return;
-  source.suspicious.push_back(
-      {NoteCode::jittered_depth,
-       fmt::format("flat surfaces are not flat: their depth is off by {:.2f} of its step from pixel to pixel, as if it "
-                   "was sampled at random places within the pixels; AO takes that for relief; render depth at the "
-                   "pixels' centres, without a filter",
-                   *jitter)});
 }
 
 /// Settles depth and normals by the camera as it is.
@@ -351,10 +187,8 @@ Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
 }  // namespace
 
 void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
-  Grain& grain = seen.grain;
-  refuse_8_bits(source, raw.depth);
-  if (source.channels[RawPlane::depth].size() == 1) grain = grain_of(raw.depth, settings.sky);
-  measure_grain(source, grain, raw.depth);
+  const std::string& channel = source.channels[RawPlane::depth][0].channel;
+  seen.grain = measure_rounding(source.reading, raw.window, raw.depth, source.depth_path() + ": " + channel);
   const std::string refutation = settle_camera(source, settings);
   try {
     settle_meaning(source, settings, raw, seen);
@@ -363,11 +197,9 @@ void settle(FrameSource& source, const InputSettings& settings, const RawPart& r
     if (refutation.empty()) throw;
     fail(error.kind(), "{}; {}", error.what(), refutation);
   }
-  note_grain(source, grain);
-  note_overflow(source, raw.depth);
-  note_jitter(source, raw, grain);
-  Reading& reading = source.reading;
-  if (is_between_planes(reading.depth_kind)) reading.depth_step = std::max(reading.depth_step, step_of(raw.depth));
+  const Reading& reading = source.reading;
+  measure_levels(source.reading, raw.depth);
+  add_new(source.suspicious, precision_notes(reading, raw.window, raw.depth, seen.grain, channel));
   seen.median_depth = median_depth(over(reading, raw.window), raw.depth);
   std::ranges::move(findings(source, raw), std::back_inserter(source.suspicious));
 }

@@ -47,10 +47,6 @@ bool has_lengths(const FrameSource& source);
 /// The word of --normal-encoding for normals of a frame that is settled.
 const char* encoding_name(NormalEncoding encoding, bool unorm);
 
-/// Gives the share of the rows' steps from one surface to another that take a pixel in between: near 0 for point
-/// samples, near 1 for averaged pixels, and 0 if there are too few steps to tell. `planar` is infinite on sky.
-double blended_edges(std::span<const float> planar, int width);
-
 // Shared by the steps that settle a frame.
 
 /// The usual reading stays where its score is at least this part of the best one.

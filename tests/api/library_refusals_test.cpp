@@ -35,8 +35,11 @@ TEST_F(Library, refuses_what_makes_no_sense) {
   const alcove_layout one = packed(8, 4), other = packed(4, 8), three = packed(4, 4, 3);
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "no plane depth");
   for (const auto& [option, value, sentence] : {std::tuple("radios", "1", "did you mean radius"),
-                                                {"radius", "-1", "--radius"},
+                                                {"radius", "-1", "'radius': -1 is out of range"},
                                                 {"albedo", "file.exr", "the plane albedo"},
+                                                {"threads", "2", "threads is not available in the library"},
+                                                {"depth", "file.exr", "alcove_plane()"},
+                                                {"camera", "file.json", "alcove_camera()"},
                                                 {nullptr, "1", "null option"}})
     EXPECT_REFUSED(handle, alcove_set(handle.get(), option, value), ALCOVE_USAGE, sentence);
   for (const auto& [plane, layout, sentence] : {std::tuple("dept", &one, "did you mean depth"),
@@ -53,7 +56,7 @@ TEST_F(Library, refuses_what_makes_no_sense) {
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "no camera");
   EXPECT_OK(handle, alcove_set(handle.get(), "fov", "60"));
   EXPECT_OK(handle, alcove_set(handle.get(), "depth-kind", "normalized"));
-  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "--far");
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "give 'far'");
   EXPECT_OK(handle, alcove_set(handle.get(), "depth-kind", "planar"));
   EXPECT_OK(handle, alcove_plane(handle.get(), "material-ao", values.data(), &other));
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT,
@@ -91,19 +94,42 @@ TEST_F(Library, refuses_strides_by_which_values_share_bytes) {
     EXPECT_OK(handle, alcove_plane(handle.get(), layout.components == 3 ? "normal" : "depth", values.data(), &layout));
 }
 
+TEST_F(Library, refuses_strides_that_no_address_reaches) {
+  const Handle handle = with_camera();
+  give_planes(handle);
+  constexpr std::ptrdiff_t kMost = std::numeric_limits<std::ptrdiff_t>::max(),
+                           kLeast = std::numeric_limits<std::ptrdiff_t>::min();
+  std::vector<float> values(3 * frame().data.pixels(), 7);
+  for (const std::ptrdiff_t stride : {kMost, kLeast, kMost / 2, kMost / 3 + 1, kLeast / 2, kMost / (1 << 20)})
+    for (alcove_layout layout : {alcove_layout{width(), height(), 1, ALCOVE_FLOAT, stride, 0, 0},
+                                 {width(), height(), 1, ALCOVE_FLOAT, 0, stride, 0},
+                                 {width(), height(), 3, ALCOVE_HALF, 0, 0, stride},
+                                 {width(), height(), 1, ALCOVE_FLOAT, stride, stride, 0},
+                                 {4, 1 << 24, 1, ALCOVE_FLOAT, stride, 0, 0},
+                                 {1 << 24, 1, 1, ALCOVE_FLOAT, stride, stride, stride}}) {
+      const char* const plane = layout.components == 3 ? "normal" : "depth";
+      EXPECT_REFUSED(handle, alcove_plane(handle.get(), plane, values.data(), &layout), ALCOVE_USAGE, "beyond memory");
+    }
+  EXPECT_EQ(ao_of(handle), truth());  // of the planes that were given before
+  alcove_layout beyond = packed(width(), height());
+  beyond.row_stride = kMost / 2;
+  EXPECT_REFUSED(handle, alcove_get(handle.get(), "ao", values.data(), &beyond), ALCOVE_USAGE, "beyond memory");
+  EXPECT_EQ(values, std::vector<float>(values.size(), 7));
+}
+
 TEST_F(Library, refuses_what_the_pixels_speak_against) {
   const Handle handle = with_camera();
   give_planes(handle);
   EXPECT_OK(handle, alcove_run(handle.get(), 0));
   EXPECT_STREQ(alcove_notes(handle.get()), "");
   EXPECT_OK(handle, alcove_set(handle.get(), "normal-space", "view"));
-  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "better fits --normal-space world");
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "better fits 'normal-space' world");
   EXPECT_OK(handle, alcove_set(handle.get(), "normal-space", "world"));
   EXPECT_OK(handle, alcove_set(handle.get(), "flip-normal", "xyz"));
-  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "better fits --normal-space world (");
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "better fits 'normal-space' world (");
   EXPECT_OK(handle, alcove_set(handle.get(), "flip-normal", nullptr));
   EXPECT_OK(handle, alcove_set(handle.get(), "normal-encoding", "unorm"));
-  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "--normal-encoding signed");
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "'normal-encoding' signed");
   EXPECT_OK(handle, alcove_set(handle.get(), "normal-encoding", nullptr));
   std::vector<float> changed = frame().normal;
   for (float& x : changed) x = 0.5F + 0.5F * x;
@@ -111,7 +137,7 @@ TEST_F(Library, refuses_what_the_pixels_speak_against) {
   three.pixel_stride = sizeof(float);
   three.component_stride = std::ptrdiff_t(sizeof(float)) * width() * height();
   EXPECT_OK(handle, alcove_plane(handle.get(), "normal", changed.data(), &three));
-  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "--normal-encoding unorm");
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "'normal-encoding' unorm");
   EXPECT_OK(handle, alcove_set(handle.get(), "normal-encoding", "unorm"));
   EXPECT_OK(handle, alcove_run(handle.get(), 0));
   EXPECT_OK(handle, alcove_plane(handle.get(), "normal", nullptr, nullptr));
@@ -134,7 +160,7 @@ TEST_F(Library, lets_only_one_thing_say_the_camera_and_the_depth) {
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "only one of them");
   EXPECT_OK(handle, alcove_set(handle.get(), "fov", nullptr));
   EXPECT_OK(handle, alcove_set(handle.get(), "near", "0.1"));
-  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "--near has no effect");
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "'near' has no effect");
   EXPECT_OK(handle, alcove_set(handle.get(), "near", nullptr));
   EXPECT_OK(handle, alcove_camera_json(handle.get(), ""));
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "not a JSON object");
@@ -182,10 +208,11 @@ TEST_F(Library, takes_or_refuses_every_option_of_the_table) {
     const auto words = row.is_key() ? row.words({}) : Words();
     const std::string name = row.key(), value = words.empty() ? "1" : words.front();
     if (alcove_set(handle.get(), name.c_str(), value.c_str()) == ALCOVE_OK) continue;
-    if (std::string(alcove_error(handle.get())).find("is of files") != std::string::npos)
+    const std::string error = alcove_error(handle.get());
+    if (error.find("not available in the library") != error.npos || error.find(": alcove_") != error.npos)
       refused.insert(name);
     else
-      EXPECT_THAT(alcove_error(handle.get()), HasSubstr(name)) << "a value that is none, but the option is known";
+      EXPECT_THAT(error, HasSubstr(name)) << "a value that is none, but the option is known";
   }
   EXPECT_EQ(refused, std::set<std::string>(names.begin(), names.end()));
 }

@@ -230,7 +230,7 @@ TEST_F(Library, takes_what_lies_behind) {
   EXPECT_EQ(ao, compute_ao(recorder(), known, settings).ao);
   EXPECT_NE(ao, truth());
   EXPECT_OK(handle, alcove_set(handle.get(), "behind-kind", "backs,fronts"));
-  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "--behind-kind");
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "'behind-kind'");
 }
 
 TEST_F(Library, keeps_handles_of_several_threads_apart) {

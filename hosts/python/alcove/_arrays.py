@@ -150,7 +150,7 @@ class _Session:
 
 def _in_keywords(text: bytes) -> str:
     """A sentence of the library, with options under their Python names."""
-    return re.sub(r"--(?:set )?([a-z][a-z-]*)", lambda match: match.group(1).replace("-", "_"), text.decode("utf-8", "replace"))
+    return re.sub(r"'([a-z]+(?:-[a-z]+)*)'", lambda match: match.group(0).replace("-", "_"), text.decode("utf-8", "replace"))
 
 
 _of_thread = threading.local()
