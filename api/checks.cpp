@@ -9,9 +9,9 @@
 #include "core/base/option_words.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/frame/evidence.h"
-#include "core/frame/precision.h"
-#include "core/frame/radius.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/precision.h"
+#include "core/frame/settle/radius.h"
+#include "core/frame/settle/settle.h"
 
 namespace alcove {
 namespace {

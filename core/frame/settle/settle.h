@@ -12,7 +12,7 @@
 
 #include "core/base/settings.h"
 #include "core/frame/evidence.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 
 namespace alcove {
 

@@ -11,7 +11,7 @@
 #include "core/base/option_words.h"
 #include "core/frame/camera/camera.h"
 #include "core/frame/evidence.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 
 namespace alcove {
 namespace {

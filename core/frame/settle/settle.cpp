@@ -1,6 +1,6 @@
 // Settles what is open about a frame, and looks at it for what harms AO.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,11 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
-#include "core/frame/behind.h"
 #include "core/frame/evidence.h"
-#include "core/frame/position_pass.h"
-#include "core/frame/precision.h"
-#include "core/frame/radius.h"
+#include "core/frame/find/behind.h"
+#include "core/frame/find/position_pass.h"
+#include "core/frame/settle/precision.h"
+#include "core/frame/settle/radius.h"
 
 namespace alcove {
 

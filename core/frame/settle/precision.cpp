@@ -1,6 +1,6 @@
 // Looks at depth for what its values cannot tell.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/precision.h"
+#include "core/frame/settle/precision.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,21 +53,18 @@ Notes rounded_depth(const Reading& reading, const Grain& grain, const std::strin
   const bool has_half_type = reading.depth_is_half;
   const double step = grain.is_coarse ? grain.step : std::exp2(std::floor(std::log2(grain.median)) - 10);
   return {{NoteCode::half_depth,
-       fmt::format("{} {}: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as bands; {}",
-                   name,
-                   has_half_type   ? "is stored as half float"
-                   : grain.is_half ? "holds the values of half floats"
-                                   : "was rounded",
-                   grain.median, step,
-                   has_half_type ? "write it as float" : "write it as float, without rounding it before")}};
+           fmt::format("{} {}: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as bands; {}", name,
+                       has_half_type   ? "is stored as half float"
+                       : grain.is_half ? "holds the values of half floats"
+                                       : "was rounded",
+                       grain.median, step,
+                       has_half_type ? "write it as float" : "write it as float, without rounding it before")}};
 }
 
 /// Notes half floats whose sky may be surfaces: those beyond the largest number became infinite.
 Notes overflown_depth(const Reading& reading, std::span<const float> depth, const std::string& name) {
   constexpr float kNear = 0.9f * float(kLargestHalf);
-  if (!is_distance(reading.depth_kind) ||
-      !(reading.depth_is_half || reading.found_sky == kLargestHalf))
-    return {};
+  if (!is_distance(reading.depth_kind) || !(reading.depth_is_half || reading.found_sky == kLargestHalf)) return {};
   std::size_t beyond = 0, near = 0;
   for (const float d : depth) {
     beyond += std::abs(d) >= kLargestHalf;
@@ -75,10 +72,10 @@ Notes overflown_depth(const Reading& reading, std::span<const float> depth, cons
   }
   if (!beyond || !near) return {};
   return {{NoteCode::overflown_depth,
-       fmt::format(
-           "{:.0f} % of {} is infinite or 65504, the largest half float, and surfaces reach up to it: what lies "
-           "beyond counts as sky; write depth as float, or in larger units",
-           100 * double(beyond) / double(depth.size()), name)}};
+           fmt::format(
+               "{:.0f} % of {} is infinite or 65504, the largest half float, and surfaces reach up to it: what lies "
+               "beyond counts as sky; write depth as float, or in larger units",
+               100 * double(beyond) / double(depth.size()), name)}};
 }
 
 /// Notes depth that was sampled at random places within the pixels, or averaged over few of them.
@@ -86,7 +83,8 @@ Notes jittered_depth(const Reading& reading, const Window& window, std::span<con
   const View view = view_of(reading, window);
   const auto jitter = jitter_of(depth, depth_map_of(reading), view, grain);
   if (!jitter) return {};
-  return {{NoteCode::jittered_depth,
+  return {
+      {NoteCode::jittered_depth,
        fmt::format("flat surfaces are not flat: their depth is off by {:.2f} of its step from pixel to pixel, as if it "
                    "was sampled at random places within the pixels; AO takes that for relief; render depth at the "
                    "pixels' centres, without a filter",
@@ -97,8 +95,7 @@ Notes jittered_depth(const Reading& reading, const Window& window, std::span<con
 Notes averaged_depth(const Reading& reading, const Window& window, std::span<const float> depth) {
   const int step = int(std::min<std::size_t>(window.pixels() / kEdgePixels + 1, std::size_t(window.height)));
   const View view = view_of(reading, window);
-  const double blended =
-      blended_edges(planar_depths(depth, depth_map_of(reading), view, step), window.width);
+  const double blended = blended_edges(planar_depths(depth, depth_map_of(reading), view, step), window.width);
   if (blended <= kMostBlended) return {};
   return {{NoteCode::antialiased_depth,
            fmt::format("{:.0f} % of the depth's edges have a pixel in between: the depth is anti-aliased, and AO shows "
@@ -112,14 +109,15 @@ struct BorderRows {
   bool is_bar = false;  // the next one is mostly of surfaces, unlike that below a sky
 };
 
-BorderRows border_rows(const Window& window, std::span<const float> depth, const DepthMap& map, bool columns, bool last) {
+BorderRows border_rows(const Window& window, std::span<const float> depth, const DepthMap& map, bool columns,
+                       bool last) {
   constexpr double kLeastSurfaces = 0.5;
   const int width = window.width, height = window.height;
   const int rows = columns ? width : height, across = columns ? height : width;
   const auto value = [&](int row, int i) {
     const int at = last ? rows - 1 - row : row;
     return depth[columns ? std::size_t(i) * std::size_t(width) + std::size_t(at)
-                             : std::size_t(at) * std::size_t(width) + std::size_t(i)];
+                         : std::size_t(at) * std::size_t(width) + std::size_t(i)];
   };
   for (int row = 0; row < rows; row++) {
     int surfaces = 0;
@@ -140,7 +138,9 @@ Notes letterbox(const Reading& reading, const Window& window, std::span<const fl
   if (window != reading.data || depth.size() != window.pixels()) return {};
   const DepthMap map = depth_map_of(reading);
   for (const bool columns : {false, true}) {
-    const auto border = [&](bool of_columns, bool is_last) { return border_rows(window, depth, map, of_columns, is_last); };
+    const auto border = [&](bool of_columns, bool is_last) {
+      return border_rows(window, depth, map, of_columns, is_last);
+    };
     const BorderRows first = border(columns, false), last = border(columns, true);
     if (!first.is_bar || !last.is_bar || first.empty == 0 || std::abs(first.empty - last.empty) > 1) continue;
     if (border(!columns, false).empty > 0 || border(!columns, true).empty > 0) continue;

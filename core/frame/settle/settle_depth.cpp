@@ -7,8 +7,8 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/frame/evidence.h"
-#include "core/frame/position_pass.h"
-#include "core/frame/settle.h"
+#include "core/frame/find/position_pass.h"
+#include "core/frame/settle/settle.h"
 
 namespace alcove {
 namespace {
