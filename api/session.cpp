@@ -203,8 +203,6 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
   reading.camera = camera_by(settings, reading.data, frame);
   reading.depth_kind =
       has_position() ? DepthKind::position : decided(input.depth_kind, reading.camera.depth_kind, DepthKind::planar);
-  if (const auto unused = unused_range_options(input.depth_range, reading.depth_kind); !unused.empty())
-    refuse_range_options(has_position() ? "position" : "depth", unused, reading.depth_kind);
   reading.depth_range = input.depth_range;
   if (!reading.depth_range.near) reading.depth_range.near = reading.camera.near;
   if (!reading.depth_range.far) reading.depth_range.far = reading.camera.far;
@@ -260,7 +258,7 @@ void Session::run(int frame) {
     fail(ErrorKind::usage, "--set multi-bounce needs the plane albedo, or a number for --set albedo");
   std::vector<float> behind;
   const HostPlanes planes = planes_over(reading.data, behind);
-  Notes notes = check_planes(reading, planes);
+  Notes notes = check_planes(reading, planes, all.input);
   if (all.estimator.radius_auto) {
     all.estimator.radius = proposed_radius(reading.camera, median_depth(reading, depth().values));
     if (!all.estimator.radius) all.estimator.radius = 1;  // there is no surface, and no AO to compute

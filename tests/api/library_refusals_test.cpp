@@ -217,5 +217,101 @@ TEST_F(Library, takes_or_refuses_every_option_of_the_table) {
   EXPECT_EQ(refused, std::set<std::string>(names.begin(), names.end()));
 }
 
+// What is said.
+
+/// Values to try: the words of an option, numbers of every size, and what is no value.
+Words tried_values(const SettingRow& row) {
+  Words values{"", "x", "-1", "0", "0.5", "1", "3", "1e30", "0.1,0.2", "true"};
+  std::istringstream words(row.value);
+  for (std::string word; std::getline(words, word, '|');) values.push_back(word);
+  return values;
+}
+
+/// All that handles said.
+class Said {
+ public:
+  void call(const Handle& handle, alcove_code code) {
+    if (code == ALCOVE_OK) return;
+    sentences_.insert(alcove_error(handle.get()));
+  }
+  const std::set<std::string>& sentences() const { return sentences_; }
+
+ private:
+  std::set<std::string> sentences_;
+};
+
+/// An option with a value that the library takes.
+struct Choice {
+  std::string option, value;
+};
+
+TEST_F(Library, speaks_of_its_own_parameters_alone) {
+  Said said;
+  const Handle handle(alcove_new());
+  const std::vector<float> depth{1, 2, 1, 2, 3, 2, 1, 4}, colours(24, 0.5F);
+  const alcove_layout one = packed(4, 2), three = packed(4, 2, 3);
+  const auto set = [&](const Choice& choice) {
+    const alcove_code code = alcove_set(handle.get(), choice.option.c_str(), choice.value.c_str());
+    said.call(handle, code);
+    return code == ALCOVE_OK;
+  };
+  const auto run = [&] { said.call(handle, alcove_run(handle.get(), 0)); };
+  std::vector<Choice> choices;
+  for (const auto& row : option_table())
+    for (const auto& value : tried_values(row))
+      if (set({row.key(), value})) {
+        if (row.key() != "device") choices.push_back({row.key(), value});
+        alcove_set(handle.get(), row.key().c_str(), nullptr);
+      }
+  EXPECT_GT(choices.size(), 200);
+  // No device is opened, so that only what is said takes time.
+  EXPECT_OK(handle, alcove_set(handle.get(), "device", "nothing of the kind"));
+  run();
+  EXPECT_OK(handle, alcove_plane(handle.get(), "depth", depth.data(), &one));
+  run();
+  EXPECT_OK(handle, alcove_set(handle.get(), "radius", "1"));
+  run();
+  EXPECT_OK(handle, alcove_set(handle.get(), "fov", "60"));
+  const auto with_each = [&](const auto& then) {
+    for (const Choice& choice : choices) {
+      set(choice);
+      then();
+      const bool is_needed = choice.option == "radius" || choice.option == "fov";
+      alcove_set(handle.get(), choice.option.c_str(), !is_needed ? nullptr : choice.option == "fov" ? "60" : "1");
+    }
+  };
+  for (const char* plane : {"normal", "albedo", "material-ao", "matte", "occluders", "ignore", "behind"}) {
+    const bool is_colour = plane == std::string("normal") || plane == std::string("albedo");
+    EXPECT_OK(handle,
+              alcove_plane(handle.get(), plane, is_colour ? colours.data() : depth.data(), is_colour ? &three : &one));
+    with_each(run);
+    EXPECT_OK(handle, alcove_plane(handle.get(), plane, nullptr, nullptr));
+  }
+  for (const char* aov : {"relight", "error", "hidden", "bent-normal", "ao-scales", "transfer", "albedo", "nothing"}) {
+    EXPECT_OK(handle, alcove_set(handle.get(), "aov", aov));
+    with_each(run);
+  }
+  EXPECT_OK(handle, alcove_set(handle.get(), "aov", nullptr));
+  for (const Choice& first : choices) {
+    if (first.option == "radius" || first.option == "fov" || first.option == "aov") continue;
+    set(first);
+    with_each(run);
+    alcove_set(handle.get(), first.option.c_str(), nullptr);
+  }
+  for (const char* camera : {"", "[]", "{}", R"({"resolution": [4, 2]})", R"({"resolution": [4, 2], "fx": 0, "fy": 1})",
+                             R"({"resolution": [9, 2], "fx": 1, "fy": 1, "cx": 0, "cy": 0})",
+                             R"({"resolution": [4, 2], "fx": 1, "fy": 1, "cx": 0, "cy": 0, "frames": []})"}) {
+    EXPECT_OK(handle, alcove_camera_json(handle.get(), camera));
+    run();
+    EXPECT_OK(handle, alcove_set(handle.get(), "fov", nullptr));
+    run();
+  }
+  EXPECT_GT(said.sentences().size(), 150);
+  if (getenv("SAY"))
+    for (const auto& x : said.sentences()) puts(x.c_str());
+  for (const std::string& sentence : said.sentences())
+    EXPECT_THAT(sentence, Not(AnyOf(HasSubstr("--"), HasSubstr(".exr"), HasSubstr(".EXR"))));
+}
+
 }  // namespace
 }  // namespace alcove::library_refusals_test

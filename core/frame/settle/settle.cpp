@@ -19,36 +19,6 @@
 
 namespace alcove {
 
-Settlement::Settlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen,
-                       RawPlane about)
-    : source_(source),
-      reading_(source.reading),
-      settings_(settings),
-      raw_(raw),
-      seen_(seen),
-      view_(view_of(source.reading, raw.window)),
-      about_(about) {}
-
-void Settlement::note(NoteCode code, std::string text) {
-  source_.notes.push_back({code, std::move(text), about_ == RawPlane::normal ? source_.normal_file() : ""});
-}
-
-void Settlement::take_down(const std::string& what, const std::string& chosen, const std::string& why,
-                           const std::string& option, bool unusual, bool proven) {
-  seen_.guesses.push_back({what, chosen, why, option});
-  if (unusual)
-    note(proven ? NoteCode::proven_reading : NoteCode::unusual_reading,
-         fmt::format("{} taken as {}: {} ({} says otherwise)", what, chosen, why, option));
-}
-
-void Settlement::guess(const std::string& what, const std::string& chosen, const std::string& why,
-                       const std::string& option, bool unusual, bool proven) {
-  if (settings_.strict)
-    fail(ErrorKind::input, "{}: --strict, and nothing says the {}; it would be {} ({}): give {}",
-         about_ == RawPlane::normal ? normal_path() : depth_path(), what, chosen, why, option);
-  take_down(what, chosen, why, option, unusual, proven);
-}
-
 // Faults that harm AO.
 
 namespace {
@@ -165,7 +135,8 @@ Notes findings(FrameSource& source, const RawPart& raw) {
 
 /// Settles depth and normals by the camera as it is.
 void settle_meaning(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
-  settle_depth(source, settings, raw, seen);
+  settle_depth({source.reading, source.notes, settings, raw, seen, source.depth_path()},
+               {source.program, source.open.depth_kind, [&] { return kind_by_positions(source, settings, raw); }});
   settle_deep(source, raw);
   if (source.channels[RawPlane::normal].empty())
     note_centre(source);
