@@ -1,5 +1,8 @@
 // What the C library refuses, asks for, repairs and notes.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <set>
+#include <sstream>
+
 #include "core/options/options.h"
 #include "tests/support/library.h"
 
@@ -263,8 +266,7 @@ TEST_F(Library, speaks_of_its_own_parameters_alone) {
         if (row.key() != "device") choices.push_back({row.key(), value});
         alcove_set(handle.get(), row.key().c_str(), nullptr);
       }
-  EXPECT_GT(choices.size(), 200);
-  // No device is opened, so that only what is said takes time.
+  EXPECT_GT(choices.size(), 150);
   EXPECT_OK(handle, alcove_set(handle.get(), "device", "nothing of the kind"));
   run();
   EXPECT_OK(handle, alcove_plane(handle.get(), "depth", depth.data(), &one));
@@ -280,7 +282,11 @@ TEST_F(Library, speaks_of_its_own_parameters_alone) {
       alcove_set(handle.get(), choice.option.c_str(), !is_needed ? nullptr : choice.option == "fov" ? "60" : "1");
     }
   };
-  for (const char* plane : {"normal", "albedo", "material-ao", "matte", "occluders", "ignore", "behind"}) {
+  with_each(run);
+  // A plane of another size ends a run before it asks for a device, which takes time.
+  const alcove_layout other = packed(2, 4);
+  EXPECT_OK(handle, alcove_plane(handle.get(), "material-ao", depth.data(), &other));
+  for (const char* plane : {"normal", "albedo", "matte", "occluders", "ignore", "behind"}) {
     const bool is_colour = plane == std::string("normal") || plane == std::string("albedo");
     EXPECT_OK(handle,
               alcove_plane(handle.get(), plane, is_colour ? colours.data() : depth.data(), is_colour ? &three : &one));
@@ -306,7 +312,7 @@ TEST_F(Library, speaks_of_its_own_parameters_alone) {
     EXPECT_OK(handle, alcove_set(handle.get(), "fov", nullptr));
     run();
   }
-  EXPECT_GT(said.sentences().size(), 150);
+  EXPECT_GT(said.sentences().size(), 500);
   if (getenv("SAY"))
     for (const auto& x : said.sentences()) puts(x.c_str());
   for (const std::string& sentence : said.sentences())

@@ -20,9 +20,7 @@ Settlement::Settlement(PlanesToSettle planes)
       notes_(planes.notes),
       file_(std::move(planes.file)) {}
 
-void Settlement::note(NoteCode code, std::string text) {
-  notes_.push_back({code, std::move(text), file_});
-}
+void Settlement::note(NoteCode code, std::string text) { notes_.push_back({code, std::move(text), file_}); }
 
 void Settlement::take_down(const std::string& what, const std::string& chosen, const std::string& why,
                            const std::string& option, bool unusual, bool proven) {
@@ -35,8 +33,8 @@ void Settlement::take_down(const std::string& what, const std::string& chosen, c
 void Settlement::guess(const std::string& what, const std::string& chosen, const std::string& why,
                        const std::string& option, bool unusual, bool proven) {
   if (settings_.strict)
-    fail(ErrorKind::input, "{}: --strict, and nothing says the {}; it would be {} ({}): give {}",
-         path_, what, chosen, why, option);
+    fail(ErrorKind::input, "{}: --strict, and nothing says the {}; it would be {} ({}): give {}", path_, what, chosen,
+         why, option);
   take_down(what, chosen, why, option, unusual, proven);
 }
 
