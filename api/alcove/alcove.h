@@ -30,8 +30,8 @@ extern "C" {
 #define ALCOVE_API __attribute__((visibility("default")))
 
 // The answer of a function: 0, or the kind of its failure, by the program's exit codes. alcove_error() has the
-// sentence. A call that fails changes nothing, neither in the handle nor in the caller's memory, except that a failed run
-// drops the results of an earlier one. The handle stays usable.
+// sentence. A call that fails changes nothing, neither in the handle nor in the caller's memory, except that a failed
+// run drops the results of an earlier one. The handle stays usable.
 typedef enum alcove_code {
   ALCOVE_OK = 0,
   ALCOVE_FAILED = 1,  // a mistake of Alcove's own
@@ -42,9 +42,9 @@ typedef enum alcove_code {
 
 typedef enum alcove_type { ALCOVE_FLOAT = 0, ALCOVE_HALF = 1 } alcove_type;
 
-// The layout of a plane in memory, its upper left pixel first. Strides are in bytes; 0: packed, with the components of a
-// pixel beside each other. They may be negative, and need not be multiples of a value's size; 128 GiB at most. No two
-// values may share bytes. A side has at most 2^24 pixels, and a plane 2^32 values.
+// The layout of a plane in memory, its upper left pixel first. Strides are in bytes; 0: packed, with the components of
+// a pixel beside each other. They may be negative, and need not be multiples of a value's size; none is 128 GiB or
+// more. No two values may share bytes. A side has at most 2^24 pixels, and a plane 2^32 values.
 typedef struct alcove_layout {
   int width, height;  // px
   int components;
@@ -107,9 +107,9 @@ ALCOVE_API alcove_code alcove_get(alcove_session* handle, const char* aov, void*
 // NaN if there is none of that name.
 ALCOVE_API double alcove_number(const alcove_session* handle, const char* name);
 // Gives the doubts about the last run if it did not fail, one sentence per line, as the program's notes: depth that was
-// rounded, averaged or jittered, or that looks like another kind; a sky that is a number; normals of which few agree with
-// the depth; a radius too small for the depth's precision or larger than the picture. "" without doubts. The text stays
-// until the next run.
+// rounded, averaged or jittered, or that looks like another kind; a sky that is a number; normals of which few agree
+// with the depth; a radius too small for the depth's precision or larger than the picture. "" without doubts. The text
+// stays until the next run.
 ALCOVE_API const char* alcove_notes(const alcove_session* handle);
 // Gives the name of the open device; "" if none is open.
 ALCOVE_API const char* alcove_device(const alcove_session* handle);
