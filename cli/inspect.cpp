@@ -10,7 +10,7 @@
 #include "cli/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/frame/environment.h"
+#include "core/frame/find/environment.h"
 #include "core/frame/raw_plane.h"
 #include "core/inspect/inspect.h"
 #include "core/run/first_look.h"

@@ -8,9 +8,9 @@
 #include "core/base/text.h"
 #include "core/frame/camera/camera.h"
 #include "core/frame/evidence.h"
-#include "core/frame/radius.h"
 #include "core/frame/raw_plane.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/radius.h"
+#include "core/frame/settle/settle.h"
 #include "core/inspect/inspect.h"
 
 namespace alcove {

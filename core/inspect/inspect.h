@@ -16,8 +16,8 @@
 #include "core/formats/exr.h"
 #include "core/frame/camera/camera.h"
 #include "core/frame/evidence.h"
-#include "core/frame/gbuffer.h"
-#include "core/frame/matte.h"
+#include "core/frame/find/frame_source.h"
+#include "core/frame/find/matte.h"
 #include "core/run/plan.h"
 
 namespace alcove {

@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/frame/raw_plane.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "core/inspect/inspect.h"
 
 namespace alcove {

@@ -12,7 +12,7 @@
 #include "core/base/text.h"
 #include "core/formats/picture.h"
 #include "core/formats/sequence.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 #include "core/measure/metrics.h"
 #include "core/measure/report.h"
 

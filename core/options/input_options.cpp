@@ -7,7 +7,7 @@
 
 #include "core/base/text.h"
 #include "core/frame/camera/camera.h"
-#include "core/frame/input_rules.h"
+#include "core/frame/find/input_rules.h"
 #include "core/frame/raw_plane.h"
 #include "core/options/options.h"
 #include "core/options/reasons.h"

@@ -14,7 +14,7 @@
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "core/run/memory.h"
 #include "kernels/hidden/hidden.h"
 

@@ -15,7 +15,7 @@
 #include "core/formats/color.h"
 #include "core/formats/exr.h"
 #include "core/formats/png.h"
-#include "core/frame/matte.h"
+#include "core/frame/find/matte.h"
 #include "core/frame/raw_plane.h"
 #include "core/options/options.h"
 #include "core/run/frame_files.h"

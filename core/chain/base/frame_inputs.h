@@ -8,7 +8,7 @@
 #include <cstring>
 #include <vector>
 
-#include "core/frame/environment.h"
+#include "core/frame/find/environment.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"

@@ -1,6 +1,6 @@
 // Finds the planes of a frame, the rules of its program, its camera, and the meaning of depth and normals.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -13,11 +13,11 @@
 #include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
-#include "core/frame/behind.h"
 #include "core/frame/camera/camera.h"
 #include "core/frame/camera/resection.h"
-#include "core/frame/matte.h"
-#include "core/frame/position_pass.h"
+#include "core/frame/find/behind.h"
+#include "core/frame/find/matte.h"
+#include "core/frame/find/position_pass.h"
 
 namespace alcove {
 

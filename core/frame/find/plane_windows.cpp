@@ -1,6 +1,6 @@
 // Planes whose files have another data window than the depth, or are of a picture that is so many times smaller.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 
 #include <algorithm>
 #include <limits>
