@@ -214,7 +214,8 @@ MissingOptions FirstLook::missing_options() {
     }
   } catch (const Error& error) {
     // A name that no command could have comes first, since it would be a part of the one that is proposed.
-    if (error.kind() == ErrorKind::usage) throw;
+    std::error_code none;
+    if (error.kind() == ErrorKind::usage || std::filesystem::is_directory(main_input(settings_.input), none)) throw;
     missing.unreadable = error;
   }
   return missing;

@@ -49,6 +49,14 @@ bool exists(const std::string& path) {
   return fs::exists(path, error);
 }
 
+/// Fails where a frame's file is a folder.
+void refuse_folder(const std::string& path, const std::string& option) {
+  std::error_code error;
+  if (fs::is_directory(path, error))
+    fail(ErrorKind::input, "{}: is a folder; {} takes a file, or a pattern such as {}", path, option,
+         (fs::path(path) / "shot.####.exr").string());
+}
+
 /// Fails where a name that is no file is what a shell would have taken for several.
 void refuse_glob(const std::string& path, const std::string& option) {
   const std::size_t begin = path.find_first_of("*?");
@@ -93,6 +101,7 @@ void FramePlan::find_patterns(FileRole role) {
     for (std::size_t i = 0; i < words.size(); i++) {
       const std::string& text = words[i];
       if (row.is_file && !row.is_file(text)) continue;
+      if (are_inputs) refuse_folder(text, row.long_name());
       if (are_inputs ? exists(text) : !is_sequence_ && !has_clear_place(text)) continue;
       if (are_inputs) refuse_glob(text, row.long_name());
       if (const auto name = frame_pattern(text)) patterns_.push_back({&row, i, text, *name});
