@@ -66,6 +66,7 @@ enum class NoteCode {
   // frames, and choices for them
   sequence_hole,
   frame_number,
+  other_frame,
   automatic_radius,
   computed_again,
   // comparisons

@@ -418,6 +418,13 @@ CompareReport compare_sequence(const CompareSettings& settings) {
 
 }  // namespace
 
+std::vector<CompareSettings> settings_of_frames(const CompareSettings& settings) {
+  if (!is_sequence(settings)) return {settings};
+  std::vector<CompareSettings> all;
+  for (const int frame : frames_of(settings)) all.push_back(settings_of_frame(settings, frame));
+  return all;
+}
+
 CompareReport compare_pictures(const CompareSettings& settings) {
   if (is_sequence(settings)) return compare_sequence(settings);
   if (!settings.motion.empty())

@@ -81,6 +81,9 @@ struct CompareReport {
 /// The most frames of a sequence that keep their pictures: those with the largest rmse.
 inline constexpr std::size_t kMostPicturedFrames = 12;
 
+/// The settings with the files of each frame. Fails as compare_pictures() does on frames that are missing.
+std::vector<CompareSettings> settings_of_frames(const CompareSettings& settings);
+
 /// Reads and measures the frames. Fails with ErrorKind::usage on settings that contradict each other. Fails with
 /// ErrorKind::input on missing and unreadable files, on pictures that share no pixel or no channel, on pictures of
 /// different data windows with different display windows, and if no pixel is left to compare.
