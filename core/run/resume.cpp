@@ -97,6 +97,15 @@ std::vector<std::string> inputs_of(const Settings& frame) {
   return files;
 }
 
+/// What a camera file says; nothing where it cannot be read, since the frame that needs it says so.
+std::string camera_text(const std::string& path) {
+  try {
+    return read_text(path, "camera", "--camera");
+  } catch (const Error&) {
+    return "";
+  }
+}
+
 /// The bytes that are looked at of a file's beginning, and as many of its end.
 constexpr std::streamoff kLooked = 1 << 16;
 
@@ -144,7 +153,7 @@ InputIdentities::Identity InputIdentities::all_of(int frame) {
     all.newest = std::max(all.newest, identity.newest);
     all.text += fmt::format("\n{} {}", other - frame, identity.text);
     if (const std::string camera = plan_.at(other).input.camera; camera != input.camera)
-      all.text += read_text(camera, "camera", "--camera");
+      all.text += camera_text(camera);
   }
   all.text = fmt::format("{:016x}", XXH3_64bits(all.text.data(), all.text.size()));
   return all;
