@@ -142,7 +142,8 @@ Buffer& Recorder::buffer(std::string_view name, std::size_t bytes, Use use) {
       recording = recordings_;
       return pooled;
     }
-    if (recording_ || !device_) replaced_.emplace_back(name, std::move(pooled));
+    // Commands of this recording have it only where this recording has asked for it.
+    if (!device_ || (recording_ && recording == recordings_)) replaced_.emplace_back(name, std::move(pooled));
     buffers_.erase(found);
   }
   try {

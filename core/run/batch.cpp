@@ -45,7 +45,7 @@ class RunDevice {
       : settings_(plan.settings()), plan_(plan), settled_(settled), frames_(frames) {
     const DeviceSettings& d = settings_.device;
     lanes_.emplace(gpu::DeviceOptions{d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, share_cores());
-    RunMemory memory = memory_for_frames(d, info());
+    RunMemory memory = memory_for_frames(settings_, info());
     if (settled_) {
       require_room_for_others(memory, plan_, *settled_, settings_, frames_);
       require_buffers_for_others(info().buffer_bytes, *settled_, settings_);
@@ -66,7 +66,7 @@ class RunDevice {
   /// Divides the cores among the frames in flight on a CPU, and tells the codecs and lavapipe how many threads each
   /// has. A CPU device reads that when it is made, and so before anybody knows whether it is one. Gives the lanes.
   int share_cores() {
-    const RunMemory memory = memory_of_host(settings_.device);
+    const RunMemory memory = memory_of_host(settings_);
     const int lanes = lanes_within(memory, threads_), of_a_frame = threads_ / lanes;
     set_exr_memory(memory.host_bytes / kCodecPart / std::uint64_t(lanes));
     set_exr_threads(lanes == 1 ? threads_ : std::max(0, threads_ - lanes));
@@ -103,7 +103,7 @@ class Batch {
   /// Computes the frames; those that a lost device took with it once more, on a fresh one.
   void compute(const std::vector<int>& frames) {
     const Settings& settings = plan_.settings();
-    const std::uint64_t bytes = memory_of_host(settings.device).host_bytes;
+    const std::uint64_t bytes = memory_of_host(settings).host_bytes;
     set_exr_memory(bytes / kCodecPart);
     const auto settled = plan_.is_sequence() ? look_.settle(bytes) : std::nullopt;
     if (settled) note(FrameTally::notes_on(*settled, settings.input));

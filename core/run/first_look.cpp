@@ -17,6 +17,7 @@
 #include "core/run/memory.h"
 #include "core/run/resume.h"
 #include "core/run/run_files.h"
+#include "core/run/tiles.h"
 
 namespace alcove {
 namespace {
@@ -309,6 +310,21 @@ std::string at_once_text(const RunMemory& memory, const FramePlan& plan, const F
   return fmt::format("{} at once, for which there is room (--memory)", count);
 }
 
+/// The least that --memory may be, with its cost, and what computes a frame at once; "" where its depth is unreadable.
+std::string needs_text(FrameSource& source, const Settings& settings, const RunMemory& memory,
+                       const FrameMemory& frame) {
+  const Room room{.bytes = memory.host_bytes, .buffer_bytes = Room::kEndless, .program_bytes = memory.program_bytes};
+  const WindowLimits limits{frame, room, longest_side(settings.estimator)};
+  try {
+    const MemoryNeeds needs = memory_needs(source, settings, limits);
+    const std::string at_once = limits.option_for(needs.at_once) + " computes a frame at once";
+    if (needs.parts == 1) return at_once + ", and nothing less is enough";
+    return fmt::format("{}, {} is the least: {}", at_once, limits.option_for(needs.least), needs.cost());
+  } catch (const Error&) {
+    return "";  // the frame fails by itself, and others of a sequence may not
+  }
+}
+
 }  // namespace
 
 std::string plan_text(FirstLook& look) {
@@ -336,7 +352,7 @@ std::string plan_text(FirstLook& look) {
   FrameSource source = look.open(first, plan.frames().front());
   // Frames of a sequence are read as one of them that shows enough.
   if (!plan.is_sequence() && !source.evidence)
-    settle_by_rows(source, first.input, memory_of_host(first.device).host_bytes);
+    settle_by_rows(source, first.input, memory_of_host(first).host_bytes);
   std::vector<std::string> channels;
   for (const auto& plane : source.channels.planes.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);
@@ -348,12 +364,14 @@ std::string plan_text(FirstLook& look) {
   const std::uint64_t bytes = frame.of(source.reading.data).host;
   InputIdentities identities(plan);
   const auto [wanted, resumed] = frames_to_compute(plan, options_digest(first), identities);
-  require_room_for_others(memory_of_host(first.device), plan, source, first, wanted);
-  const RunMemory host = memory_of_host(first.device);
-  const std::uint64_t memory = without_shared_frames(host, plan, source, first, wanted, 1).host_bytes;
+  const RunMemory host = memory_of_host(first);
+  require_room_for_others(host, plan, source, first, wanted);
+  const RunMemory of_frames = without_shared_frames(host, plan, source, first, wanted, 1);
+  const std::uint64_t memory = of_frames.host_bytes;
   line("size", to_string(written_picture(source)));
   const std::string at_once = bytes > memory ? "in tiles" : at_once_text(host, plan, source, first, wanted);
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
+  if (const std::string needs = needs_text(source, first, of_frames, frame); !needs.empty()) line("--memory", needs);
   const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared) {
     line(name, fmt::format("up to {} of the {} frames of the shot: {} MiB of {} for each at once, beside what it takes "
                            "itself",
