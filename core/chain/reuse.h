@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A result may be used again where every value that it is made from is the same: the frame's recipe, which is compared,
-// and the raw planes, by 64-bit hashes (XXH3). Settings are those of the run. That needs noise that is the same in every frame
-// (Noise::fixed).
+// and the raw planes, by 64-bit hashes (XXH3). Settings are those of the run. That needs noise that is the same in every
+// frame (Noise::fixed).
 #pragma once
 
 #include <array>
