@@ -1,9 +1,9 @@
 // What a frame has in common with the one before it in the same buffers: all of it, or blocks of its pixels.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A result may be used again where every value that it is made from is the same: the frame's recipe, which is compared,
-// and the raw planes, by 64-bit hashes (XXH3). Settings are those of the run. That needs noise that is the same in every frame
-// (Noise::fixed).
+// A result may be used again where every value that it is made from is the same: the frame's recipe, which is
+// compared, and the raw planes, by 64-bit hashes (XXH3). Settings are those of the run. That needs noise that is the
+// same in every frame (Noise::fixed).
 #pragma once
 
 #include <array>
