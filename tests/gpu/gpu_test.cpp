@@ -108,7 +108,7 @@ TEST(Texels, take_the_place_of_storage_buffers_that_may_be_such_and_of_nothing_e
 
 TEST(Device, reads_texels_where_the_driver_is_slow_with_storage_buffers) {
   EXPECT_TRUE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 22.3.6 (LLVM 15.0.6)"));
-  EXPECT_TRUE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 21.2.6"));
+  EXPECT_TRUE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 24.0.9-0ubuntu0.3"));
   EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 25.0.7-2 (LLVM 19.1.7)"));
   EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa of tomorrow"));
   EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, ""));
