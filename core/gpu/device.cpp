@@ -248,7 +248,7 @@ PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const D
 
 bool is_fast_with_texels(VkDriverId driver, std::string_view driver_info) {
   constexpr std::string_view kMesa = "Mesa ";
-  constexpr int kFirstWithoutLoops = 23;  // reads storage buffers without a loop over lanes
+  constexpr int kFirstWithoutLoops = 25;  // seen: 22.3 and the source of 23.2 have loops over lanes, 25.0 has none
   int version = kFirstWithoutLoops;
   if (driver_info.starts_with(kMesa))
     std::from_chars(driver_info.data() + kMesa.size(), driver_info.data() + driver_info.size(), version);
