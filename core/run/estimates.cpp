@@ -10,7 +10,7 @@
 #include "core/base/text.h"
 #include "core/chain/chain.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "core/run/frame_run.h"
 #include "core/run/memory.h"
 #include "core/run/shot.h"

@@ -10,12 +10,13 @@
 #include "core/base/text.h"
 #include "core/chain/results/outputs.h"
 #include "core/formats/sequence.h"
-#include "core/frame/radius.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/radius.h"
+#include "core/frame/settle/settle.h"
 #include "core/options/options.h"
 #include "core/run/frame_files.h"
 #include "core/run/memory.h"
 #include "core/run/resume.h"
+#include "core/run/run_files.h"
 #include "core/run/tiles.h"
 
 namespace alcove {
@@ -44,9 +45,27 @@ Notes notes_on_missing_around(const FramePlan& plan) {
                        frames_text(missing))}};
 }
 
+/// The note on files of one frame whose names have another frame's number. Peels and cameras are counted otherwise.
+Notes notes_on_other_frames(const FramePlan& plan) {
+  const Settings& settings = plan.settings();
+  const auto number = plan.is_sequence() ? plan.all().front() : frame_number_in(main_input(settings.input)).number;
+  if (plan.all().size() != 1 || !number) return {};
+  Notes notes;
+  for (const auto& row : file_rows()) {
+    if (row.group != "Input" || !row.is_of_frame || row.key() == "camera") continue;
+    for (const auto& [option, path] : row.files(plan.at(*number), FileRole::input))
+      if (const FrameNumber other = frame_number_in(path); other.number && other.number != number)
+        notes.push_back({NoteCode::other_frame, fmt::format("{} {}: by the digits {} of its name it is of frame {}, "
+                                                            "and the frame is {}",
+                                                            option, path, other.digits, *other.number, *number)});
+  }
+  return notes;
+}
+
 /// Names tell these: numbers that are left out, frames that others do without, and the number of a single frame.
 Notes notes_on_names(const FramePlan& plan) {
   Notes notes = notes_on_holes(plan);
+  add_new(notes, notes_on_other_frames(plan));
   refuse_warnings(notes, plan.settings(), main_input(plan.settings().input));
   // The settings say that frames may be missing, so that this is never an error.
   add_new(notes, notes_on_missing_around(plan));
@@ -196,7 +215,8 @@ MissingOptions FirstLook::missing_options() {
     }
   } catch (const Error& error) {
     // A name that no command could have comes first, since it would be a part of the one that is proposed.
-    if (error.kind() == ErrorKind::usage) throw;
+    std::error_code none;
+    if (error.kind() == ErrorKind::usage || std::filesystem::is_directory(main_input(settings_.input), none)) throw;
     missing.unreadable = error;
   }
   return missing;
@@ -321,9 +341,13 @@ std::string plan_text(FirstLook& look) {
   for (const auto& note : notes) line(level_of(note), line_of(note, ""));
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
-  require_endings(first.output);
-  for (const auto& path : named_paths())
-    if (!path.of(first).empty()) line(path.option, span_text(path.of(first), path.of(last)));
+  check_names(plan);
+  for (const auto& row : file_rows()) {
+    if (!row.is_of_frame) continue;
+    const auto of_first = row.files(first, row.role), of_last = row.files(last, row.role);
+    for (std::size_t i = 0; i < of_first.size(); i++)
+      line(of_first[i].option, span_text(of_first[i].path, of_last[i].path));
+  }
 
   set_exr_threads(threads_of(first.device));  // as a run does: codecs take memory for each
   FrameSource source = look.open(first, plan.frames().front());

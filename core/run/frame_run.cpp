@@ -14,8 +14,9 @@
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "core/run/memory.h"
+#include "core/run/run_files.h"
 #include "kernels/hidden/hidden.h"
 
 namespace alcove {
@@ -356,13 +357,8 @@ class FrameRun {
 
   /// By what is noted so far.
   Provenance provenance() const {
-    const bool has_own_camera = settings_.input.camera != run_.plan.at(run_.plan.frames().front()).input.camera;
-    return {has_own_camera ? options_digest(settings_) : run_.provenance.options,
-            run_.provenance.device,
-            run_.identities.of(frame_),
-            header_text(report_.notes),
-            text_of(others_),
-            text_of(estimates_)};
+    return {run_.provenance.options,    run_.provenance.device, run_.identities.of(frame_),
+            header_text(report_.notes), text_of(others_),       text_of(estimates_)};
   }
 
   void run_whole(FrameSource& source, const Window& computed) {
@@ -375,7 +371,7 @@ class FrameRun {
     if (run_.take_results) return run_.take_results(source, computed, outputs);
     const Stopwatch writing;
     const Provenance by = provenance();
-    make_folders(outputs_of(settings_.output), settings_.output);
+    make_folders(files_of(settings_, FileRole::output), settings_.output);
     FrameWriter writer(source, settings_, by);
     write_planes(writer, written_of(source), computed, result_planes(outputs, computed, settings_.output));
     TakePreview take_preview;
@@ -410,7 +406,7 @@ class FrameRun {
     const Stopwatch cutting;
     const auto tiles = tiles_of(written_of(source), surroundings, limits, source);
     report_.read_ms += cutting.ms();
-    make_folders(outputs_of(settings_.output), settings_.output);
+    make_folders(files_of(settings_, FileRole::output), settings_.output);
     FrameWriter writer(source, settings_, provenance());
     report_.parts = 0;
     parts_ = 0;

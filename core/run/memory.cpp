@@ -12,7 +12,7 @@
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/geometry/geometry.h"
 #include "core/formats/exr.h"
-#include "core/frame/channels.h"
+#include "core/frame/find/channels.h"
 #include "core/gpu/kernel.h"
 #include "core/run/frame_files.h"
 #include "core/run/shot.h"

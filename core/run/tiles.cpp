@@ -17,7 +17,7 @@
 #include "core/chain/results/outputs.h"
 #include "core/chain/results/reduce.h"
 #include "core/frame/evidence.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "core/run/frame_files.h"
 #include "kernels/estimate/exact.h"
 #include "kernels/geometry/geometry.h"
@@ -87,16 +87,21 @@ double sphere_reach(double radius, double nearest, double tangent, double pixels
 }  // namespace
 
 Window region_of(const FrameSource& source, const Region& roi) {
+  constexpr std::int64_t kFarthest = 1 << 30;  // px; no file has a window that reaches farther
   const Window& data = source.reading.data;
   const Window picture = picture_of(source.reading, source.reading.display);
-  const Window region = enlarged({picture.x + roi.x, picture.y + roi.y, roi.width, roi.height}, source.reading.display,
-                                 source.reading.supersampling);
-  const bool inside = region.x >= data.x && region.y >= data.y &&
+  const std::int64_t left = std::int64_t(picture.x) + roi.x, top = std::int64_t(picture.y) + roi.y;
+  const bool is_near = std::max({std::abs(left), std::abs(top), left + roi.width, top + roi.height}) < kFarthest;
+  Window region;
+  if (is_near)
+    region =
+        enlarged({int(left), int(top), roi.width, roi.height}, source.reading.display, source.reading.supersampling);
+  const bool inside = is_near && region.x >= data.x && region.y >= data.y &&
                       std::int64_t(region.x) + region.width <= std::int64_t(data.x) + data.width &&
                       std::int64_t(region.y) + region.height <= std::int64_t(data.y) + data.height;
   if (!inside)
-    fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it", source.depth_path(),
-         to_string(picture_of(source.reading, region)), to_string(picture_of(source.reading, data)));
+    fail(ErrorKind::usage, "{}: --roi is {}x{} at ({}, {}), and the data window is {}: give a region within it",
+         source.depth_path(), roi.width, roi.height, left, top, to_string(picture_of(source.reading, data)));
   return region;
 }
 

@@ -192,6 +192,9 @@ TEST_F(Refusals, settings_that_contradict_each_other_name_what_mends_them) {
     expect_rows_refused({{std::string("--roi ") + roi, {"--roi", "X,Y,WIDTH,HEIGHT"}}});
   for (const char* roi : {"100,0,8,8", "0,0,65,10", "-1,0,5,5", "60,30,4,7", "2147483647,0,2147483647,1"})
     expect_rows_refused({{std::string("--roi ") + roi, {frame, "--roi", "data window"}}});
+  for (const auto& [roi, said] : {std::pair("2147483647,0,2147483647,5", "--roi is 2147483647x5 at (2147483647, 0)"),
+                                  {"0,-2147483647,4,5", "--roi is 4x5 at (0, -2147483647)"}})
+    expect_rows_refused({{std::string("--roi ") + roi, {said}}});
 }
 
 TEST_F(Refusals, outputs_that_the_frame_has_nothing_for_name_what_gives_it) {
