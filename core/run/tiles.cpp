@@ -299,7 +299,10 @@ void require_numbered_lines(const FrameSource& source, const EstimatorSettings& 
          source.depth_path(), reach, farthest);
 }
 
-std::string MemoryNeeds::cost() const { return fmt::format("in {} parts, about {:.2g} times as long", parts, factor); }
+std::string MemoryNeeds::cost() const {
+  return fmt::format("in {} parts, about {} times as long", parts,
+                     factor < 10 ? fmt::format("{:.2g}", factor) : fmt::format("{:.0f}", factor));
+}
 
 MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, const WindowLimits& limits) {
   const Window& whole = written_of(source);
