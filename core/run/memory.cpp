@@ -73,8 +73,9 @@ FrameMemory::Bytes FrameMemory::of(const Window& computed) const {
   run_chain(rehearsal, rehearsed_inputs(rehearsal, *this, window), estimator, wanted);
   const std::uint64_t device = rehearsal.bytes() + fixed_on_device;
   const std::uint64_t rows = std::uint64_t(std::min(kRowsWritten, computed.height)) * std::uint64_t(computed.width);
-  // Rows that are written are there twice more: cropped to what is wanted, and as half.
-  return {device, device + computed.pixels() * beside + 2 * rows * written + fixed_bytes, rehearsal.largest_bytes()};
+  // Rows that are written are there once more as half, and cropped to a region.
+  const std::uint64_t copies = (is_cropped ? 2 : 1) * rows * written;
+  return {device, device + computed.pixels() * beside + copies + fixed_bytes, rehearsal.largest_bytes()};
 }
 
 std::uint64_t FrameMemory::codec_bytes(std::uint64_t room) const {
@@ -107,6 +108,7 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   memory.take(settings);
   memory.written = sizeof(float) * written;
   memory.beside = sizeof(float) * pictures;
+  memory.is_cropped = source.region.has_value();
   memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.reading.data.width)};
   memory.fixed_bytes =
       exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output) + composite_bytes(source);

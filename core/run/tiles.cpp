@@ -374,10 +374,12 @@ void WindowLimits::refuse(const std::string& what, const Window& computed) const
 
 std::string WindowLimits::option_for(std::uint64_t bytes) const {
   const std::uint64_t without = bytes - std::min(bytes, memory.codec_bytes(room.bytes));
-  bytes = without;
-  // Terminates: codec memory grows more slowly than the limit.
-  for (std::uint64_t more; (more = without + memory.codec_bytes(bytes)) > bytes;) bytes = more;
-  return fmt::format("{}M", mebibytes_above(room.program_bytes + bytes));
+  std::uint64_t mebibytes = mebibytes_above(room.program_bytes + without);
+  // Terminates: codec memory grows more slowly than the limit, whose last MiB counts too.
+  while (without + memory.codec_bytes(mebibytes * kMebibyte - room.program_bytes) + room.program_bytes >
+         mebibytes * kMebibyte)
+    mebibytes++;
+  return fmt::format("{}M", mebibytes);
 }
 
 void WindowLimits::refuse(const std::string& what, const MemoryNeeds& needs) const {
