@@ -349,10 +349,10 @@ std::string plan_text(FirstLook& look) {
       line(of_first[i].option, span_text(of_first[i].path, of_last[i].path));
   }
 
+  set_exr_threads(threads_of(first.device));  // as a run does: codecs take memory for each
   FrameSource source = look.open(first, plan.frames().front());
   // Frames of a sequence are read as one of them that shows enough.
-  if (!plan.is_sequence() && !source.evidence)
-    settle_by_rows(source, first.input, memory_of_host(first).host_bytes);
+  if (!plan.is_sequence() && !source.evidence) settle_by_rows(source, first.input, memory_of_host(first).host_bytes);
   std::vector<std::string> channels;
   for (const auto& plane : source.channels.planes.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);

@@ -381,15 +381,19 @@ class FrameRun {
     report_.write_ms += writing.ms();
   }
 
-  /// Writes the planes of a window over `written`, of which so many rows at once are there twice: cropped, and as half.
+  /// Writes the planes of a window over `written`, a part of it or all; so many rows at once are cropped or made half.
   static void write_planes(FrameWriter& writer, const Window& written, const Window& computed,
                            const std::vector<std::span<const float>>& planes) {
     Window rows = written;
     for (; rows.y < written.y + written.height; rows.y += kRowsWritten) {
       rows.height = std::min(kRowsWritten, written.y + written.height - rows.y);
-      std::vector<std::vector<float>> copies;
-      for (const auto& plane : planes) copies.push_back(cropped(plane, computed, rows));
-      writer.write(std::vector<std::span<const float>>(copies.begin(), copies.end()));
+      std::vector<std::vector<float>> regions;
+      std::vector<std::span<const float>> parts;
+      const std::size_t first = std::size_t(rows.y - computed.y) * std::size_t(computed.width);
+      for (const auto& plane : planes)
+        parts.push_back(written == computed ? plane.subspan(first, rows.pixels())
+                                            : regions.emplace_back(cropped(plane, computed, rows)));
+      writer.write(parts);
     }
   }
 

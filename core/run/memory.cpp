@@ -72,7 +72,10 @@ FrameMemory::Bytes FrameMemory::of(const Window& computed) const {
   gpu::Recorder rehearsal;
   run_chain(rehearsal, rehearsed_inputs(rehearsal, *this, window), estimator, wanted);
   const std::uint64_t device = rehearsal.bytes() + fixed_on_device;
-  return {device, device + computed.pixels() * beside + fixed_bytes, rehearsal.largest_bytes()};
+  const std::uint64_t rows = std::uint64_t(std::min(kRowsWritten, computed.height)) * std::uint64_t(computed.width);
+  // Rows that are written are there once more as half, and cropped to a region.
+  const std::uint64_t copies = (is_cropped ? 2 : 1) * rows * written;
+  return {device, device + computed.pixels() * beside + copies + fixed_bytes, rehearsal.largest_bytes()};
 }
 
 std::uint64_t FrameMemory::codec_bytes(std::uint64_t room) const {
@@ -105,11 +108,10 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   memory.take(settings);
   memory.written = sizeof(float) * written;
   memory.beside = sizeof(float) * pictures;
+  memory.is_cropped = source.region.has_value();
   memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.reading.data.width)};
-  const auto rows = std::uint64_t(std::min(kRowsWritten, source.reading.data.height));
-  memory.fixed_bytes = 2 * rows * memory.written * std::uint64_t(source.reading.data.width) +
-                       exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output) +
-                       composite_bytes(source);
+  memory.fixed_bytes =
+      exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output) + composite_bytes(source);
   for (const auto& file : source.files) {
     memory.fixed_bytes += file.bytes_beside_pixels();
     if (file.codec_group() > 0) memory.codec_groups.push_back(file.codec_group());

@@ -47,6 +47,7 @@ struct FrameMemory {
   EstimatorSettings estimator;
   Wanted wanted;
   bool looks_at_others = false;
+  bool is_cropped = false;  // a region of it is written
 
   std::uint64_t beside = 0;                 // in host memory beside buffers, for each pixel
   std::uint64_t written = 0;                // of the planes that are written, for each pixel

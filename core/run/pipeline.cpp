@@ -86,8 +86,7 @@ class Pipeline {
   /// Begins the next frame; nothing where no frame is to be begun.
   std::optional<Attempt> begin() {
     Lock lock(mutex_);
-    changed_.wait(lock,
-                  [&] { return ended_ || begun_ == frames_.size() || in_flight_ + waiting_ < most_in_flight_; });
+    changed_.wait(lock, [&] { return ended_ || begun_ == frames_.size() || in_flight_ + waiting_ < most_in_flight_; });
     if (ended_ || begun_ == frames_.size() || (run_.stop && run_.stop())) return {};
     in_flight_++;
     const int frame = frames_[begun_];

@@ -106,9 +106,8 @@ Window region_of(const FrameSource& source, const Region& roi) {
 }
 
 Surroundings::Surroundings(const FrameSource& source, const Settings& settings, std::span<const float> depth)
-    : Surroundings(source, settings, [&data = source.reading.data, depth](const Window& rows) {
-        return cropped(depth, data, rows);
-      }) {}
+    : Surroundings(source, settings,
+                   [&data = source.reading.data, depth](const Window& rows) { return cropped(depth, data, rows); }) {}
 
 Surroundings::Surroundings(const FrameSource& source, const Settings& settings, DepthRows depth)
     : source_(source),
@@ -301,7 +300,8 @@ void require_numbered_lines(const FrameSource& source, const EstimatorSettings& 
 }
 
 std::string MemoryNeeds::cost() const {
-  return fmt::format("in {} parts, about {:.2g} times as long", parts, factor);
+  return fmt::format("in {} parts, about {} times as long", parts,
+                     factor < 10 ? fmt::format("{:.2g}", factor) : fmt::format("{:.0f}", factor));
 }
 
 MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, const WindowLimits& limits) {
@@ -311,8 +311,8 @@ MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, 
   needs.at_once = bytes_at_once(source, surroundings, limits);
   WindowLimits smallest = limits;
   smallest.kept = raw_bytes_of(source);
-  needs.least = smallest.kept + row_bytes(limits, row) +
-                limits.memory.of(largest_least(whole, surroundings, limits.memory)).host;
+  needs.least =
+      smallest.kept + row_bytes(limits, row) + limits.memory.of(largest_least(whole, surroundings, limits.memory)).host;
   smallest.room = {.bytes = needs.least, .buffer_bytes = Room::kEndless};
   // All of it at once may take less than such parts.
   const auto cut = needs.least < needs.at_once ? Cutter(surroundings, smallest).cut(whole) : Cutter::Cut();
@@ -374,9 +374,12 @@ void WindowLimits::refuse(const std::string& what, const Window& computed) const
 
 std::string WindowLimits::option_for(std::uint64_t bytes) const {
   const std::uint64_t without = bytes - std::min(bytes, memory.codec_bytes(room.bytes));
-  // What codecs take grows step by step, and by less than what they may take, so that this ends.
-  for (std::uint64_t more; (more = without + memory.codec_bytes(bytes)) > bytes;) bytes = more;
-  return fmt::format("{}M", mebibytes_above(room.program_bytes + bytes));
+  std::uint64_t mebibytes = mebibytes_above(room.program_bytes + without);
+  // Terminates: codec memory grows more slowly than the limit, whose last MiB counts too.
+  while (without + memory.codec_bytes(mebibytes * kMebibyte - room.program_bytes) + room.program_bytes >
+         mebibytes * kMebibyte)
+    mebibytes++;
+  return fmt::format("{}M", mebibytes);
 }
 
 void WindowLimits::refuse(const std::string& what, const MemoryNeeds& needs) const {

@@ -194,8 +194,7 @@ TEST_F(LostFiles, are_no_skies_presets_cameras_or_inspected_frames) {
   const std::string sky = folder / "sk.exr", preset = folder / "p.toml";
   write_bytes(sky, "sky");
   write_bytes(preset, "power = 1\n");
-  expect_safe(sky, {"--output", "--environment " + sky},
-              run_of({"--environment", sky, "--frames", "1", "-o", sky}));
+  expect_safe(sky, {"--output", "--environment " + sky}, run_of({"--environment", sky, "--frames", "1", "-o", sky}));
   expect_safe(preset, {"--stats", "--preset " + preset}, run_of({"--preset", preset, "--stats", preset}));
   expect_safe(camera, {"--log-json", "--camera " + camera}, run_of({"--log-json", camera}));
   expect_safe(input(1), {"--write-camera", "INPUT " + input(1)}, {"inspect", input(1), "--write-camera", input(1)});

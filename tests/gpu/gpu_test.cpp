@@ -343,6 +343,18 @@ TEST(Buffer, that_is_replaced_lives_until_what_was_recorded_has_run) {
   for (const float value : copy.as<const float>()) ASSERT_EQ(value, 0.5f);
 }
 
+TEST(Buffer, that_an_earlier_recording_asked_for_goes_as_soon_as_another_takes_its_place) {
+  constexpr std::size_t kBytes = 4 << 20;
+  gpu::Recorder gpu(device());
+  gpu.clear(gpu.buffer("first", kBytes));
+  gpu.clear(gpu.buffer("second", kBytes));
+  gpu.run();
+  gpu.clear(gpu.buffer("first", 3 * kBytes));
+  gpu.clear(gpu.buffer("second", 3 * kBytes));
+  EXPECT_EQ(gpu.bytes(), 6 * kBytes);
+  gpu.run();
+}
+
 TEST(Recorder, writes_small_values_in_the_order_of_what_is_recorded) {
   gpu::Device staged(staged_options());
   for (gpu::Device* device : {&test::device(), &staged}) {

@@ -148,7 +148,7 @@ class MemoryLimit : public SequenceFolder {
 TEST_F(MemoryLimit, holds_for_a_frame_in_tiles) {
   const std::string to = out + "/new/";
   EXPECT_GT(run_within(
-                330, 1, {0, 0, 2000, 800},
+                360, 1, {0, 0, 2000, 800},
                 "--slices 1 --steps 2 -o " + to + "ao.%04d.exr --composite " + to + "c.%04d.exr")["frames"][0]["parts"],
             1);
 }
