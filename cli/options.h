@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "cli/parsing.h"
+#include "core/inspect/inspect.h"
 #include "core/options/options.h"
 
 namespace alcove {
@@ -35,7 +37,8 @@ struct InspectOptions {
   RunOptions run;
   bool json = false;
   std::string write_camera;  // a file; empty: none
-  std::string settings;      // --preset, --radius and --set of the estimator, as they were typed, for the proposed run
+  // see CommandNames
+  std::function<std::vector<ProposedOption>(DepthKind)> typed;
 };
 /// Does the same for `alcove inspect`, which writes no outputs: there, no option can lack one.
 bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOptions& options);

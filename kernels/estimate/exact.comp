@@ -151,9 +151,6 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
   return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
 }
 
-/// The largest power of two that is not above a depth.
-float power_of_two(float z) { return uintBitsToFloat(floatBitsToUint(clamp(z, 1e-30, 1e30)) & 0x7f800000u); }
-
 /// The stroke that ends at a vertex `steps` from the receiver. It begins at the vertex before. Nothing is seen before
 /// the first vertex of a side, to which it begins at the pixel next to the receiver. A vertex that begins a run stands
 /// alone, as a stroke that is short.

@@ -16,6 +16,9 @@
 
 const float kNone = 1e30;
 
+/// A squared distance beyond every sphere.
+const float kBeyondSq = 3e38;
+
 /// A straight piece of a surface in the slice.
 struct Piece {
   vec2 near, far;
@@ -103,7 +106,7 @@ Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
 ivec2 pixel_at(Receiver r, Side side, float offset) { return r.pixel + ivec2(round(side.direction_px * offset)); }
 
 /// The sample before the first one.
-Sample receiver_sample(Receiver r) { return Sample(0.0, r.z, 1.0, vec2(0), 0.0, kNone, true, true); }
+Sample receiver_sample(Receiver r) { return Sample(0.0, r.z, 1.0, vec2(0), 0.0, kBeyondSq, true, true); }
 
 /// The samples of a search among which surfaces are interrupted, as bits: as many as a word has at a time.
 const int kWordBits = 32;

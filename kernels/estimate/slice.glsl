@@ -45,11 +45,10 @@ struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
   float front_sq;                          // of the farthest front that may block, squared
   float thickness;                         // scene units, infinite allowed; 0: as deep as wide
-  // square of the sine of the elevation above the tangent plane below which nothing blocks
-  float least_elevation_sq;
-  float least_rise;  // of a sample: see clearance.glsl
-  float pixel_size;  // scene units at unit depth (orthographic: at any)
-  int width;         // of the image, px
+  float per_elevation;  // one over the sine of the elevation above the tangent plane below which nothing blocks
+  float least_rise;     // of a sample: see clearance.glsl
+  float pixel_size;     // scene units at unit depth (orthographic: at any)
+  int width;            // of the image, px
 };
 
 struct Receiver {
@@ -216,7 +215,7 @@ float height_of(Receiver r, vec2 offset, float z, float scale) {
 bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, float steps, vec2 offset, float z, float scale) {
   const float height = height_of(r, offset, z, scale);
   const bool clear = height > r.least_height + scale * (reach.least_rise * steps);
-  return both(place.x > 0.0, both(clear, height * height > reach.least_elevation_sq * distance_sq));
+  return both(place.x > 0.0, both(clear, is_elevated(height, reach.per_elevation, distance_sq)));
 }
 
 /// Stands for an angle: a number that is cheaper than its cotangent and falls as that does, from 1 at V to -1.
@@ -227,7 +226,7 @@ vec2 place_at(float slope) { return vec2(1.0 - abs(slope), slope); }
 
 Reach reach_of(View view, float radius, float falloff_start, float front, float thickness, float bias) {
   const float least = max(bias, kLeastElevation);
-  return Reach(radius, radius * radius, falloff_start, front * front, thickness, least * least, least_rise(view),
+  return Reach(radius, radius * radius, falloff_start, front * front, thickness, 1.0 / least, least_rise(view),
                view.tangent_per_pixel.x, view.size.x);
 }
 
@@ -289,8 +288,8 @@ vec2 back_of(Receiver r, vec2 front, float thickness, float radius) {
 /// The thickness of a run by its width: a long one levels off, a wall is not as thick as it is long. most: the width
 /// from which it grows no more.
 float levelled(float width, float most) {
-  const float counted = lesser(width, most);
-  return counted - counted * counted * counted / (3.0 * most * most);
+  const float part = lesser(width / most, 1.0);  // a length's third power would overflow
+  return most * part * (1.0 - part * part / 3.0);
 }
 
 /// Whether a place lies outside of the sphere of the radius, and the eye's ray comes nearer to the receiver behind it.

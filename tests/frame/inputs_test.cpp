@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/option_words.h"
 #include "core/frame/evidence.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"

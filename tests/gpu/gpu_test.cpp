@@ -1,5 +1,7 @@
 // The Vulkan layer: reflection, checks between host and kernel, staging, and errors that name what is wrong.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <spirv/unified1/spirv.hpp>
+
 #include "kernels/estimate/estimate.h"
 #include "kernels/geometry/geometry.h"
 #include "kernels/results/results.h"
@@ -64,6 +66,54 @@ TEST(Reflection, tells_blocks_that_are_read_from_blocks_that_are_written) {
     EXPECT_EQ(block.is_written, !read.contains(block.name)) << block.name;
     EXPECT_EQ(block.is_read, !block.is_written || block.name == "Counts") << block.name;
   }
+}
+
+/// The blocks of a kernel that may be buffers of texels.
+std::map<std::string, VkFormat> texels_of(const char* stem) {
+  std::map<std::string, VkFormat> texels;
+  for (const auto& block : gpu::reflect(gpu::kernel_code(stem)).blocks)
+    if (block.texel != VK_FORMAT_UNDEFINED) texels[block.name] = block.texel;
+  return texels;
+}
+
+TEST(Reflection, tells_arrays_of_words_that_are_read_without_atomics) {
+  constexpr VkFormat kFloats = VK_FORMAT_R32_SFLOAT, kUints = VK_FORMAT_R32_UINT;
+  EXPECT_THAT(texels_of("classify"),
+              UnorderedElementsAre(testing::Pair("Depth", kFloats), testing::Pair("Changes", kUints),
+                                   testing::Pair("Needed", kUints), testing::Pair("Rows", kUints)))
+      << "Bounds is of vectors, Counts a struct, and the others are only written";
+  EXPECT_THAT(texels_of("needed"), ElementsAre(testing::Pair("Matte", kFloats))) << "Tiles has atomics";
+  EXPECT_THAT(texels_of("reconstruct"), ElementsAre(testing::Pair("Depth", kFloats), testing::Pair("Normal", kUints)))
+      << "Normal is written too";
+}
+
+/// The number of a kernel's variables of that class.
+int variables(std::span<const std::uint32_t> code, spv::StorageClass of_class) {
+  int count = 0;
+  for (std::size_t at = 5; at < code.size(); at += code[at] >> spv::WordCountShift)
+    count += (code[at] & spv::OpCodeMask) == spv::OpVariable && code[at + 3] == std::uint32_t(of_class);
+  return count;
+}
+
+TEST(Texels, take_the_place_of_storage_buffers_that_may_be_such_and_of_nothing_else) {
+  for (const char* stem : {"classify", "reconstruct", "exact"}) {
+    const auto code = gpu::kernel_code(stem);
+    const auto blocks = gpu::reflect(code).blocks;
+    const auto edited = gpu::with_texels(code, blocks);
+    const int texels = int(texels_of(stem).size());
+    EXPECT_EQ(variables(edited, spv::StorageClassUniformConstant), texels) << stem;
+    EXPECT_EQ(variables(edited, spv::StorageClassStorageBuffer), int(blocks.size()) - texels) << stem;
+  }
+}
+
+TEST(Device, reads_texels_where_the_driver_is_slow_with_storage_buffers) {
+  EXPECT_TRUE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 22.3.6 (LLVM 15.0.6)"));
+  EXPECT_TRUE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 21.2.6"));
+  EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 25.0.7-2 (LLVM 19.1.7)"));
+  EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa of tomorrow"));
+  EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, ""));
+  EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_RADV, "Mesa 22.3.6"));
+  EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_GOOGLE_SWIFTSHADER, ""));
 }
 
 TEST(Reflection, refuses_what_is_no_spirv) {

@@ -1,7 +1,7 @@
 // AO only where it is wanted: within a matte as without one, and nothing computed elsewhere.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/matte.h"
-#include "core/frame/channels.h"
+#include "core/frame/find/matte.h"
+#include "core/frame/find/channels.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 

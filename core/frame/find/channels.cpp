@@ -1,6 +1,6 @@
 // The search for channels: patterns, views, tables of usual names, and the places that spell an AOV.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/channels.h"
+#include "core/frame/find/channels.h"
 
 #include <algorithm>
 #include <charconv>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/note.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 
 namespace alcove {
 

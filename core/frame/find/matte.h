@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/formats/exr.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 
 namespace alcove {
 

@@ -1,6 +1,6 @@
 // Headers and manifests of Cryptomattes; planes of coverage, of objects' numbers, and of Cryptomattes.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/matte.h"
+#include "core/frame/find/matte.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -15,7 +15,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
-#include "core/frame/channels.h"
+#include "core/frame/find/channels.h"
 #include "core/frame/raw_plane.h"
 
 namespace alcove {

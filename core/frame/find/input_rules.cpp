@@ -1,6 +1,6 @@
 // Reads the rules.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/input_rules.h"
+#include "core/frame/find/input_rules.h"
 
 #include <algorithm>
 

@@ -7,8 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/frame/evidence.h"
-#include "core/frame/position_pass.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settlement.h"
 
 namespace alcove {
 namespace {
@@ -56,15 +55,16 @@ Side side_of(std::vector<float>& values) {
 
 class DepthSettlement : private Settlement {
  public:
-  DepthSettlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen)
-      : Settlement(source, settings, raw, seen),
-        usual_(source.program.depth_kind),
-        step_(raw.depth.size() < kFewPixels ? 1 : kSparse),
-        values_(statistics_of(raw.depth, step_)) {
-    const auto& depth = raw.depth;
+  DepthSettlement(const PlanesToSettle& planes, const DepthFacts& facts)
+      : Settlement(planes),
+        facts_(facts),
+        usual_(facts.program.depth_kind),
+        step_(raw_.depth.size() < kFewPixels ? 1 : kSparse),
+        values_(statistics_of(raw_.depth, step_)) {
+    const auto& depth = raw_.depth;
     std::vector<float> below_0, above_0;
     for (std::size_t i = 0; i < depth.size(); i += step_)
-      if (std::isfinite(depth[i]) && depth[i] != 0 && std::abs(depth[i]) < settings.sky)
+      if (std::isfinite(depth[i]) && depth[i] != 0 && std::abs(depth[i]) < settings_.sky)
         (depth[i] < 0 ? below_0 : above_0).push_back(depth[i]);
     surfaces_ = statistics_of(above_0);
     below_0_ = side_of(below_0);
@@ -89,7 +89,7 @@ class DepthSettlement : private Settlement {
  private:
   void settle_plane() {
     seen_.depth_scores = score_depth(raw_.depth, view_, settings_.sky, seen_.grain);
-    if (source_.open.depth_kind)
+    if (facts_.is_kind_open)
       settle_kind();
     else
       doubt_kind();
@@ -123,7 +123,7 @@ class DepthSettlement : private Settlement {
          "and goes on beyond its planes, as V-Ray writes it without clamp, give --depth-kind normalized --near N --far "
          "F, the distances of 0 and of 1 (with --reversed-z, of 1 and of 0); if values below 0 are no surfaces, give "
          "--depth-kind planar",
-         depth_path(), values_.least, surfaces_.most, 100 * double(below_0_.count) / double(all));
+         path_, values_.least, surfaces_.most, 100 * double(below_0_.count) / double(all));
   }
 
   /// Settles depth at the ends of a range and beyond them: normalized depth may go on, and the sky is at the far end.
@@ -193,7 +193,7 @@ class DepthSettlement : private Settlement {
       if (const float d = std::abs(raw_.depth[i]); d < limit) most = std::max(most, d);
     std::size_t count = 0, all = 0, bare = 0, others_bare = 0, blended = 0, like_first = 0;
     std::optional<std::size_t> first;  // pixel of the sky
-    const bool has_normals = source_.channels[RawPlane::normal].size() == 3;
+    const bool has_normals = raw_.normal.size() == 3 * raw_.window.pixels();
     for (std::size_t i = 0; i < raw_.depth.size(); i += step) {
       const float d = std::abs(raw_.depth[i]);
       const bool is_sky = d == most, is_surface = !is_sky && d > 0 && d < limit;
@@ -249,7 +249,7 @@ class DepthSettlement : private Settlement {
     auto unused = unused_range_options(settings_.depth_range, reading_.depth_kind);
     const auto& left_out = settings_.from_presets;
     std::erase_if(unused, [&](const auto& option) { return std::ranges::find(left_out, option) != left_out.end(); });
-    if (!unused.empty()) refuse_range_options(depth_path(), unused, reading_.depth_kind);
+    if (!unused.empty()) refuse_range_options(path_, unused, reading_.depth_kind);
   }
 
   std::string straight(const DepthScore& score) const {
@@ -260,9 +260,9 @@ class DepthSettlement : private Settlement {
   /// named the program.
   void take_usual(const std::string& why) {
     reading_.depth_kind = usual_;
-    const std::string by = source_.program.by.empty()
+    const std::string by = facts_.program.by.empty()
                                ? ""
-                               : fmt::format("{} writes it ({}); ", source_.program.rules->name, source_.program.by);
+                               : fmt::format("{} writes it ({}); ", facts_.program.rules->name, facts_.program.by);
     guess("depth kind", word_of(reading_.depth_kind), by + why, "--depth-kind", false);
   }
 
@@ -282,7 +282,7 @@ class DepthSettlement : private Settlement {
     if (take_by_positions(why) || take_by_normals(why)) return;
     if (usual_ == DepthKind::inverse) return assume_passed_on(why);
     take_usual(why);
-    if (!source_.program.is_said() || source_.program.rules->depth_kind == DepthKind::automatic) note_assumption(why);
+    if (!facts_.program.is_said() || facts_.program.rules->depth_kind == DepthKind::automatic) note_assumption(why);
   }
 
   /// Takes the kind by which most surfaces are flat.
@@ -294,7 +294,7 @@ class DepthSettlement : private Settlement {
     if (expected.straight >= kAsGood * best.straight) return take_usual(why);
     if (best.straight < kClear * second.straight)
       fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}",
-           depth_path(), word_of(best.kind), word_of(second.kind), why, word_of(best.kind), word_of(second.kind));
+           path_, word_of(best.kind), word_of(second.kind), why, word_of(best.kind), word_of(second.kind));
     reading_.depth_kind = best.kind;
     if (best.kind == DepthKind::inverse && values_.least >= 0 && is_fraction()) return settle_device(why);
     // A plane's distances are affine in the picture without perspective.
@@ -308,7 +308,7 @@ class DepthSettlement : private Settlement {
 
   /// Takes the kind by which the depth is that of the positions beside it. False: none.
   bool take_by_positions(const std::string& but) {
-    const auto kind = kind_by_positions(source_, settings_, raw_);
+    const auto kind = facts_.kind_by_positions ? facts_.kind_by_positions() : std::nullopt;
     if (!kind) return false;
     reading_.depth_kind = *kind;
     guess("depth kind", word_of(*kind), "so it is that of the positions; " + but, "--depth-kind",
@@ -338,8 +338,8 @@ class DepthSettlement : private Settlement {
   void take_passed_on(DepthKind kind, const std::string& why) {
     reading_.depth_kind = kind;
     guess("depth kind", word_of(kind),
-          fmt::format("{} ({}) writes 1/z, and passes on what others wrote; {}", source_.program.rules->name,
-                      source_.program.by, why),
+          fmt::format("{} ({}) writes 1/z, and passes on what others wrote; {}", facts_.program.rules->name,
+                      facts_.program.by, why),
           "--depth-kind", false);
   }
 
@@ -348,7 +348,7 @@ class DepthSettlement : private Settlement {
       fail(ErrorKind::input,
            "{}: {}, and neither flat surfaces nor normals tell whether it is 1/z, as {} writes it: give --depth-kind "
            "inverse; if it is normalized, {}",
-           depth_path(), text_of_range(), source_.program.rules->name, normalized_line(false));
+           path_, text_of_range(), facts_.program.rules->name, normalized_line(false));
     take_passed_on(DepthKind::planar, why + ", and it holds more than 1");
     note_assumption(why);
   }
@@ -357,9 +357,9 @@ class DepthSettlement : private Settlement {
   void note_assumption(const std::string& why) {
     note(NoteCode::assumed_reading,
          fmt::format("depth is read as {}, {}: {} (--depth-kind)", word_of(reading_.depth_kind),
-                     source_.program.by.empty() || source_.program.rules->depth_kind == DepthKind::automatic
+                     facts_.program.by.empty() || facts_.program.rules->depth_kind == DepthKind::automatic
                          ? "the usual kind"
-                         : "as " + source_.program.rules->name + " writes it",
+                         : "as " + facts_.program.rules->name + " writes it",
                      why));
   }
 
@@ -370,7 +370,7 @@ class DepthSettlement : private Settlement {
 
   /// The share of the normals that agree with the depth if it is of that kind, in their best space; 0 without normals.
   double agreement_as(DepthKind kind) const {
-    if (source_.channels[RawPlane::normal].size() != 3) return 0;
+    if (raw_.normal.size() != 3 * raw_.window.pixels()) return 0;
     const NormalStatistics n = normal_statistics(raw_.normal, raw_.depth, depth_map_of(reading_), step_);
     Reading reading = over(reading_, raw_.window);
     reading.depth_kind = kind;
@@ -410,20 +410,20 @@ class DepthSettlement : private Settlement {
       fail(ErrorKind::input,
            "{}: {}, and flat surfaces are straight on {:.0f} % as 1 - depth, on {:.0f} % as depth: it is normalized, "
            "and 1 at the eye: give {}; if it is a distance all the same, --depth-kind planar",
-           depth_path(), text_of_range(), 100 * from_1, 100 * straight, normalized_line(true));
+           path_, text_of_range(), 100 * from_1, 100 * straight, normalized_line(true));
     const bool is_supported = straight >= kSurelyStraight;
     const bool is_inverse =
         straight >= kLeastStraight && scores[0].kind == DepthKind::inverse && straight >= kClear * scores[1].straight;
-    if (source_.program.rules->depth_kind != DepthKind::automatic && !is_supported && !is_inverse)
+    if (facts_.program.rules->depth_kind != DepthKind::automatic && !is_supported && !is_inverse)
       return note_fractions();
-    if (source_.program.rules->depth_kind != DepthKind::automatic || is_inverse) return;
+    if (facts_.program.rules->depth_kind != DepthKind::automatic || is_inverse) return;
     refuse_plateau();
     if (!is_supported)
       fail(ErrorKind::input,
            "{}: {}, and no flat surfaces show that these are distances: if it is 0 at the eye, give {}; if it is 1 at "
            "the eye, {}; if it is a distance, --depth-kind planar; if it is 1/z, --depth-kind inverse; if it is a "
            "z-buffer, --depth-kind device with --near and --far",
-           depth_path(), text_of_range(), normalized_line(false), normalized_line(true));
+           path_, text_of_range(), normalized_line(false), normalized_line(true));
     refuse_before_near_plane();
     note_fractions();
   }
@@ -448,8 +448,7 @@ class DepthSettlement : private Settlement {
     fail(ErrorKind::input,
          "{}: {}, and {:.0f} % of it is nearer than the camera's near plane at {:.3g}, so these are no distances: if "
          "they are normalized, give {}; if they are distances all the same, --depth-kind planar",
-         depth_path(), text_of_range(), 100 * double(nearer) / double(count), *reading_.camera.near,
-         normalized_line(false));
+         path_, text_of_range(), 100 * double(nearer) / double(count), *reading_.camera.near, normalized_line(false));
   }
 
   /// A background of exactly 1 behind depths of 0 to 1 is the far end of a range.
@@ -459,7 +458,7 @@ class DepthSettlement : private Settlement {
          "{}: the depth may be normalized or planar (all in 0 to 1, {:.1f} % of exactly 1): say --depth-kind "
          "normalized with --near and --far (or log, with "
          "--far and --set log-constant), or --depth-kind planar",
-         depth_path(), 100 * double(values_.one) / double(values_.pixels));
+         path_, 100 * double(values_.one) / double(values_.pixels));
   }
 
   /// Notes near planes that differ. A projection matrix made for another depth range than the buffer's scales all
@@ -471,20 +470,18 @@ class DepthSettlement : private Settlement {
     constexpr double kSame = 0.01;  // matrices are rounded
     if (reading_.depth_kind == DepthKind::device && settings_.depth_range.near && by_file &&
         std::abs(*near / *by_file - 1) >= kSame)
-      source_.notes.push_back(
-          {NoteCode::near_plane, fmt::format("--near is {:.4g}, and the camera file's near plane is at {:.4g}: "
+      note(NoteCode::near_plane, fmt::format("--near is {:.4g}, and the camera file's near plane is at {:.4g}: "
                                              "distances are {:.3g} times those by the file",
-                                             *near, *by_file, *near / *by_file)});
+                                             *near, *by_file, *near / *by_file));
     if (reading_.depth_kind != DepthKind::device || reading_.depth_range.reversed ||
         reading_.depth_range.device != DeviceRange::zero_to_one)
       return;
     if (!near || !by_matrix || std::abs(*by_matrix / *near - 1) < kSame) return;
-    source_.notes.push_back(
-        {NoteCode::near_plane,
+    note(NoteCode::near_plane,
          fmt::format("the near plane is {:.4g}, but the camera file's projection, read with z = depth, has it at "
                      "{:.4g}: so read, distances would be {:.3g} "
                      "times as large; trust the one that was measured (--near, --set device-range)",
-                     *near, *by_matrix, *by_matrix / *near)});
+                     *near, *by_matrix, *by_matrix / *near));
   }
 
   /// Notes distances that look like a part of a range. They are read as distances all the same.
@@ -494,15 +491,14 @@ class DepthSettlement : private Settlement {
     if (from_1 >= kLeastStraight && from_1 > kClear * straight)
       note(NoteCode::said_otherwise,
            fmt::format("{}, and flat surfaces are straight on {:.0f} % as 1 - depth, on {:.0f} % as depth: it is read "
-                       "as {}, as --depth-kind, --source or the camera file says; if it is normalized, give {}",
+                       "as {}; if it is normalized, give {}",
                        text_of_range(), 100 * from_1, 100 * straight, word_of(reading_.depth_kind),
                        normalized_line(true)));
-    else if (settings_.depth_kind == DepthKind::automatic && source_.program.rules->depth_kind == DepthKind::automatic)
-      note(NoteCode::depth_below_1,
-           fmt::format("{} and is read as {}, as the camera file says; if it is normalized, give {}; "
-                       "--depth-kind {} says that these are distances",
-                       text_of_range(), word_of(reading_.depth_kind), normalized_line(false),
-                       word_of(reading_.depth_kind)));
+    else if (settings_.depth_kind == DepthKind::automatic && facts_.program.rules->depth_kind == DepthKind::automatic)
+      note(NoteCode::depth_below_1, fmt::format("{} and is read as {}; if it is normalized, give {}; "
+                                                "--depth-kind {} says that these are distances",
+                                                text_of_range(), word_of(reading_.depth_kind), normalized_line(false),
+                                                word_of(reading_.depth_kind)));
   }
 
   /// Notes where the pixels speak against the kind of depth that is said. It is read so all the same.
@@ -518,11 +514,9 @@ class DepthSettlement : private Settlement {
     if (kClear * straightness(linear ? scores_as_said() : scores, linear ? DepthKind::planar : said) >
         scores[0].straight)
       return;
-    source_.notes.push_back(
-        {NoteCode::said_otherwise,
-         fmt::format("depth is read as {}, as --depth-kind, --source or the camera file says, but {}: is it {}?",
-                     word_of(reading_.depth_kind), straight(scores[0]),
-                     scores[0].kind == DepthKind::inverse ? "inverse or device" : word_of(scores[0].kind))});
+    note(NoteCode::said_otherwise,
+         fmt::format("depth is read as {}, but {}: is it {}?", word_of(reading_.depth_kind), straight(scores[0]),
+                     scores[0].kind == DepthKind::inverse ? "inverse or device" : word_of(scores[0].kind)));
   }
 
   /// The scores of the distances that the depth gives if it is read as is said.
@@ -542,15 +536,13 @@ class DepthSettlement : private Settlement {
     if (reading_.depth_kind != DepthKind::device) return;
     const auto below = std::ranges::count_if(raw_.depth, [](float d) { return d > -1 && d < 0; });
     if (reading_.depth_range.device == DeviceRange::zero_to_one && below > 0)
-      source_.notes.push_back(
-          {NoteCode::said_otherwise,
+      note(NoteCode::said_otherwise,
            fmt::format("{} pixels have a depth of -1 to 0 and count as sky: is it that of --set device-range=-1..1?",
-                       below)});
+                       below));
     if (reading_.depth_range.device == DeviceRange::minus_one_to_one && values_.least >= 0)
-      source_.notes.push_back(
-          {NoteCode::said_otherwise,
+      note(NoteCode::said_otherwise,
            "no depth is below 0, so the nearest surface is beyond twice the near plane, or the depth is not that of "
-           "--set device-range=-1..1"});
+           "--set device-range=-1..1");
   }
 
   /// Inverse depth and that of a z-buffer are both affine in 1/z. A near plane that somebody knows tells them apart.
@@ -562,7 +554,7 @@ class DepthSettlement : private Settlement {
            "{}: the depth may be device or inverse (all in 0 to 1, {}): say --depth-kind device with --near and --far "
            "(inf where there is none) and, "
            "where near is 1, --reversed-z; or --depth-kind inverse",
-           depth_path(), why);
+           path_, why);
     reading_.depth_range.reversed = reversed;
     reading_.depth_kind = DepthKind::device;
     guess("depth kind", reversed ? "device with --reversed-z" : "device", "all in 0 to 1, --near is given, and " + why,
@@ -588,8 +580,7 @@ class DepthSettlement : private Settlement {
     if (!(*best->error <= kLargestError))
       fail(
           ErrorKind::input,
-          "{}: its positions lie {} from the pixels that hold them: check --set position-space and --camera",
-          depth_path(),
+          "{}: its positions lie {} from the pixels that hold them: check --set position-space and --camera", path_,
           *best->error < 1e6 ? fmt::format("{:.1f} pixels (median)", *best->error) : "on the other side of the camera");
     reading_.position_space = best->space;
     reading_.depth_range.negative = best->forward;
@@ -599,6 +590,7 @@ class DepthSettlement : private Settlement {
             "--set position-space", false);
   }
 
+  const DepthFacts& facts_;
   DepthKind usual_;                   // of the program, for what is open
   const std::size_t step_;            // from one pixel that is looked at to the next
   Side below_0_, above_0_, above_1_;  // finite, and nearer than the sky
@@ -608,8 +600,6 @@ class DepthSettlement : private Settlement {
 
 }  // namespace
 
-void settle_depth(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
-  DepthSettlement(source, settings, raw, seen).run();
-}
+void settle_depth(const PlanesToSettle& planes, const DepthFacts& facts) { DepthSettlement(planes, facts).run(); }
 
 }  // namespace alcove

@@ -1,6 +1,6 @@
 // Finds a pass of positions, picks points of it, and holds the camera that was given, and the depth, against them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/position_pass.h"
+#include "core/frame/find/position_pass.h"
 
 #include <algorithm>
 #include <array>

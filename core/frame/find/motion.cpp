@@ -1,14 +1,14 @@
 // Holds motion vectors against where the cameras alone would move what is seen.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/motion.h"
+#include "core/frame/find/motion.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/frame/channels.h"
 #include "core/frame/evidence.h"
+#include "core/frame/find/channels.h"
 
 namespace alcove {
 namespace {

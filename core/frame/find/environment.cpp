@@ -1,6 +1,6 @@
 // Projects a lat-long picture onto nine harmonics, and tells what they miss of it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/environment.h"
+#include "core/frame/find/environment.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

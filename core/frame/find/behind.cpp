@@ -1,6 +1,6 @@
 // Finding planes behind the first surface and deep samples, and what their pixels say for and against them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/behind.h"
+#include "core/frame/find/behind.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -16,8 +16,8 @@
 #include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/frame/camera/camera.h"
-#include "core/frame/channels.h"
 #include "core/frame/evidence.h"
+#include "core/frame/find/channels.h"
 #include "core/frame/raw_plane.h"
 
 namespace alcove {

@@ -1,6 +1,6 @@
 // A radius from how far away things are and how much of them the picture shows, and the notes on one.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/radius.h"
+#include "core/frame/settle/radius.h"
 
 #include <fmt/format.h>
 #include <algorithm>

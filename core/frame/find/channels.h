@@ -11,7 +11,7 @@
 
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
-#include "core/frame/input_rules.h"
+#include "core/frame/find/input_rules.h"
 
 namespace alcove {
 

@@ -1,10 +1,10 @@
 // Finding the AOVs: renderers' names, layers and views, what is ambiguous and what must not be mistaken.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 
 #include "tests/support/part_files.h"
 
-namespace alcove::gbuffer_test {
+namespace alcove::frame_source_test {
 namespace {
 
 using namespace test;
@@ -366,4 +366,4 @@ TEST_F(GBuffer, options_win_over_the_camera_file_and_that_over_the_defaults) {
 }
 
 }  // namespace
-}  // namespace alcove::gbuffer_test
+}  // namespace alcove::frame_source_test

@@ -11,7 +11,7 @@
 #include "core/base/option_words.h"
 #include "core/frame/camera/camera.h"
 #include "core/frame/evidence.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 
 namespace alcove {
 namespace {
@@ -280,7 +280,9 @@ constexpr double kBelowZero = -1.0 / 256, kLeastNeeded = 0.02, kLeastCut = 0.8;
 class NormalSettlement : private Settlement {
  public:
   NormalSettlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen)
-      : Settlement(source, settings, raw, seen, RawPlane::normal) {}
+      : Settlement({source.reading, source.notes, settings, raw, seen, source.path_of(RawPlane::normal),
+                    source.normal_file()}),
+        source_(source) {}
 
   void run() {
     settle_encoding();
@@ -338,8 +340,8 @@ class NormalSettlement : private Settlement {
   void refuse_altered(const NormalStatistics& n) const {
     if (std::max(n.unit_share, n.unorm_unit_share) > kUnit || n.usual_share > kUnit) return;
     if (const auto what = alteration_of(raw_, depth_map_of(reading_)))
-      fail(ErrorKind::input, "{}: its normals ({}) are of unit length on {:.0f} % only: they look like {}; {}",
-           normal_path(), channels(), 100 * n.unit_share, *what, kWithout);
+      fail(ErrorKind::input, "{}: its normals ({}) are of unit length on {:.0f} % only: they look like {}; {}", path_,
+           channels(), 100 * n.unit_share, *what, kWithout);
   }
 
   /// Takes normals without components below 0 if depth says that they lost some: the file does not hold the lost ones.
@@ -363,7 +365,7 @@ class NormalSettlement : private Settlement {
         "as 0.5 + 0.5 n",
         channels(), 100 * best.needed,
         best.absolute > best.clamped ? "their absolute values were saved" : "values below 0 were cut off");
-    if (as->explained() < kLeastAgreement) fail(ErrorKind::input, "{}: {}; {}", normal_path(), why, kWithout);
+    if (as->explained() < kLeastAgreement) fail(ErrorKind::input, "{}: {}; {}", path_, why, kWithout);
     if (source_.open.normal_space) {
       reading_.normal_space = as->space;
       guess("normal space", word_of(as->space), text_of(*as), "--normal-space", false);
@@ -479,14 +481,14 @@ class NormalSettlement : private Settlement {
     if (other == scores.end() || other->agreement < kAsGood * best.explained() || is_straighter(best, *other)) return;
     fail(ErrorKind::input,
          "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal",
-         normal_path(), word_of(best.space), word_of(other->space), text_of(best), text_of(*other));
+         path_, word_of(best.space), word_of(other->space), text_of(best), text_of(*other));
   }
 
   /// Refuses normals that are read in view space where they look like those of a world that nothing turns.
   void refuse_turned_world(const NormalScore& score) const {
     if (source_.program.normal_space == NormalSpace::view) return;
     if (const auto turned = turned_world(score))
-      fail(ErrorKind::input, "{}: {}: give a --camera file with world_to_camera; {}", normal_path(), *turned, kWithout);
+      fail(ErrorKind::input, "{}: {}: give a --camera file with world_to_camera; {}", path_, *turned, kWithout);
   }
 
   /// Whether a reading does as well as any, if need be with the normals of the other side turned round: they are a
@@ -553,12 +555,12 @@ class NormalSettlement : private Settlement {
 
   /// Refuses normals that are not those of view space where no matrix turns those of the world.
   [[noreturn]] void refuse_without_matrix(const std::vector<NormalScore>& scores) const {
-    if (!source_.program.by.empty()) throw NoWorldToCamera(normal_path());
+    if (!source_.program.by.empty()) throw NoWorldToCamera(path_);
     fail(
         ErrorKind::input,
         "{}: {:.0f} % of its normals at most agree with depth in view space; those of world space need a --camera file "
         "with world_to_camera; if they are in view space, {}; {}",
-        normal_path(), scores.empty() ? 0 : 100 * scores[0].agreement, kCheck, kWithout);
+        path_, scores.empty() ? 0 : 100 * scores[0].agreement, kCheck, kWithout);
   }
 
   static std::string text_of(const NormalScore& s) {
@@ -616,8 +618,8 @@ class NormalSettlement : private Settlement {
   /// agree, or where nothing is left that could be right.
   void refuse_normals(const NormalScore& chosen, const NormalScore& best) const {
     refuse_turned_camera(chosen, best.close);
-    const std::string read = fmt::format("{}: its normals, read as {}, are not those of this depth and this camera",
-                                         normal_path(), text_of(chosen));
+    const std::string read =
+        fmt::format("{}: its normals, read as {}, are not those of this depth and this camera", path_, text_of(chosen));
     if (best.agreement >= kLeastAgreement && best.agreement > kClear * chosen.agreement)
       fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
@@ -635,8 +637,8 @@ class NormalSettlement : private Settlement {
     fail(ErrorKind::input,
          "{}: the camera{} does not fit: by it {:.0f} % of the normals in {} space agree with depth; {}, then {:.0f} % "
          "agree; {}",
-         normal_path(), from(), 100 * chosen.agreement, word_of(chosen.space), turned->what,
-         100 * turned->score.agreement, kWithout);
+         path_, from(), 100 * chosen.agreement, word_of(chosen.space), turned->what, 100 * turned->score.agreement,
+         kWithout);
   }
 
   /// Refuses a principal point that fits elsewhere, and says where no pixel can tell.
@@ -648,7 +650,7 @@ class NormalSettlement : private Settlement {
       fail(ErrorKind::input,
            "{}: the camera{} does not fit: by it {:.0f} % of the normals agree with depth to 3 degrees; {}, then "
            "{:.0f} % do; {}",
-           normal_path(), from(), 100 * chosen.close, other->what, 100 * other->score.close, kWithout);
+           path_, from(), 100 * chosen.close, other->what, 100 * other->score.close, kWithout);
     if (is_sharper(chosen, other->score)) return;
     note_centre(source_);
   }
@@ -690,6 +692,7 @@ class NormalSettlement : private Settlement {
       "--chan-rotation or --fov: "
       "it may also be the camera of another frame";
 
+  FrameSource& source_;
   bool has_any_ = true;        // a normal that is no sky's
   bool has_negative_ = false;  // of the normals' components as they stand in the file, any
 };

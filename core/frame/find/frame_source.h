@@ -12,10 +12,10 @@
 #include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
-#include "core/frame/channels.h"
-#include "core/frame/environment.h"
 #include "core/frame/evidence.h"
-#include "core/frame/input_rules.h"
+#include "core/frame/find/channels.h"
+#include "core/frame/find/environment.h"
+#include "core/frame/find/input_rules.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 
@@ -99,7 +99,7 @@ struct FrameSource {
   OpenQuestions open;
   std::string camera_from;       // the header's attributes or the positions, which gave it; empty: the settings did
   std::optional<Window> region;  // that is written; none: all pixels are
-  // by which the frame is settled, see core/frame/settle.h; none: it is not yet
+  // by which the frame is settled, see core/frame/settle/settle.h; none: it is not yet
   std::optional<Evidence> evidence;
   Notes notes;                             // guesses that are unusual, and options that the pixels speak against
   Notes suspicious;                        // on faults of the files that harm AO

@@ -1,0 +1,223 @@
+// Settles what is open about a frame, and looks at it for what harms AO.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/settle/settle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/formats/exr.h"
+#include "core/frame/evidence.h"
+#include "core/frame/find/behind.h"
+#include "core/frame/find/position_pass.h"
+#include "core/frame/settle/precision.h"
+#include "core/frame/settle/radius.h"
+
+namespace alcove {
+
+// Faults that harm AO.
+
+namespace {
+
+constexpr double kMostShortened = 0.02;         // of the normals
+constexpr double kMostOfOtherLength = 0.1;      // of normals that were all scaled alike; edges are shorter
+constexpr std::size_t kNormalPixels = 1 << 16;  // enough for shares to a percent
+
+bool is_lossy(const FrameSource& source, const ChannelRef& ref) {
+  return source.part_of(ref).dwa && is_lossy_in_dwa(ref.channel);
+}
+
+/// Parts that the frame does not need and whose first or last rows cannot be read: of a file that was cut short behind
+/// the frame's own parts. Those are read anyway.
+Notes cut_parts(ExrFile& file, const std::set<int>& needed) {
+  Notes found;
+  for (std::size_t p = 0; p < file.parts().size(); p++) {
+    const ExrPart& part = file.parts()[p];
+    const auto channel = std::ranges::find(part.channels, false, &ExrChannel::subsampled);
+    if (part.deep || channel == part.channels.end() || needed.contains(int(p))) continue;
+    std::vector<float> row(std::size_t(part.data.width));
+    const ExrRead read{int(p), channel->name, row.data()};
+    try {
+      for (const int y : {0, part.data.height - 1}) file.read({&read, 1}, y, 1);
+    } catch (const Error& error) {
+      found.push_back({NoteCode::damaged_file, error.what()});
+    }
+  }
+  return found;
+}
+
+/// Normals that were averaged over the pixels, by some of them. It is no warning where the program does so always, for
+/// nobody can have it do otherwise.
+Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
+  // Normals that lost components are short for that reason.
+  if (!has_lengths(source) || std::ranges::count(source.notes, NoteCode::cut_normals, &Note::code) > 0) return {};
+  std::size_t step = raw.window.pixels() / kNormalPixels + 1;
+  while (std::gcd(step, std::size_t(raw.window.width)) > 1) step++;  // so that no column is favoured
+  const NormalStatistics s = normal_statistics(raw.normal, raw.depth, depth_map_of(source.reading), step);
+  const double unit = source.reading.normal_unorm ? s.unorm_unit_share : s.unit_share;
+  if (!s.count || unit >= 1 - kMostShortened) return {};
+  const bool is_scaled = s.usual_share > 1 - kMostOfOtherLength && std::abs(s.usual_length - 1) > kUnitTolerance;
+  if (!source.reading.normal_unorm && is_scaled)
+    return {
+        {NoteCode::scaled_normals,
+         fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO uses their direction only",
+                     s.usual_length, 100 * s.usual_share),
+         source.normal_file()}};
+  const bool is_usual = source.program.rules->normal_averaged;
+  return {{is_usual ? NoteCode::averaged_normals : NoteCode::shortened_normals,
+           fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over the pixel, at edges "
+                       "over several surfaces{}",
+                       100 * (1 - unit), is_usual ? ", as " + source.program.rules->name + " always does" : ""),
+           source.normal_file()}};
+}
+
+/// Channels that DWA has quantized, and files that end too early.
+Notes damage(FrameSource& source) {
+  Notes found;
+  std::vector<std::set<int>> needed(source.files.size());
+  for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})
+    for (const auto& channel : source.channels[plane]) {
+      needed[channel.file].insert(channel.part);
+      if (is_lossy(source, channel))
+        found.push_back(
+            {NoteCode::lossy_compression,
+             fmt::format("{} is compressed by DWA, which is lossy for a channel of that name; write data with zip",
+                         channel.channel),
+             plane == RawPlane::normal ? source.normal_file() : ""});
+    }
+  for (std::size_t file = 0; file < source.files.size(); file++)
+    std::ranges::move(cut_parts(source.files[file], needed[file]), std::back_inserter(found));
+  return found;
+}
+
+/// Windows that are not those of the depth.
+Notes windows(const FrameSource& source) {
+  Notes found;
+  for (const auto& part : source.file_of(source.channels[RawPlane::depth][0]).parts())
+    if (part.data != source.reading.data) {
+      found.push_back({NoteCode::windows_differ, fmt::format("part {} is {}, and the depth is {}", part.name,
+                                                             to_string(part.data), to_string(source.reading.data))});
+      break;
+    }
+  if (source.reading.data != source.reading.display)
+    found.push_back(
+        {NoteCode::windows_differ,
+         fmt::format("the data window is {} and the display window {}: AO is computed on the data window, and the "
+                     "camera is for the display window",
+                     to_string(source.reading.data), to_string(source.reading.display))});
+  return found;
+}
+
+}  // namespace
+
+bool has_lengths(const FrameSource& source) {
+  return source.channels[RawPlane::normal].size() == 3 &&
+         (source.reading.normal_encoding == NormalEncoding::signed_float ||
+          source.reading.normal_encoding == NormalEncoding::unorm);
+}
+
+// The order of settling.
+
+namespace {
+
+/// Gives one sentence for each finding: shortened normals, channels that a lossy codec has damaged, other parts that are
+/// cut short or have other windows, overscan and crops. The frame's meaning is settled; of large frames a part of the
+/// pixels is looked at.
+Notes findings(FrameSource& source, const RawPart& raw) {
+  Notes found;
+  for (Notes some : {averaged_normals(source, raw), damage(source), windows(source)})
+    std::ranges::move(some, std::back_inserter(found));
+  return found;
+}
+
+/// Settles depth and normals by the camera as it is.
+void settle_meaning(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
+  settle_depth({source.reading, source.notes, settings, raw, seen, source.depth_path()},
+               {source.program, source.open.depth_kind, [&] { return kind_by_positions(source, settings, raw); }});
+  settle_deep(source, raw);
+  if (source.channels[RawPlane::normal].empty())
+    note_centre(source);
+  else
+    settle_normals(source, settings, raw, seen);
+}
+
+/// Gives as many rows from the middle of a frame as fit into so many bytes twice: as they are read, and their results.
+Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
+  constexpr std::uint64_t kLeastPixels = 1 << 18;  // fewer tell too little
+  const Window& data = source.reading.data;
+  const std::uint64_t planes = source.channels[RawPlane::depth].size() + source.channels[RawPlane::normal].size();
+  const std::uint64_t pixels =
+      std::clamp<std::uint64_t>(most_bytes / (2 * sizeof(float) * planes), kLeastPixels, kEvidencePixels);
+  const int rows = int(std::clamp<std::uint64_t>(pixels / std::uint64_t(data.width), 1, std::uint64_t(data.height)));
+  return {data.x, data.y + (data.height - rows) / 2, data.width, rows};
+}
+
+}  // namespace
+
+void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
+  const std::string& channel = source.channels[RawPlane::depth][0].channel;
+  seen.grain = measure_rounding(source.reading, raw.window, raw.depth, source.depth_path() + ": " + channel);
+  const std::string refutation = settle_camera(source, settings);
+  try {
+    settle_meaning(source, settings, raw, seen);
+  } catch (const Error& error) {
+    // By a wrong lens anything may look wrong.
+    if (refutation.empty()) throw;
+    fail(error.kind(), "{}; {}", error.what(), refutation);
+  }
+  const Reading& reading = source.reading;
+  measure_levels(source.reading, raw.depth);
+  add_new(source.suspicious, precision_notes(reading, raw.window, raw.depth, seen.grain, channel));
+  seen.median_depth = median_depth(over(reading, raw.window), raw.depth);
+  std::ranges::move(findings(source, raw), std::back_inserter(source.suspicious));
+}
+
+void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
+  Evidence seen;
+  settle(source, settings, raw, seen);
+  source.evidence = std::move(seen);
+}
+
+void settle_by_planes(FrameSource& source, const InputSettings& settings, std::span<const float> depth,
+                      std::span<const float> normal, std::uint64_t most_bytes) {
+  const Window& data = source.reading.data;
+  if (depth.size() % data.pixels() != 0)
+    fail(ErrorKind::input, "{}: a part of a frame cannot settle it", source.depth_path());
+  if (data.pixels() <= kEvidencePixels && depth.size_bytes() + normal.size_bytes() <= most_bytes)
+    return settle(source, settings, {data, depth, normal});
+  const Window rows = middle_rows(source, most_bytes);
+  settle(source, settings, {rows, cropped(depth, data, rows), cropped(normal, data, rows)});
+}
+
+void settle_by_rows(FrameSource& source, const InputSettings& settings, std::uint64_t most_bytes) {
+  const Window rows = middle_rows(source, most_bytes);
+  if (std::size_t(rows.width) > kEvidencePixels)
+    fail(ErrorKind::device, "{}: rows of {} pixels are more than Alcove takes on any --device", source.depth_path(),
+         rows.width);
+  const RawFrame raw = read_raw_frame(source, rows);
+  settle(source, settings, raw);
+}
+
+HostFrame read_host_frame(const InputSettings& settings, int number) {
+  FrameSource source = find_frame(settings, false, number);
+  const Window& data = source.reading.data;
+  require_host_room(source.depth_path(), data);
+  RawFrame raw = read_raw_frame(source, data);
+  settle(source, settings, raw);
+  return {source.reading, std::move(raw.depth), std::move(raw.normal), {}, number};
+}
+
+bool settle_like(FrameSource& source, const FrameSource& settled) {
+  for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})
+    if (source.channels[plane].size() != settled.channels[plane].size()) return false;
+  read_like(source.reading, settled.reading);
+  read_deep_like_meaning(source);
+  source.evidence = settled.evidence;
+  return true;
+}
+
+}  // namespace alcove
