@@ -89,9 +89,9 @@ TEST_F(Inspect, the_command_it_gives_has_the_settings_that_were_given) {
   lit.write(beauty);
   const std::string command =
       seen({"--beauty", beauty, "--preset", "draft", "--radius", "0.4", "--set", "intensity=0.5"})["command"];
-  EXPECT_THAT(command, AllOf(HasSubstr(" --beauty " + beauty), HasSubstr(" --composite composite.exr"),
-                             HasSubstr(" --preset draft"), HasSubstr(" --radius 0.4"),
-                             HasSubstr(" --set intensity=0.5")));
+  EXPECT_THAT(command,
+              AllOf(HasSubstr(" --beauty " + beauty), HasSubstr(" --composite composite.exr"),
+                    HasSubstr(" --preset draft"), HasSubstr(" --radius 0.4"), HasSubstr(" --set intensity=0.5")));
   EXPECT_EQ(command.find("--radius"), command.rfind("--radius"));
   Options arguments = typed(command);
   arguments.erase(arguments.begin());
@@ -100,8 +100,8 @@ TEST_F(Inspect, the_command_it_gives_has_the_settings_that_were_given) {
 }
 
 TEST_F(Inspect, the_command_it_gives_has_every_option_that_was_typed_and_has_an_effect_there) {
-  const Options kept{"--slices 8", "--denoise none", "--aov ao,normal", "--set steps=9", "--thickness 0.5",
-                     "--roi 1,2,30,20"};
+  const Options kept{"--slices 8",    "--denoise none",  "--aov ao,normal",
+                     "--set steps=9", "--thickness 0.5", "--roi 1,2,30,20"};
   Options given = typed("--set gain=2 --near 1 --depth-kind auto -v");
   for (const auto& words : kept) given = joined(given, typed(words));
   const std::string command = seen(given)["command"];

@@ -210,10 +210,12 @@ TEST_F(Missing, is_all_listed_at_once_with_the_command_that_would_do) {
   // An empty value says nothing, and no output has the name of the input.
   fs::copy_file(frame, folder / "ao.exr");
   const std::string rest = " --camera " + camera + " --radius 1";
-  for (const auto& [given, proposed] : {std::pair(Options{"run", frame, "-o", ""}, "alcove run " + frame + rest + " -o ao.exr"),
-                                        {{"run", ""}, "alcove run frame.exr" + rest + " -o ao.exr"},
-                                        {{"run", "ao.exr", "--composite="}, "alcove run ao.exr" + rest + " -o new-ao.exr"}}) {
-    const Finished refused = run_program(joined(given, {"--camera", camera, "--radius", "1"}), {.folder = folder.path()});
+  for (const auto& [given, proposed] :
+       {std::pair(Options{"run", frame, "-o", ""}, "alcove run " + frame + rest + " -o ao.exr"),
+        {{"run", ""}, "alcove run frame.exr" + rest + " -o ao.exr"},
+        {{"run", "ao.exr", "--composite="}, "alcove run ao.exr" + rest + " -o new-ao.exr"}}) {
+    const Finished refused =
+        run_program(joined(given, {"--camera", camera, "--radius", "1"}), {.folder = folder.path()});
     EXPECT_EQ(refused.code, 2);
     EXPECT_EQ(lines_of(refused.err).back(), proposed);
   }

@@ -24,7 +24,8 @@ TEST_F(OutputNames, that_end_in_another_format_are_refused) {
     test::expect_refused(finished, 2, {name, option, ending});
     EXPECT_EQ(names_in(folder.path()), before);
   };
-  for (const char* name : {"x.png", "x.tif", "x.JPG", "x.png.tmp", "x.png.0001", "x.json", "x.exr.zip", "x", "x.0001"}) {
+  for (const char* name :
+       {"x.png", "x.tif", "x.JPG", "x.png.tmp", "x.png.0001", "x.json", "x.exr.zip", "x", "x.0001"}) {
     expect_refused(to(folder / name), name, "--output", ".exr");
     expect_refused(to(ao, {"--composite", folder / name}), name, "--composite", ".exr");
   }

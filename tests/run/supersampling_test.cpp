@@ -153,7 +153,8 @@ TEST_F(Supersampling, a_region_counts_in_pixels_of_the_picture_and_has_the_bits_
   write_frame(display, display);
   write_beauty(kSmall, kSmall);
   // A filter that reaches farther than all else.
-  const Options options = joined(composed, typed("--set supersampling=3 --set filter=box --set filter-width=16 --denoise none --radius 0.1"));
+  const Options options = joined(
+      composed, typed("--set supersampling=3 --set filter=box --set filter-width=16 --denoise none --radius 0.1"));
   const Image whole = computed(options), whole_composite = read_exr_image(composite);
   const Image part = computed(joined(options, {"--roi", "11,7,30,20"}));
   EXPECT_EQ(part.data, region);
@@ -199,8 +200,8 @@ TEST_F(Supersampling, a_preview_is_as_large_as_the_picture) {
   write_frame(display, display);
   write_beauty(kSmall, kSmall);
   for (const char* style : {"ao", "composite"}) {
-    done(joined(composed, {"--preview", preview, "--set", std::string("preview-style=") + style, "--set",
-                           "supersampling=2"}));
+    done(joined(composed,
+                {"--preview", preview, "--set", std::string("preview-style=") + style, "--set", "supersampling=2"}));
     EXPECT_EQ(open_image(preview, "the test", Formats::all).parts()[0].data, kSmall);
   }
   // Two bytes of a PNG may differ by rounding.
