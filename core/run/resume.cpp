@@ -59,7 +59,7 @@ namespace fs = std::filesystem;
 /// The bytes that are looked at of the beginning of a picture, and as many of its end.
 constexpr std::streamoff kLooked = 1 << 16;
 
-/// Other files are looked at whole up to this size: nothing in a camera file or a manifest tells of a change farther on.
+/// Other files are looked at whole up to this size: no part of a camera file tells of a change in another one.
 constexpr std::streamoff kMostWhole = 1 << 24;
 
 std::string bytes_of(std::ifstream& file, std::streamoff begin, std::streamoff end) {
