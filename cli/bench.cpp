@@ -29,9 +29,10 @@ CommandOf<BenchArguments> bench_syntax() {
   CommandOf<BenchArguments> command{"alcove bench",
                                     "Measures device time against error for the candidates of a suite.\n\n"
                                     "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n"};
-  OptionGroup(command.rows, "", Effect::none)
-      .text("SUITE", &S::suite, "", "a suite file (TOML); all but --stability needs one")
-      .names(FileRole::input);
+  OptionGroup suites(command.rows, "", Effect::none);
+  suites.text("SUITE", &S::suite, "", "a suite file (TOML); all but --stability needs one")
+      .names(FileRole::input)
+      .is_of_frame = false;
   OptionGroup options(command.rows, "Options", Effect::none);
   // A count of 0 stands for "not given", and no default is shown for it.
   const auto count = [&](const char* name, int BenchArguments::*value, const Range& range, const char* sentence) {
@@ -45,7 +46,7 @@ CommandOf<BenchArguments> bench_syntax() {
   count("--reference-slices", &S::reference_slices, between(0, 1024),
         "of the CPU reference, instead of the suite's; 0: none");
   const auto file = [&](const char* name, std::string S::*path, const char* value, const char* sentence,
-                        FileRole role) { options.text(name, path, value, sentence).names(role); };
+                        FileRole role) { options.text(name, path, value, sentence).names(role).is_of_frame = false; };
   file("--json", &S::json, "FILE.json", "write all numbers", FileRole::report);
   file("--csv", &S::csv, "FILE.csv", "write a line for every candidate and frame", FileRole::report);
   file("--report", &S::report, "FILE.html", "write a self-contained page with chart, table and pictures",

@@ -81,9 +81,10 @@ int inspect_command(const std::vector<std::string>& arguments) {
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   const FramePlan plan = plan_of(options.settings);
   FileUses uses = inputs_of(plan);
+  for (const auto& file : files_of(options.settings, FileRole::input)) uses.add_input(file);
   for (const auto& [option, file] :
        {std::pair("--preview", options.settings.output.preview), {"--write-camera", asked.write_camera}})
-    if (!file.empty()) uses.add_output({option, file});
+    uses.add_output({option, file});
   // A beauty may be twice as wide as high, too: but it comes with depth, or with positions.
   const bool is_alone =
       path == input.input && input.depth.empty() && input.position.empty() && asked.write_camera.empty();

@@ -95,8 +95,8 @@ bool is_told_otherwise(const OptionValue& value) {
          std::ranges::find(kKeys, value.row->key()) != kKeys.end();
 }
 
-/// What was typed for the run that inspect proposes: all that has an effect there, where depth is of this kind.
-std::vector<ProposedOption> proposed_options(const TypedOptions& typed, const Settings& settings, DepthKind kind) {
+/// What was typed for the run that inspect proposes: all that has an effect there.
+std::vector<ProposedOption> proposed_options(const TypedOptions& typed, const Settings& settings) {
   std::vector<OptionValue> values = all_values(typed), of_presets;
   std::ranges::copy_if(values, std::back_inserter(of_presets), std::not_fn(&OptionValue::is_typed));
   std::erase_if(values, is_told_otherwise);
@@ -105,7 +105,6 @@ std::vector<ProposedOption> proposed_options(const TypedOptions& typed, const Se
     Settings all = initial;
     all.input.input = settings.input.input;
     for (const auto& value : values) value.row->read(all, value.words);
-    all.input.depth_kind = kind;
     if (!all.input.beauty.empty() || !all.input.beauty_channels.empty()) all.output.composite = "composite";
     return !objection(*one.row, all).empty();
   };
@@ -257,9 +256,7 @@ bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOpt
   const auto typed = read_arguments(command, arguments, options.run, Reader::inspect);
   if (!typed) return false;
   with_help(command, [&] { options.json = is_on(*typed, "--json"); });
-  options.typed = [typed = *typed, settings = options.run.settings](DepthKind kind) {
-    return proposed_options(typed, settings, kind);
-  };
+  options.typed = proposed_options(*typed, options.run.settings);
   const Words path = words_for(*typed, "--write-camera");
   if (!path.empty()) options.write_camera = path.front();
   return true;

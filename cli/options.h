@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,9 +35,8 @@ std::string usual_output(const std::string& input, const std::string& stem, cons
 struct InspectOptions {
   RunOptions run;
   bool json = false;
-  std::string write_camera;  // a file; empty: none
-  // see CommandNames
-  std::function<std::vector<ProposedOption>(DepthKind)> typed;
+  std::string write_camera;           // a file; empty: none
+  std::vector<ProposedOption> typed;  // see CommandNames
 };
 /// Does the same for `alcove inspect`, which writes no outputs: there, no option can lack one.
 bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOptions& options);

@@ -52,7 +52,7 @@ struct Parser {
   }
 };
 
-/// The options that a misspelt one may mean. One letter is the first of an option's name, of those that most people use.
+/// The options that a misspelt one may mean. One letter is the first of a common option's name.
 std::string suggested_options(const Command& command, const std::string& typed) {
   Words names{"--help", "--help-all"}, first;
   for (const auto& row : command.rows) {

@@ -24,11 +24,11 @@ Words without_empty(const Words& arguments) {
         rows, [&](const OptionRow& row) { return !row.is_flag() && std::ranges::count(split(row.name), word) > 0; });
   };
   Words kept;
-  for (const auto& argument : arguments) {
-    const bool is_empty = argument.empty() || (argument.starts_with("--") && argument.ends_with('='));
-    if (!is_empty) kept.push_back(argument);
-    if (argument.empty() && !kept.empty() && kept.back().starts_with('-') && takes_value(kept.back())) kept.pop_back();
-  }
+  for (const auto& argument : arguments)
+    if (!argument.empty())
+      kept.push_back(argument);
+    else if (!kept.empty() && takes_value(kept.back()))
+      kept.pop_back();
   return kept;
 }
 

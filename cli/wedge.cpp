@@ -185,6 +185,8 @@ void check_reports(const Typed& typed, const FramePlan& plan) {
     uses.add_output(file);
     require_writable(file.path, file.option.c_str());
   }
+  require_ending(typed.page, "--output", ".html", "HTML");
+  require_ending(typed.sheet, "--sheet", ".png", "PNG");
 }
 
 /// All combinations of what was typed, with the proposed radius among the radii.
@@ -281,8 +283,6 @@ int wedge_command(const std::vector<std::string>& arguments) {
     if (typed.input.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
     if (typed.page.empty() && typed.sheet.empty())
       fail(ErrorKind::usage, "no output: name a page with -o FILE.html, or a picture with --sheet FILE.png");
-    require_ending(typed.page, "--output", ".html", "HTML");
-    require_ending(typed.sheet, "--sheet", ".png", "PNG");
     typed.arguments = arguments_in(*options);
   });
   try {

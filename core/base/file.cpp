@@ -117,6 +117,7 @@ void FileUses::add_input(const NamedFile& file) {
 
 void FileUses::add_output(const NamedFile& file, const std::string& whose) {
   const auto& [option, path] = file;
+  if (path.empty()) return;
   const std::string identity = identity_of(path);
   if (const auto input = inputs_.find(identity); input != inputs_.end())
     fail(ErrorKind::usage, "{}: {}{} would overwrite an input: {} {}", path, option, whose, input->second.option,

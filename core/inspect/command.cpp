@@ -122,9 +122,8 @@ std::string command_of(const FrameSource& source, const CommandNames& names, boo
   add_depth(command, source, settings);
   add_normals(command, source, settings, has_camera);
   add_camera(command, settings, has_camera);
-  if (names.typed)
-    for (const auto& [option, words] : names.typed(source.reading.depth_kind))
-      if (!command.has(option)) command.add(words);
+  for (const auto& [option, words] : names.typed)
+    if (!command.has(option)) command.add(words);
   if (command.has("--radius")) return command.text();
   if (const auto radius = proposed_radius(source.reading.camera, source.evidence->median_depth))
     command.add("--radius", radius);

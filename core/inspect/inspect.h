@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -175,9 +174,8 @@ struct ProposedOption {
 struct CommandNames {
   InputSettings inputs;  // its files and cameras
   std::string output = "ao.exr", composite = "composite.exr";
-  std::string frames = {};  // a list, or empty
-  // Gives what the user typed that has an effect where the depth is of this kind; null: nothing.
-  std::function<std::vector<ProposedOption>(DepthKind)> typed = nullptr;
+  std::string frames = {};                 // a list, or empty
+  std::vector<ProposedOption> typed = {};  // by the user, as far as they have an effect
 };
 
 /// The command of the run that reads the settled frame as it was understood, with every guess made explicit. Without a

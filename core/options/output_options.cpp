@@ -95,8 +95,10 @@ std::string unless_supersampled(const Settings& all) {
 void add_preview_rows(std::vector<SettingRow>& rows) {
   using S = OutputSettings;
   OptionGroup pixels(rows, "Output", Effect::pixels, &Settings::output);
+  // What it says is known by its bytes, whether the variable names it or the option.
+  OptionGroup files(rows, "Output", Effect::none, &Settings::output);
   SettingRow& ocio =
-      pixels.text("ocio", &S::ocio, "FILE", "OpenColorIO configuration for the preview; else that of OCIO, else sRGB");
+      files.text("ocio", &S::ocio, "FILE", "OpenColorIO configuration for the preview; else that of OCIO, else sRGB");
   ocio.names(FileRole::input).idle(unless_shown_composite);
   ocio.is_of_frame = false;
   pixels.text("display", &S::display, "NAME", "of the OpenColorIO configuration; else its default one")

@@ -237,8 +237,9 @@ RunReport run_frames(FirstLook& look, const RunWatch& watch) {
   report.missing = plan.missing();
   const NewFolders new_folders(plan);
   if (!plan.frames().empty()) {
-    check_names(plan);
+    refuse_overwriting(plan);
     prepare_outputs(plan);
+    require_endings(plan.at(plan.frames().front()).output);
     report.options = options_digest(settings);
   }
   InputIdentities identities(plan);

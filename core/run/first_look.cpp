@@ -341,7 +341,8 @@ std::string plan_text(FirstLook& look) {
   for (const auto& note : notes) line(level_of(note), line_of(note, ""));
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
-  check_names(plan);
+  refuse_overwriting(plan);
+  require_endings(first.output);
   for (const auto& row : file_rows()) {
     if (!row.is_of_frame) continue;
     const auto of_first = row.files(first, row.role), of_last = row.files(last, row.role);

@@ -42,6 +42,7 @@ std::string options_digest(const Settings& given) {
   std::ranges::sort(estimator.further_radii);
   // Each word goes with its length, so that no two sets of values make one text.
   std::string text = kVersion;
+  if (shows_composite(settings.output)) text += "\na preview of the composite";
   for (const auto& row : option_table())
     if (row.is_key())
       for (const auto& word : telling_words(row, settings))
@@ -58,7 +59,7 @@ namespace fs = std::filesystem;
 /// The bytes that are looked at of the beginning of a picture, and as many of its end.
 constexpr std::streamoff kLooked = 1 << 16;
 
-/// Other files are looked at whole up to this size: nothing in a camera file or a manifest tells of a change farther on.
+/// Other files are looked at whole up to this size: no part of a camera file tells of a change in another one.
 constexpr std::streamoff kMostWhole = 1 << 24;
 
 std::string bytes_of(std::ifstream& file, std::streamoff begin, std::streamoff end) {
@@ -86,7 +87,7 @@ InputIdentities::Identity InputIdentities::identity_of(const Settings& frame) {
     const bool is_whole = size <= kMostWhole && !bytes.starts_with("\x76\x2f\x31\x01");  // how EXR files begin
     const std::streamoff beyond = std::streamoff(bytes.size());
     bytes += bytes_of(file, is_whole ? beyond : std::max(beyond, size - kLooked), size);
-    text += fmt::format("\n{} {} {:016x}", option, size, XXH3_64bits(bytes.data(), bytes.size()));
+    text += fmt::format("\n{} {:016x}", size, XXH3_64bits(bytes.data(), bytes.size()));
     if (!is_whole) identity.newest = std::max(identity.newest, time_of(path).value_or(identity.newest));
   }
   identity.text = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));

@@ -67,10 +67,12 @@ FileUses inputs_of(const FramePlan& plan) {
   return uses;
 }
 
-void check_names(const FramePlan& plan) {
+void refuse_overwriting(const FramePlan& plan) {
   FileUses uses = inputs_of(plan);
   for (const auto& [file, whose] : outputs_of(plan, plan.all())) uses.add_output(file, whose);
-  const OutputSettings output = plan.at(plan.frames().front()).output;
+}
+
+void require_endings(const OutputSettings& output) {
   require_ending(output.output, "--output", ".exr", "OpenEXR");
   require_ending(output.composite, "--composite", ".exr", "OpenEXR");
   require_ending(output.preview, "--preview", ".png", "PNG");

@@ -22,13 +22,15 @@ std::vector<NamedFile> inputs_of(const Settings& frame);
 /// The inputs of the frames of all chunks, and of the frames around them.
 FileUses inputs_of(const FramePlan& plan);
 
-/// Fails with ErrorKind::usage where the run would write a file that it reads, or one file twice, or where the name of
-/// an output ends as if it were of another format.
-void check_names(const FramePlan& plan);
+/// Fails with ErrorKind::usage where the run would write a file that it reads, or one file twice.
+void refuse_overwriting(const FramePlan& plan);
 
 /// Fails with ErrorKind::output where an output cannot be made. Removes unfinished files that killed runs have left
 /// beside the outputs.
 void prepare_outputs(const FramePlan& plan);
+
+/// Fails with ErrorKind::usage where the name of an output does not end as its format does.
+void require_endings(const OutputSettings& output);
 
 /// Makes the folders of these files, unless the settings say not to. Fails with ErrorKind::output.
 void make_folders(const std::vector<NamedFile>& files, const OutputSettings& settings);

@@ -153,12 +153,12 @@ TEST_F(Options, that_change_no_pixels_are_these_and_not_in_the_digest) {
     EXPECT_EQ(digest(), plain) << row.name;
     names.push_back(row.long_name());
   });
-  EXPECT_THAT(names,
-              ElementsAre("--strict", "--frames", "--set output-offset", "--chunk", "--set missing", "--keep-going",
-                          "--set warnings-as-errors", "--resume", "--set overwrite", "--no-skip", "--output",
-                          "--composite", "--preview", "--set debug", "--set compression", "--set no-mkdir", "--device",
-                          "--set require-gpu", "--validate", "--set no-pipeline-cache", "--memory", "--threads",
-                          "--stats", "--progress", "--log-json", "--verbose", "--quiet"))
+  EXPECT_THAT(
+      names, ElementsAre("--strict", "--frames", "--set output-offset", "--chunk", "--set missing", "--keep-going",
+                         "--set warnings-as-errors", "--resume", "--set overwrite", "--no-skip", "--output",
+                         "--composite", "--preview", "--set debug", "--set compression", "--set no-mkdir", "--set ocio",
+                         "--device", "--set require-gpu", "--validate", "--set no-pipeline-cache", "--memory",
+                         "--threads", "--stats", "--progress", "--log-json", "--verbose", "--quiet"))
       << "whoever adds to this list says that the pixels come out the same";
 }
 
@@ -255,19 +255,19 @@ TEST_F(Options, as_a_preset_are_what_they_are) {
 // The digest through the program.
 
 TEST_F(Options, of_the_camera_count_by_what_it_says_and_not_where_it_lies) {
-  const auto digest_in_file = [&] {
+  const auto identity_in_file = [&] {
     done();
-    return text_in(read_header(ao), "alcove/options");
+    return text_in(read_header(ao), "alcove/inputs");
   };
-  const std::string before = digest_in_file();
+  const std::string before = identity_in_file();
   json fields = wall_camera();
   fields["fx"] = 59;
   write_bytes(camera, fields.dump());
-  EXPECT_NE(digest_in_file(), before) << "another focal length";
+  EXPECT_NE(identity_in_file(), before) << "another focal length";
   fs::create_directory(folder / "moved");
   write_bytes(folder / "moved/camera.json", wall_camera().dump());
   EXPECT_EQ(run_program({"run", frame, "-o", ao, "--camera", folder / "moved/camera.json", "--radius", "1"}).code, 0);
-  EXPECT_EQ(text_in(read_header(ao), "alcove/options"), before) << "the same camera in another folder";
+  EXPECT_EQ(text_in(read_header(ao), "alcove/inputs"), before) << "the same camera in another folder";
 }
 
 /// A configuration whose only view multiplies by `factor`.

@@ -213,7 +213,7 @@ TEST_F(Missing, is_all_listed_at_once_with_the_command_that_would_do) {
   for (const auto& [given, proposed] :
        {std::pair(Options{"run", frame, "-o", ""}, "alcove run " + frame + rest + " -o ao.exr"),
         {{"run", ""}, "alcove run frame.exr" + rest + " -o ao.exr"},
-        {{"run", "ao.exr", "--composite="}, "alcove run ao.exr" + rest + " -o new-ao.exr"}}) {
+        {{"run", "ao.exr", "--composite", ""}, "alcove run ao.exr" + rest + " -o new-ao.exr"}}) {
     const Finished refused =
         run_program(joined(given, {"--camera", camera, "--radius", "1"}), {.folder = folder.path()});
     EXPECT_EQ(refused.code, 2);
