@@ -78,6 +78,7 @@ Notes check_planes(Reading& reading, const HostPlanes& planes, const InputSettin
   Evidence seen;
   DepthFacts said;
   said.program.rules = &input_rules("generic");
+  said.said_by = "--depth-kind, the camera or default";
   seen.grain = measure_rounding(reading, raw.window, depth, name);
   settle_depth({reading, notes, settings, raw, seen, name}, said);
   measure_levels(reading, depth);

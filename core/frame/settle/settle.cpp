@@ -124,9 +124,9 @@ bool has_lengths(const FrameSource& source) {
 
 namespace {
 
-/// Gives one sentence for each finding: shortened normals, channels that a lossy codec has damaged, other parts that are
-/// cut short or have other windows, overscan and crops. The frame's meaning is settled; of large frames a part of the
-/// pixels is looked at.
+/// Gives one sentence for each finding: shortened normals, channels that a lossy codec has damaged, other parts that
+/// are cut short or have other windows, overscan and crops. The frame's meaning is settled; of large frames a part of
+/// the pixels is looked at.
 Notes findings(FrameSource& source, const RawPart& raw) {
   Notes found;
   for (Notes some : {averaged_normals(source, raw), damage(source), windows(source)})

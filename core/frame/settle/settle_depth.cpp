@@ -491,8 +491,8 @@ class DepthSettlement : private Settlement {
     if (from_1 >= kLeastStraight && from_1 > kClear * straight)
       note(NoteCode::said_otherwise,
            fmt::format("{}, and flat surfaces are straight on {:.0f} % as 1 - depth, on {:.0f} % as depth: it is read "
-                       "as {}; if it is normalized, give {}",
-                       text_of_range(), 100 * from_1, 100 * straight, word_of(reading_.depth_kind),
+                       "as {} by {}; if it is normalized, give {}",
+                       text_of_range(), 100 * from_1, 100 * straight, word_of(reading_.depth_kind), facts_.said_by,
                        normalized_line(true)));
     else if (settings_.depth_kind == DepthKind::automatic && facts_.program.rules->depth_kind == DepthKind::automatic)
       note(NoteCode::depth_below_1, fmt::format("{} and is read as {}; if it is normalized, give {}; "
@@ -515,7 +515,8 @@ class DepthSettlement : private Settlement {
         scores[0].straight)
       return;
     note(NoteCode::said_otherwise,
-         fmt::format("depth is read as {}, but {}: is it {}?", word_of(reading_.depth_kind), straight(scores[0]),
+         fmt::format("depth is read as {} by {}, but {}: is it {}?", word_of(reading_.depth_kind), facts_.said_by,
+                     straight(scores[0]),
                      scores[0].kind == DepthKind::inverse ? "inverse or device" : word_of(scores[0].kind)));
   }
 

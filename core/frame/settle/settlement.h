@@ -68,6 +68,7 @@ struct DepthFacts {
   bool is_kind_open = false;
   // Gives the kind by which it is the depth of positions beside it, if those tell. Null: there are none.
   std::function<std::optional<DepthKind>()> kind_by_positions = nullptr;
+  const char* said_by = "--depth-kind, --source or the camera file";  // what may say the kind that is not open
 };
 
 /// Settles kind and sign of the depth, or the space of positions; where they are said, notes what speaks against them.
