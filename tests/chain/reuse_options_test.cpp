@@ -92,8 +92,8 @@ const std::map<std::string, Change> kChanges{
 
 /// Whether an option says what the pixels of an input are, or what they mean.
 bool is_of_inputs(const SettingRow& row) {
-  if (row.effect == Effect::none || row.effect == Effect::display) return false;
-  return row.group == "Input" || row.group == "Hidden surfaces" || row.effect != Effect::pixels ||
+  if (row.effect == Effect::none) return false;
+  return row.group == "Input" || row.group == "Hidden surfaces" || row.role == FileRole::input ||
          row.key() == "aov-space";
 }
 
