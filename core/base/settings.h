@@ -40,8 +40,8 @@ struct InputSettings {
   // the materials' own AO: a file, and the full name of a channel. Empty file: the input, if a channel is named; empty
   // name: found
   std::string material_ao, material_ao_channel;
-  // the matte, where AO is wanted: a file and a channel as for material AO, and objects, see core/frame/find/matte.h; and
-  // the AO outside of it, 0 to 1
+  // the matte, where AO is wanted: a file and a channel as for material AO, and objects, see core/frame/find/matte.h;
+  // and the AO outside of it, 0 to 1
   std::string matte, matte_channel, matte_object;
   double matte_outside = 1;
   // first surfaces that are occluders: these alone, or all but these. Given as a file of coverage, or as objects, names

@@ -36,7 +36,7 @@ class LastFrame {
   struct Past {
     struct Whole {
       FrameRecipe recipe;
-      int noise_frame = 0;  // by which animated noise goes on; fixed: 0
+      std::optional<int> noise_frame;  // by which animated noise goes on; fixed: 0
       std::array<std::size_t, kRawPlanes.size()> bytes{};
       std::uint64_t selection = 0;
       bool operator==(const Whole&) const = default;

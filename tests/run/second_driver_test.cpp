@@ -1,8 +1,8 @@
 // SwiftShader, which Debian has in chromium-common, computes what lavapipe does, and the same to the bit in other ways.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// It computes slowly, so that frames are small. Its time to read a loop doubles with
-// each branch that lies in it: where a kernel has more of them than it takes, all is left out, with a line that says so.
+// It computes slowly, so that frames are small. Its time to read a loop doubles with each branch that lies in it:
+// where a kernel has more of them than it takes, all is left out, with a line that says so.
 #include "core/base/text.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/walked_shot.h"
