@@ -8,9 +8,9 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/frame/evidence.h"
-#include "core/frame/settle/radius.h"
-#include "core/frame/settle/settle.h"
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/radius.h"
+#include "core/frame/pixels/statistics.h"
 
 namespace alcove {
 namespace {

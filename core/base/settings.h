@@ -40,8 +40,8 @@ struct InputSettings {
   // the materials' own AO: a file, and the full name of a channel. Empty file: the input, if a channel is named; empty
   // name: found
   std::string material_ao, material_ao_channel;
-  // the matte, where AO is wanted: a file and a channel as for material AO, and objects, see core/frame/find/matte.h; and
-  // the AO outside of it, 0 to 1
+  // the matte, where AO is wanted: a file and a channel as for material AO, and objects, see core/frame/find/matte.h;
+  // and the AO outside of it, 0 to 1
   std::string matte, matte_channel, matte_object;
   double matte_outside = 1;
   // first surfaces that are occluders: these alone, or all but these. Given as a file of coverage, or as objects, names
@@ -99,7 +99,7 @@ struct InputSettings {
 struct EstimatorSettings {
   Estimator estimator = Estimator::gtao;
   std::optional<double> radius;  // scene units, > 0; no default, since no number fits all scenes
-  bool radius_auto = false;      // instead: as core/frame/settle/radius.h proposes
+  bool radius_auto = false;      // instead: as core/frame/pixels/radius.h proposes
   // scene units, > 0: more scales. The AO is the mean of all: that is AO itself, with a falloff that drops by a step at
   // each radius
   std::vector<double> further_radii;

@@ -15,7 +15,7 @@
 #include "core/chain/results/confidence.h"
 #include "core/chain/results/outputs.h"
 #include "core/chain/results/reduce.h"
-#include "core/frame/evidence.h"
+#include "core/frame/pixels/statistics.h"
 #include "core/frame/settle/settle.h"
 #include "kernels/estimate/exact.h"
 #include "kernels/geometry/geometry.h"

@@ -259,18 +259,5 @@ TEST_F(Formats, hostile_headers_are_errors) {
   expect_refused("longer than any program writes", endless.bytes + '\0', "longer than");
 }
 
-TEST(Findings, blended_edges_tell_averaged_depth_from_point_samples) {
-  constexpr int kWidth = 64;
-  std::vector<float> sharp, blended;
-  for (int y = 0; y < 64; y++)
-    for (int x = 0; x < kWidth; x++) {
-      const int phase = x % 16;
-      sharp.push_back(phase < 8 ? 1.0f : 3.0f);
-      blended.push_back(phase == 8 || phase == 0 ? 2.0f : sharp.back());
-    }
-  EXPECT_EQ(blended_edges(sharp, kWidth), 0);
-  EXPECT_GT(blended_edges(blended, kWidth), 0.9);
-}
-
 }  // namespace
 }  // namespace alcove::capture_formats_test

@@ -1,6 +1,7 @@
 // Normals of the other side, of nearly the same space, without their signs, and with other lengths are told apart.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/evidence.h"
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/statistics.h"
 #include "tests/support/furnished.h"
 #include "tests/support/settled_file.h"
 

@@ -1,253 +1,30 @@
-// Settles what is open about a frame, and looks at it for what harms AO.
+// The order of settling.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/settle/settle.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
-#include "core/frame/evidence.h"
 #include "core/frame/find/behind.h"
 #include "core/frame/find/position_pass.h"
-#include "core/frame/settle/radius.h"
+#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/empty.h"
+#include "core/frame/pixels/flatness.h"
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/radius.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/pixels/walk.h"
+#include "core/frame/samples.h"
+#include "core/frame/settle/faults.h"
 
 namespace alcove {
 
-Settlement::Settlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen,
-                       RawPlane about)
-    : source_(source),
-      reading_(source.reading),
-      settings_(settings),
-      raw_(raw),
-      seen_(seen),
-      view_(view_of(source.reading, raw.window)),
-      about_(about) {}
-
-void Settlement::note(NoteCode code, std::string text) {
-  source_.notes.push_back({code, std::move(text), about_ == RawPlane::normal ? source_.normal_file() : ""});
-}
-
-void Settlement::take_down(const std::string& what, const std::string& chosen, const std::string& why,
-                           const std::string& option, bool unusual, bool proven) {
-  seen_.guesses.push_back({what, chosen, why, option});
-  if (unusual)
-    note(proven ? NoteCode::proven_reading : NoteCode::unusual_reading,
-         fmt::format("{} taken as {}: {} ({} says otherwise)", what, chosen, why, option));
-}
-
-void Settlement::guess(const std::string& what, const std::string& chosen, const std::string& why,
-                       const std::string& option, bool unusual, bool proven) {
-  if (settings_.strict)
-    fail(ErrorKind::input, "{}: --strict, and nothing says the {}; it would be {} ({}): give {}",
-         about_ == RawPlane::normal ? normal_path() : depth_path(), what, chosen, why, option);
-  take_down(what, chosen, why, option, unusual, proven);
-}
-
-// Faults that harm AO.
-
 namespace {
-
-constexpr double kStep = 0.1;     // relative change of depth that is an edge
-constexpr double kSmooth = 0.02;  // relative change within a surface
-constexpr double kBetween = 0.1;  // part of a step within which a value belongs to the surface on that side
-constexpr int kLeastEdges = 100;
-constexpr double kMostBlended = 0.3;            // of the edges; thin things give some by themselves
-constexpr double kMostShortened = 0.02;         // of the normals
-constexpr double kMostOfOtherLength = 0.1;      // of normals that were all scaled alike; edges are shorter
-constexpr std::size_t kEdgePixels = 1 << 18;    // of whole rows: enough for edges, and no cost beside reading
-constexpr std::size_t kNormalPixels = 1 << 16;  // enough for shares to a percent
-
-bool is_lossy(const FrameSource& source, const ChannelRef& ref) {
-  return source.part_of(ref).dwa && is_lossy_in_dwa(ref.channel);
-}
-
-/// Parts that the frame does not need and whose first or last rows cannot be read: of a file that was cut short behind
-/// the frame's own parts. Those are read anyway.
-Notes cut_parts(ExrFile& file, const std::set<int>& needed) {
-  Notes found;
-  for (std::size_t p = 0; p < file.parts().size(); p++) {
-    const ExrPart& part = file.parts()[p];
-    const auto channel = std::ranges::find(part.channels, false, &ExrChannel::subsampled);
-    if (part.deep || channel == part.channels.end() || needed.contains(int(p))) continue;
-    std::vector<float> row(std::size_t(part.data.width));
-    const ExrRead read{int(p), channel->name, row.data()};
-    try {
-      for (const int y : {0, part.data.height - 1}) file.read({&read, 1}, y, 1);
-    } catch (const Error& error) {
-      found.push_back({NoteCode::damaged_file, error.what()});
-    }
-  }
-  return found;
-}
-
-/// Depth that was averaged over the pixels, by some of its rows.
-Notes averaged_depth(const FrameSource& source, const RawPart& raw) {
-  const int step = int(std::min<std::size_t>(raw.window.pixels() / kEdgePixels + 1, std::size_t(raw.window.height)));
-  const View view = view_of(source.reading, raw.window);
-  const double blended =
-      blended_edges(planar_depths(raw.depth, depth_map_of(source.reading), view, step), raw.window.width);
-  if (blended <= kMostBlended) return {};
-  return {{NoteCode::antialiased_depth,
-           fmt::format("{:.0f} % of the depth's edges have a pixel in between: the depth is anti-aliased, and AO shows "
-                       "seams there; render it without filtering",
-                       100 * blended)}};
-}
-
-/// The rows, or columns, along a border that have no surface.
-struct BorderRows {
-  int empty = 0;        // how many have none, and one value
-  bool is_bar = false;  // the next one is mostly of surfaces, unlike that below a sky
-};
-
-BorderRows border_rows(const RawPart& raw, const DepthMap& map, bool columns, bool last) {
-  constexpr double kLeastSurfaces = 0.5;
-  const int width = raw.window.width, height = raw.window.height;
-  const int rows = columns ? width : height, across = columns ? height : width;
-  const auto value = [&](int row, int i) {
-    const int at = last ? rows - 1 - row : row;
-    return raw.depth[columns ? std::size_t(i) * std::size_t(width) + std::size_t(at)
-                             : std::size_t(at) * std::size_t(width) + std::size_t(i)];
-  };
-  for (int row = 0; row < rows; row++) {
-    int surfaces = 0;
-    bool is_one = true;
-    for (int i = 0; i < across; i++) {
-      surfaces += std::isfinite(planar_depth(map, {value(row, i), 0, 0}, 1));
-      is_one = is_one && !(value(row, i) != value(row, 0) && !std::isnan(value(row, i)));
-    }
-    if (surfaces == 0 && is_one) continue;
-    return {row, surfaces >= kLeastSurfaces * across};
-  }
-  return {rows, false};
-}
-
-/// Bars above and below a picture, or on both its sides, that are as wide: a sky is on one side alone. Between them the
-/// picture reaches both other borders; a thing before an empty background does not.
-Notes letterbox(const FrameSource& source, const RawPart& raw) {
-  if (raw.window != source.reading.data || source.channels[RawPlane::depth].size() != 1) return {};
-  const DepthMap map = depth_map_of(source.reading);
-  for (const bool columns : {false, true}) {
-    const auto border = [&](bool of_columns, bool is_last) { return border_rows(raw, map, of_columns, is_last); };
-    const BorderRows first = border(columns, false), last = border(columns, true);
-    if (!first.is_bar || !last.is_bar || first.empty == 0 || std::abs(first.empty - last.empty) > 1) continue;
-    if (border(!columns, false).empty > 0 || border(!columns, true).empty > 0) continue;
-    return {{NoteCode::letterbox_bars,
-             fmt::format("the first {} and the last {} {} are empty: they look like bars around the picture, and count "
-                         "as sky, so that AO next to them is too light; crop the data window of the file to the "
-                         "picture between them, and keep its display window",
-                         first.empty, last.empty, columns ? "columns" : "rows")}};
-  }
-  return {};
-}
-
-/// Normals that were averaged over the pixels, by some of them. It is no warning where the program does so always, for
-/// nobody can have it do otherwise.
-Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
-  // Normals that lost components are short for that reason.
-  if (!has_lengths(source) || std::ranges::count(source.notes, NoteCode::cut_normals, &Note::code) > 0) return {};
-  std::size_t step = raw.window.pixels() / kNormalPixels + 1;
-  while (std::gcd(step, std::size_t(raw.window.width)) > 1) step++;  // so that no column is favoured
-  const NormalStatistics s = normal_statistics(raw.normal, raw.depth, depth_map_of(source.reading), step);
-  const double unit = source.reading.normal_unorm ? s.unorm_unit_share : s.unit_share;
-  if (!s.count || unit >= 1 - kMostShortened) return {};
-  const bool is_scaled = s.usual_share > 1 - kMostOfOtherLength && std::abs(s.usual_length - 1) > kUnitTolerance;
-  if (!source.reading.normal_unorm && is_scaled)
-    return {
-        {NoteCode::scaled_normals,
-         fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO uses their direction only",
-                     s.usual_length, 100 * s.usual_share),
-         source.normal_file()}};
-  const bool is_usual = source.program.rules->normal_averaged;
-  return {{is_usual ? NoteCode::averaged_normals : NoteCode::shortened_normals,
-           fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over the pixel, at edges "
-                       "over several surfaces{}",
-                       100 * (1 - unit), is_usual ? ", as " + source.program.rules->name + " always does" : ""),
-           source.normal_file()}};
-}
-
-/// Channels that DWA has quantized, and files that end too early.
-Notes damage(FrameSource& source) {
-  Notes found;
-  std::vector<std::set<int>> needed(source.files.size());
-  for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})
-    for (const auto& channel : source.channels[plane]) {
-      needed[channel.file].insert(channel.part);
-      if (is_lossy(source, channel))
-        found.push_back(
-            {NoteCode::lossy_compression,
-             fmt::format("{} is compressed by DWA, which is lossy for a channel of that name; write data with zip",
-                         channel.channel),
-             plane == RawPlane::normal ? source.normal_file() : ""});
-    }
-  for (std::size_t file = 0; file < source.files.size(); file++)
-    std::ranges::move(cut_parts(source.files[file], needed[file]), std::back_inserter(found));
-  return found;
-}
-
-/// Windows that are not those of the depth.
-Notes windows(const FrameSource& source) {
-  Notes found;
-  for (const auto& part : source.file_of(source.channels[RawPlane::depth][0]).parts())
-    if (part.data != source.reading.data) {
-      found.push_back({NoteCode::windows_differ, fmt::format("part {} is {}, and the depth is {}", part.name,
-                                                             to_string(part.data), to_string(source.reading.data))});
-      break;
-    }
-  if (source.reading.data != source.reading.display)
-    found.push_back(
-        {NoteCode::windows_differ,
-         fmt::format("the data window is {} and the display window {}: AO is computed on the data window, and the "
-                     "camera is for the display window",
-                     to_string(source.reading.data), to_string(source.reading.display))});
-  return found;
-}
-
-}  // namespace
-
-bool has_lengths(const FrameSource& source) {
-  return source.channels[RawPlane::normal].size() == 3 &&
-         (source.reading.normal_encoding == NormalEncoding::signed_float ||
-          source.reading.normal_encoding == NormalEncoding::unorm);
-}
-
-double blended_edges(std::span<const float> planar, int width) {
-  int sharp = 0, blended = 0;
-  const auto close = [](double a, double b) { return std::abs(a - b) < kSmooth * std::min(a, b); };
-  for (std::size_t row = 0; row + std::size_t(width) <= planar.size(); row += std::size_t(width))
-    for (int x = 2; x + 2 < width; x++) {
-      const float* z = &planar[row + std::size_t(x)];
-      if (std::any_of(z - 2, z + 3, [](float v) { return std::isinf(v); })) continue;
-      const double before = z[-1], here = z[0], after = z[1];
-      if (!close(z[-2], before) || !close(after, z[2]) || std::abs(after - before) < kStep * std::min(before, after))
-        continue;
-      const double place = (here - before) / (after - before);
-      if (place > kBetween && place < 1 - kBetween) blended++;
-      // An edge without a pixel in between is seen from both of its sides, and is counted once.
-      else if (place <= kBetween)
-        sharp++;
-    }
-  return sharp + blended < kLeastEdges ? 0 : double(blended) / (sharp + blended);
-}
-
-// The order of settling.
-
-namespace {
-
-/// Gives one sentence for each finding: anti-aliased depth, shortened normals, channels that a lossy codec has damaged,
-/// other parts that are cut short or have other windows, overscan and crops. The frame's meaning is settled; of large
-/// frames a part of the pixels is looked at.
-Notes findings(FrameSource& source, const RawPart& raw) {
-  Notes found;
-  for (Notes some : {averaged_depth(source, raw), averaged_normals(source, raw), letterbox(source, raw), damage(source),
-                     windows(source)})
-    std::ranges::move(some, std::back_inserter(found));
-  return found;
-}
 
 /// Refuses depth that was saved as a grey picture: it has no more than 256 distances.
 void refuse_8_bits(const FrameSource& source, std::span<const float> depth) {
@@ -278,22 +55,6 @@ void measure_grain(FrameSource& source, const Grain& grain, std::span<const floa
         grain.is_half ? kHalfPrecision : 0.5 * std::exp2(std::ceil(std::log2(grain.step / grain.median)));
 }
 
-/// Notes values that are coarser than floats: half floats step by a 1024th of the power of two below the value.
-void note_grain(FrameSource& source, const Grain& grain) {
-  if (!has_coarse_depth(source.reading) || grain.median == 0) return;
-  const bool has_half_type = source.reading.depth_is_half;
-  const double step = grain.is_coarse ? grain.step : std::exp2(std::floor(std::log2(grain.median)) - 10);
-  source.suspicious.push_back(
-      {NoteCode::half_depth,
-       fmt::format("{} {}: at its median {:.4g} it changes in steps of {:.2g}, which AO shows as bands; {}",
-                   source.channels[RawPlane::depth][0].channel,
-                   has_half_type   ? "is stored as half float"
-                   : grain.is_half ? "holds the values of half floats"
-                                   : "was rounded",
-                   grain.median, step,
-                   has_half_type ? "write it as float" : "write it as float, without rounding it before")});
-}
-
 /// Notes half floats whose sky may be surfaces: those beyond the largest number became infinite.
 void note_overflow(FrameSource& source, std::span<const float> depth) {
   constexpr float kNear = 0.9f * float(kLargestHalf);
@@ -314,17 +75,47 @@ void note_overflow(FrameSource& source, std::span<const float> depth) {
            100 * double(beyond) / double(depth.size()), source.channels[RawPlane::depth][0].channel)});
 }
 
-/// Notes depth that was sampled at random places within the pixels, or averaged over few of them.
-void note_jitter(FrameSource& source, const RawPart& raw, const Grain& grain) {
-  const View view = view_of(source.reading, raw.window);
-  const auto jitter = jitter_of(raw.depth, depth_map_of(source.reading), view, grain);
-  if (!jitter) return;
-  source.suspicious.push_back(
-      {NoteCode::jittered_depth,
-       fmt::format("flat surfaces are not flat: their depth is off by {:.2f} of its step from pixel to pixel, as if it "
-                   "was sampled at random places within the pixels; AO takes that for relief; render depth at the "
-                   "pixels' centres, without a filter",
-                   *jitter)});
+/// The number that depth must be added to be in proportion to distances, by the options.
+double said_offset(const Reading& reading) {
+  const DepthRange& range = reading.depth_range;
+  if (reading.depth_kind != DepthKind::normalized || !range.near || !range.far || *range.far == *range.near) return 0;
+  return (range.reversed ? -*range.far : *range.near) / (*range.far - *range.near);
+}
+
+/// What the walk over the frame's pixels shows. The depth is settled; `has_read_normals` says that the normals are.
+Findings findings_of(const FrameSource& source, const RawPart& raw, const Evidence& seen, bool has_read_normals) {
+  const Reading reading = over(source.reading, raw.window);
+  const ChannelRef& channel = source.channels[RawPlane::depth][0];
+  Findings found{.depth_channel = channel.channel,
+                 .depth_kind = reading.depth_kind,
+                 .has_half_type = reading.depth_is_half,
+                 .other_depths = other_depths(source),
+                 .grain = seen.grain,
+                 .curve = seen.curve,
+                 .said_offset = said_offset(reading)};
+  found.jitter = jitter_of(raw.depth, depth_map_of(reading), view_of(reading, raw.window), seen.grain);
+  if (raw.window == source.reading.data && source.channels[RawPlane::depth].size() == 1)
+    found.borders = borders_of(raw.depth, raw.window, depth_map_of(reading));
+  walk({reading, raw.depth, raw.normal, has_read_normals}, found);
+  return found;
+}
+
+/// Adds what the detectors say of a settled frame.
+void note_findings(FrameSource& source, const RawPart& raw, const Evidence& seen) {
+  for (Note& note : detected(findings_of(source, raw, seen, true))) {
+    if (note.code == NoteCode::displaced_normals) note.file = source.normal_file();
+    source.suspicious.push_back(std::move(note));
+  }
+}
+
+/// The faults of a frame that cannot be settled, which may be the reason: "; ..." for each.
+std::string reasons_of(const FrameSource& source, const RawPart& raw, const Evidence& seen) {
+  std::string text;
+  try {
+    for (const Note& note : detected(findings_of(source, raw, seen, false))) text += "; " + note.text;
+  } catch (const Error&) {  // the depth has no meaning yet
+  }
+  return text;
 }
 
 /// Settles depth and normals by the camera as it is.
@@ -358,18 +149,20 @@ void settle(FrameSource& source, const InputSettings& settings, const RawPart& r
   const std::string refutation = settle_camera(source, settings);
   try {
     settle_meaning(source, settings, raw, seen);
+  } catch (const NoWorldToCamera&) {
+    throw;
   } catch (const Error& error) {
-    // By a wrong lens anything may look wrong.
-    if (refutation.empty()) throw;
-    fail(error.kind(), "{}; {}", error.what(), refutation);
+    // By a wrong lens, and from pixels that are no depth's, anything may look wrong.
+    const std::string why = (refutation.empty() ? "" : "; " + refutation) + reasons_of(source, raw, seen);
+    if (why.empty()) throw;
+    fail(error.kind(), "{}{}", error.what(), why);
   }
-  note_grain(source, grain);
   note_overflow(source, raw.depth);
-  note_jitter(source, raw, grain);
+  note_findings(source, raw, seen);
   Reading& reading = source.reading;
   if (is_between_planes(reading.depth_kind)) reading.depth_step = std::max(reading.depth_step, step_of(raw.depth));
   seen.median_depth = median_depth(over(reading, raw.window), raw.depth);
-  std::ranges::move(findings(source, raw), std::back_inserter(source.suspicious));
+  std::ranges::move(faults_of(source, raw), std::back_inserter(source.suspicious));
 }
 
 void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw) {

@@ -41,59 +41,8 @@ void settle_by_rows(FrameSource& source, const InputSettings& settings,
 /// settled by itself.
 bool settle_like(FrameSource& source, const FrameSource& settled);
 
-/// Whether the normals are vectors in x, y and z, so that they have lengths.
-bool has_lengths(const FrameSource& source);
-
 /// The word of --normal-encoding for normals of a frame that is settled.
 const char* encoding_name(NormalEncoding encoding, bool unorm);
-
-/// Gives the share of the rows' steps from one surface to another that take a pixel in between: near 0 for point
-/// samples, near 1 for averaged pixels, and 0 if there are too few steps to tell. `planar` is infinite on sky.
-double blended_edges(std::span<const float> planar, int width);
-
-// Shared by the steps that settle a frame.
-
-/// The usual reading stays where its score is at least this part of the best one.
-inline constexpr double kAsGood = 0.8;
-/// Another reading is taken only where it is this many times as good as the second best.
-inline constexpr double kClear = 2;
-/// The least share of the normals that must agree with depth. Some reading reaches half by chance: rooms have three
-/// directions.
-inline constexpr double kLeastAgreement = 0.6;
-/// If a smaller share of the normals agrees with depth, they are not of this depth or not of this camera. Chance gives
-/// some 5 %. Measured: 12 frames of rendered scenes and games that were read rightly gave 87 % and more; 30 wrongly
-/// turned cameras gave 37 % at most, and 25 % but for one.
-inline constexpr double kRefuted = 0.1;
-
-/// A frame that is being settled, by planes of depth and normals as they were read.
-class Settlement {
- public:
-  /// Messages name the file of the plane `about`.
-  Settlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen,
-             RawPlane about = RawPlane::depth);
-
- protected:
-  const std::string& depth_path() const { return source_.depth_path(); }
-  const std::string& normal_path() const { return source_.path_of(RawPlane::normal); }
-
-  /// Takes down a choice, and notes an unusual one: with a warning unless the pixels prove it.
-  void take_down(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
-                 bool unusual, bool proven);
-  /// Does the same for a guess. Fails with ErrorKind::input under --strict.
-  void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
-             bool unusual, bool proven = false);
-  void note(NoteCode code, std::string text);
-
-  FrameSource& source_;
-  Reading& reading_;
-  const InputSettings& settings_;
-  const RawPart& raw_;
-  Evidence& seen_;
-  View view_;
-
- private:
-  const RawPlane about_;
-};
 
 /// Settles kind and sign of the depth, or the space of positions.
 void settle_depth(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen);

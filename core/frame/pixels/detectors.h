@@ -1,0 +1,33 @@
+// The faults that a frame's pixels may show: a table of detectors, each a function of the walk's findings.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/base/note.h"
+#include "core/frame/pixels/findings.h"
+
+namespace alcove {
+
+/// A row of the table.
+struct Detector {
+  NoteCode code;
+  const char* looks_at;  // for lists: the pixels that it looks at
+  const char* speaks;    // when it does; both end without a full stop
+  const char* mend;      // what mends it
+  // The sentence of its note, where it speaks.
+  std::optional<std::string> (*sentence)(const Findings&);
+};
+
+/// The table. A code may have several rows.
+std::span<const Detector> detectors();
+
+/// What they say of a frame.
+Notes detected(const Findings& findings);
+
+/// The table as docs/troubleshooting.md shows it.
+std::string detector_table_markdown();
+
+}  // namespace alcove

@@ -1,0 +1,97 @@
+// Tries other components on the normals.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/settle/other_components.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/samples.h"
+#include "core/frame/settle/settlement.h"
+
+namespace alcove {
+namespace {
+
+using Places = std::vector<std::size_t>;
+
+std::vector<float> chosen(std::span<const float> normal, std::size_t pixels, const Places& channels) {
+  std::vector<float> planes;
+  planes.reserve(channels.size() * pixels);
+  for (const std::size_t channel : channels) {
+    const auto plane = normal.subspan(channel * pixels, pixels);
+    planes.insert(planes.end(), plane.begin(), plane.end());
+  }
+  return planes;
+}
+
+/// The sharpest reading of these components that is one of the frame's depth.
+std::optional<OtherComponents> tried(NormalPlanes planes, const Places& channels, NormalEncoding encoding, bool unorm) {
+  const std::vector<float> normal = chosen(planes.normal, planes.normal.size() / 3, channels);
+  planes.normal = normal;
+  planes.encoding = encoding;
+  planes.unorm = unorm;
+  std::optional<OtherComponents> best;
+  for (const NormalScore& score : score_normals(planes)) {
+    if (score.agreement < kLeastAgreement || (best && score.close <= best->score.close)) continue;
+    best = OtherComponents{channels, encoding, unorm, score};
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<OtherComponents> best_other_components(const NormalPlanes& planes, const NormalScore& score) {
+  const std::array<Places, 5> orders{{{2, 1, 0}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}}};
+  std::vector<std::optional<OtherComponents>> all;
+  for (const Places& order : orders) all.push_back(tried(planes, order, planes.encoding, planes.unorm));
+  for (const bool unorm : {false, true})
+    for (const auto encoding : {NormalEncoding::octahedral, NormalEncoding::spheremap, NormalEncoding::signed_float})
+      all.push_back(tried(planes, {0, 1}, encoding, unorm));
+  std::optional<OtherComponents> best;
+  for (const auto& other : all)
+    if (other && is_sharper(other->score, score) && (!best || other->score.close > best->score.close)) best = other;
+  return best;
+}
+
+std::optional<ConstantComponent> constant_component(std::span<const float> normal, std::span<const float> depth,
+                                                    const DepthMap& map) {
+  constexpr float kSame = 1e-3f;
+  const std::size_t pixels = normal.size() / 3;
+  std::array<float, 3> least, most;
+  least.fill(INFINITY);
+  most.fill(-INFINITY);
+  for (std::size_t i = 0; i < pixels; i += kSparse) {
+    const Vector3 raw =
+        depth.size() == pixels ? Vector3{depth[i], 0, 0} : Vector3{depth[i], depth[i + pixels], depth[i + 2 * pixels]};
+    if (std::isinf(planar_depth(map, raw, 1))) continue;
+    const std::array n{normal[i], normal[i + pixels], normal[i + 2 * pixels]};
+    if (std::ranges::all_of(n, [](float v) { return v == 0 || !std::isfinite(v); })) continue;
+    for (std::size_t c = 0; c < 3; c++) least[c] = std::min(least[c], n[c]), most[c] = std::max(most[c], n[c]);
+  }
+  const auto is_constant = [&](std::size_t c) { return most[c] - least[c] < kSame; };
+  for (const std::size_t c : {std::size_t(2), std::size_t(0), std::size_t(1)})
+    if (is_constant(c) && !is_constant((c + 1) % 3) && !is_constant((c + 2) % 3)) return ConstantComponent{c, least[c]};
+  return std::nullopt;
+}
+
+bool are_alike(std::span<const float> normal, std::span<const float> depth, const DepthMap& map) {
+  constexpr double kAlike = 0.98;  // length of the mean of the unit vectors
+  const std::size_t pixels = normal.size() / 3;
+  std::array<Vector3, 2> sums{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pixels; i += kSparse) {
+    if (depth.size() == pixels && std::isinf(planar_depth(map, {depth[i], 0, 0}, 1))) continue;
+    std::size_t unorm = 0;
+    for (Vector3& sum : sums) {
+      const Vector3 n = decoded_normal(normal, pixels, i, NormalEncoding::signed_float, unorm++ > 0);
+      const double size = length(n);
+      for (std::size_t c = 0; c < 3 && size > 0; c++) sum[c] += n[c] / size;
+    }
+    count++;
+  }
+  return std::ranges::any_of(sums, [&](const Vector3& sum) { return length(sum) > kAlike * double(count); });
+}
+
+}  // namespace alcove
