@@ -87,6 +87,7 @@ struct InputSettings {
   // automatic: the one whose points lie on the rays of their pixels
   PositionSpace position_space = PositionSpace::automatic;
   bool strict = false;                    // guesses and warnings are errors
+  std::string allow;                      // codes of notes, with commas, that would be errors
   std::string camera;                     // a camera file: JSON, or .chan
   std::string chan_rotation = "zxy";      // of a .chan file: the axes in the order of their turns
   std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive

@@ -242,6 +242,15 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
   using S = InputSettings;
   OptionGroup(rows, "Input", Effect::none, &Settings::input)
       .flag("--strict", &S::strict, "guesses and warnings are errors");
+  OptionGroup(rows, "Input", Effect::none, &Settings::input)
+      .own(
+          {"allow", "CODE,...", "", "", "faults that are no errors: normals-disagree, of normals that mostly disagree"},
+          [](const S& s) { return s.allow; },
+          [](S& s, const std::string& text) {
+            s.allow = text;
+            return std::ranges::all_of(split(text), [](const std::string& code) { return code == "normals-disagree"; });
+          },
+          "is no list of codes; it takes normals-disagree");
   OptionGroup(rows, "Input", Effect::content, &Settings::input)
       .text("--camera", &S::camera, "FILE.json|.chan", "the camera; see docs/inputs.md")
       .is_common = true;

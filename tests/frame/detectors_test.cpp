@@ -20,12 +20,12 @@ Findings sound() {
   f.grain = {.median = 4};
   f.repeats = {Repeats{959, 900, 0, 850}, Repeats{539, 500, 0, 500}};
   f.outlines = {Outlines{400, 340, 300, 30}, Outlines{300, 240, 200, 20}};
-  f.holes = {15000, 90, 20, 50, 5};
+  f.holes = {Holes{15000, 90, 20, 50, 5}, Holes{15000, 90, 20, 50, 5}};
   f.unevenness = {6000, 1e-7, 0.4};
   f.curve = {200, 0.501, 0.002, 4, 0.002, true};
   f.wrapping = {60, 5, 3.1, 5};
   f.borders = Borders{BorderRows{80, 0.1}, BorderRows{0, 1}, BorderRows{0, 0.8}, BorderRows{0, 0.8}};
-  f.plateau = Plateau{9, 0.2, 300, 1};
+  f.plateau = Plateau{9, 0.2, 300, 1, 0.6};
   f.normals = {200, 190, 0};
   return f;
 }
@@ -49,11 +49,11 @@ TEST(Detectors, each_fault_is_told_by_its_numbers_and_by_nothing_else) {
       {"no-surfaces", [](Findings& f) { f.surfaces = 0; }},
       {"holes-in-depth",
        [](Findings& f) {
-         f.holes = {7500, 7000, 0, 50, 48};
+         f.holes[1] = {7500, 7000, 0, 50, 48};
        }},
       {"holes-in-depth",
        [](Findings& f) {
-         f.holes = {15000, 150, 140, 50, 48};
+         f.holes[0] = {15000, 800, 700, 50, 48};
        }},
       {"enlarged-depth",
        [](Findings& f) {
@@ -96,7 +96,7 @@ TEST(Detectors, each_fault_is_told_by_its_numbers_and_by_nothing_else) {
       {"depth-curve", [](Findings& f) { f.curve.slope = 0.3125; }},
       {"clamped-depth",
        [](Findings& f) {
-         f.plateau = Plateau{6, 0.3, 300, 12};
+         f.plateau = Plateau{6, 0.3, 300, 12, 0.2};
        }},
       {"wrapped-depth",
        [](Findings& f) {
@@ -127,7 +127,7 @@ TEST(Detectors, the_better_depth_of_the_same_file_is_named) {
 
 TEST(Detectors, one_field_is_told_as_holes_and_not_as_bars_of_one_row) {
   Findings f = sound();
-  f.holes = {7500, 7000, 0, 50, 48};
+  f.holes[1] = {7500, 7000, 0, 50, 48};
   f.borders = Borders{BorderRows{1, 1}, BorderRows{1, 1}, BorderRows{}, BorderRows{}};
   EXPECT_EQ(spoken(f), Codes{"holes-in-depth"});
 }

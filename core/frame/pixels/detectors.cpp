@@ -29,28 +29,26 @@ std::string hint_at_others(const Findings& f) {
 
 Sentence no_surfaces(const Findings& f) {
   if (f.pixels == 0 || f.surfaces > 0) return std::nullopt;
-  return fmt::format(
-      "no pixel of {} shows a surface, all is sky, so AO is 1 everywhere: the frame may not have been "
-      "rendered, or --depth-kind or --sky is wrong",
-      f.depth_channel);
+  return no_surfaces_text(f.depth_channel);
 }
 
 /// Holes all over the surfaces: gaps between things gather in few places.
-bool has_holes(const Findings& f) {
-  constexpr double kMostGaps = 0.25, kMostWithin = 0.005;  // of the surfaces
-  const auto surfaces = double(f.holes.surfaces + f.holes.between);
-  const bool are_many =
-      double(f.holes.between) > kMostGaps * surfaces || double(f.holes.within_planes) > kMostWithin * surfaces;
-  return are_many && 2 * f.holes.pierced > f.holes.cells;
+bool are_pierced(const Holes& h) {
+  constexpr double kMostGaps = 0.25, kMostWithin = 0.03;  // of the surfaces
+  const auto surfaces = double(h.surfaces + h.between);
+  const bool are_many = double(h.between) > kMostGaps * surfaces || double(h.within_planes) > kMostWithin * surfaces;
+  return are_many && 2 * h.pierced > h.cells;
 }
+bool has_holes(const Findings& f) { return std::ranges::any_of(f.holes, are_pierced); }
 
 Sentence holes_in_depth(const Findings& f) {
   if (!has_holes(f)) return std::nullopt;
+  const Holes& h = are_pierced(f.holes[0]) ? f.holes[0] : f.holes[1];
   return fmt::format(
-      "{:.0f} % of the pixels are holes without a surface, scattered over surfaces of one depth: "
-      "checkerboard rendering, one field of an interlaced picture, or missing values of a sensor; they "
-      "count as sky, so that AO is too light: fill them first",
-      percent(double(f.holes.between), double(f.holes.surfaces + f.holes.between)));
+      "{:.0f} % of the pixels along {} are holes without a surface, scattered over surfaces of one depth: checkerboard "
+      "rendering, one field of an interlaced picture, or missing values of a sensor; they count as sky, so that AO is "
+      "too light: fill them first",
+      percent(double(h.between), double(h.surfaces + h.between)), &h == &f.holes[0] ? "rows" : "columns");
 }
 
 /// How many times a picture was enlarged along an axis by repeating pixels; 1: it was not.
@@ -258,10 +256,11 @@ Sentence depth_curve(const Findings& f) {
 
 Sentence clamped_depth(const Findings& f) {
   constexpr std::size_t kLeastPlaces = 50;
-  constexpr double kLeastTilt = 4;  // degrees; bumps of a wall have a mean of 0
+  constexpr double kLeastTilt = 4;        // degrees; bumps of a wall have a mean of 0
+  constexpr double kLeastFrontal = 0.05;  // of its normals, even of one with bumps
   if (!f.plateau || f.plateau->places < kLeastPlaces || !is_in_proportion(f)) return std::nullopt;
   const Plateau& p = *f.plateau;
-  if (p.tilt < kLeastTilt) return std::nullopt;
+  if (p.tilt < kLeastTilt && p.frontal > kLeastFrontal) return std::nullopt;
   return fmt::format(
       "{:.0f} % of the surfaces have exactly the largest depth {:.6g}, and by their normals they are no "
       "wall: depth was clamped there, which makes a false one; write it without that limit, or give "
@@ -286,8 +285,8 @@ Sentence wrapped_depth(const Findings& f) {
 // Normals.
 
 Sentence displaced_normals(const Findings& f) {
-  constexpr std::size_t kLeast = 40;
-  constexpr double kAligned = 0.5;
+  constexpr std::size_t kLeast = 20;
+  constexpr double kAligned = 0.4;
   if (f.normals.count < kLeast || double(f.normals.aligned) > kAligned * double(f.normals.count)) return std::nullopt;
   if (f.normals.beside == 0) return std::nullopt;
   return fmt::format(
@@ -337,6 +336,27 @@ constexpr std::array kTable{
 };
 
 }  // namespace
+
+std::string no_surfaces_text(const std::string& depth_channel) {
+  return fmt::format(
+      "no pixel of {} shows a surface, all is sky, so AO is 1 everywhere: the frame may not have been "
+      "rendered, or --depth-kind or --sky is wrong",
+      depth_channel);
+}
+
+double said_offset(const Reading& reading) {
+  const DepthRange& range = reading.depth_range;
+  if (reading.depth_kind != DepthKind::normalized || !range.near || !range.far || *range.far == *range.near) return 0;
+  return (range.reversed ? -*range.far : *range.near) / (*range.far - *range.near);
+}
+
+bool speaks_against(const Curve& curve, const Reading& reading) {
+  Findings f;
+  f.depth_kind = reading.depth_kind;
+  f.curve = curve;
+  f.said_offset = said_offset(reading);
+  return depth_offset(f) || depth_curve(f);
+}
 
 std::span<const Detector> detectors() { return kTable; }
 

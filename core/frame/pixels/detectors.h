@@ -8,6 +8,7 @@
 
 #include "core/base/note.h"
 #include "core/frame/pixels/findings.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 
@@ -20,6 +21,14 @@ struct Detector {
   // The sentence of its note, where it speaks.
   std::optional<std::string> (*sentence)(const Findings&);
 };
+
+/// The sentence on a frame in which nothing is a surface.
+std::string no_surfaces_text(const std::string& depth_channel);
+
+/// The number that depth must be added to be in proportion to distances, as it is read.
+double said_offset(const Reading& reading);
+/// Whether the curve of the values speaks against the kind of depth that is read.
+bool speaks_against(const Curve& curve, const Reading& reading);
 
 /// The table. A code may have several rows.
 std::span<const Detector> detectors();

@@ -81,6 +81,7 @@ struct Plateau {
   double share = 0;        // of all surfaces
   std::size_t places = 0;  // within it, with normals
   double tilt = 0;         // degrees, of their mean normal from that of a wall from the front
+  double frontal = 0;      // the share of normals within 4 degrees of it
 };
 
 /// Everything that detectors look at. What was not looked at is empty.
@@ -97,7 +98,7 @@ struct Findings {
   std::size_t pixels = 0, surfaces = 0;  // that were looked at
   std::array<Repeats, 2> repeats{};      // of columns, of rows
   std::array<Outlines, 2> outlines{};    // along rows, along columns
-  Holes holes{};
+  std::array<Holes, 2> holes{};          // in rows, in columns
   Unevenness unevenness{};
   Wrapping wrapping{};
   std::optional<double> jitter{};

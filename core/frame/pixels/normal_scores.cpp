@@ -71,7 +71,7 @@ template <class Visit>
 std::size_t for_each_normal(const NormalPlanes& planes, const Visit& visit) {
   const View& view = planes.view;
   const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
-  const int stride = sparseness(view);
+  const int stride = sparseness(view) * planes.sparse;
   std::size_t count = 0;
   for (int y = 1; y + 1 < view.size.y; y += stride)
     for (int x = 1; x + 1 < view.size.x; x += stride) {
@@ -167,6 +167,19 @@ std::vector<NormalScore> score_normals(const NormalPlanes& planes) {
   if (!score(scores, planes)) return {};
   std::ranges::stable_sort(scores, std::greater(), &NormalScore::agreement);
   return scores;
+}
+
+bool is_sharper(const NormalScore& other, const NormalScore& score) {
+  constexpr double kLeastClose = 0.3, kSharper = 1.2, kLeastSharper = 0.1;
+  return other.close >= kLeastClose && other.close > kSharper * score.close &&
+         other.close > score.close + kLeastSharper;
+}
+
+const NormalScore* sharpest_of(const std::vector<NormalScore>& scores) {
+  const NormalScore* sharpest = nullptr;
+  for (const auto& score : scores)
+    if (score.explained() >= kLeastAgreement && (!sharpest || score.close > sharpest->close)) sharpest = &score;
+  return sharpest;
 }
 
 const NormalScore* score_of(const std::vector<NormalScore>& scores, NormalSpace space, const NormalFlips& flips) {

@@ -40,6 +40,10 @@ struct NormalScore {
   double explained() const { return agreement + opposite; }
   double turn_degrees() const;
 };
+/// Whether one camera, or one way to take the components, fits so much better than another that it is no chance: so many
+/// times as many normals are close to those of depth, so large a share more, and a least share. Of the right cameras of
+/// 13 frames the least is 38 %.
+bool is_sharper(const NormalScore& other, const NormalScore& score);
 /// Normals as they stand in a file, the depth that they are held against, and how both are read.
 struct NormalPlanes {
   NormalPlanes(const Reading& reading, std::span<const float> normal, std::span<const float> raw);
@@ -50,10 +54,13 @@ struct NormalPlanes {
   DepthMap map;
   Camera camera;
   View view;
+  int sparse = 1;  // of so many places across and down one is looked at
 };
 /// Scores world space, where the camera knows it, and view space, each with all flips, the best agreement first. Gives
 /// nothing where too little of the frame is smooth.
 std::vector<NormalScore> score_normals(const NormalPlanes& planes);
+/// The one by which most normals are close, of those that agree with depth; null where none does.
+const NormalScore* sharpest_of(const std::vector<NormalScore>& scores);
 /// The score of one of them; null where there is none.
 const NormalScore* score_of(const std::vector<NormalScore>& scores, NormalSpace space, const NormalFlips& flips);
 /// Agreement of a frame with normals that lost their components below 0. Depth tells, in the normals' own space.

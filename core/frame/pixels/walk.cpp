@@ -156,17 +156,17 @@ LineCounts counts_of(const LineSource& source, bool is_column) {
   return std::move(parts[0]);
 }
 
-void count_cells(const LineCounts& rows, Holes& holes) {
+void count_cells(LineCounts& lines) {
   constexpr double kPierced = 0.005;  // of the surfaces
   std::size_t most = 0;
-  for (const auto& row : rows.cells)
+  for (const auto& row : lines.cells)
     for (std::size_t x = 0; x < 8; x++) most = std::max(most, row.surfaces[x] + row.holes[x]);
-  for (const auto& row : rows.cells)
+  for (const auto& row : lines.cells)
     for (std::size_t x = 0; x < 8; x++) {
       const std::size_t all = row.surfaces[x] + row.holes[x];
       if (2 * all < most) continue;
-      holes.cells++;
-      holes.pierced += double(row.holes[x]) > kPierced * double(all);
+      lines.holes.cells++;
+      lines.holes.pierced += double(row.holes[x]) > kPierced * double(all);
     }
 }
 
@@ -196,7 +196,9 @@ std::optional<Plateau> plateau_of(const WalkedPlanes& planes, const LineSource& 
   if (plateau.share < kLeast) return std::nullopt;
   if (planes.normal.empty() || !planes.has_read_normals) return plateau;
   const Reading& reading = planes.reading;
+  const double kFrontal = std::cos(4 * std::numbers::pi / 180);
   Vector3 sum{};
+  std::size_t frontal = 0;
   const Matrix3 turn = view_from_normal(reading.camera, reading.normal_space, reading.flip_normal);
   for (int i = 1; i + 1 < source.count(false); i++) {
     const int y = source.place(false, i);
@@ -213,9 +215,11 @@ std::optional<Plateau> plateau_of(const WalkedPlanes& planes, const LineSource& 
           times(turn, decoded_normal(line.normals, line.size(), x, reading.normal_encoding, reading.normal_unorm));
       if (!(length(n) > 0)) continue;
       plateau.places++;
+      frontal += n[2] > kFrontal * length(n);
       for (std::size_t c = 0; c < 3; c++) sum[c] += n[c] / length(n);
     }
   }
+  plateau.frontal = double(frontal) / double(std::max<std::size_t>(1, plateau.places));
   if (plateau.places) plateau.tilt = std::acos(std::clamp(sum[2] / length(sum), -1.0, 1.0)) * 180 / std::numbers::pi;
   return plateau;
 }
@@ -229,16 +233,9 @@ void walk(const WalkedPlanes& planes, Findings& findings) {
   findings.surfaces = rows.surfaces;
   findings.repeats = {repeats_of(rows.borders, rows.empty.size()), repeats_of(columns.borders, columns.empty.size())};
   findings.outlines = {rows.outlines, columns.outlines};
-  findings.holes = rows.holes;
-  findings.holes.surfaces += columns.holes.surfaces;
-  findings.holes.between += columns.holes.between;
-  findings.holes.within_planes += columns.holes.within_planes;
-  for (std::size_t y = 0; y < 8; y++)
-    for (std::size_t x = 0; x < 8; x++) {
-      rows.cells[y].surfaces[x] += columns.cells[x].surfaces[y];
-      rows.cells[y].holes[x] += columns.cells[x].holes[y];
-    }
-  count_cells(rows, findings.holes);
+  count_cells(rows);
+  count_cells(columns);
+  findings.holes = {rows.holes, columns.holes};
   findings.unevenness = unevenness_of(std::move(rows.bends), std::move(columns.bends));
   rows.drops.most = std::max(rows.drops.most, columns.drops.most);
   append(rows.drops.drops, columns.drops.drops);

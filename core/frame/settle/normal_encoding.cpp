@@ -12,6 +12,7 @@
 #include "core/frame/settle/faults.h"
 #include "core/frame/settle/normal_alterations.h"
 #include "core/frame/settle/normal_settlement.h"
+#include "core/frame/settle/other_components.h"
 #include "core/frame/settle/settle.h"
 
 namespace alcove {
@@ -42,6 +43,7 @@ class EncodingSettlement : private NormalSettlement {
         why = fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share);
       reading_.normal_unorm = is_unorm || said == NormalEncoding::unorm;
     }
+    if (has_lengths(source_)) refuse_missing(n);
     if (has_lengths(source_)) refuse_altered(n);
     const double unit = reading_.normal_unorm ? n.unorm_unit_share : n.unit_share;
     const double otherwise = reading_.normal_unorm ? n.unit_share : n.unorm_unit_share;
@@ -64,6 +66,23 @@ class EncodingSettlement : private NormalSettlement {
     return score_normals(read);
   }
 
+  /// Refuses two components that were saved as three: the third one has one value, and vectors of it have no length of 1.
+  void refuse_missing(const NormalStatistics& n) const {
+    constexpr double kMostBare = 0.02;  // of the surfaces
+    const auto missing = constant_component(raw_.normal, raw_.depth, depth_map_of(reading_));
+    if (!missing) return;
+    if (std::max(n.unit_share, n.unorm_unit_share) > kNotUnit && missing->bare < kMostBare) return;
+    refuse_other_components(*this, {});
+    const auto& all = source_.channels[RawPlane::normal];
+    fail(ErrorKind::input,
+         "{}: {} is {:.3g} everywhere, so that its normals lack a component: name the two channels that are there "
+         "(--normal-channels {},{}), which rebuilds z for those of view space; --normal-encoding octahedral or "
+         "spheremap "
+         "reads those of two channels in any space; {}",
+         normal_path(), all[missing->channel].channel, missing->value, all[missing->channel == 0 ? 1 : 0].channel,
+         all[missing->channel == 2 ? 1 : 2].channel, kWithout);
+  }
+
   /// Refuses vectors whose lengths show that they were treated as colours.
   void refuse_altered(const NormalStatistics& n) const {
     if (std::max(n.unit_share, n.unorm_unit_share) > kUnit || n.usual_share > kUnit) return;
@@ -76,20 +95,23 @@ class EncodingSettlement : private NormalSettlement {
   /// says one, and else noted. Returns whether it was chosen.
   bool compare_encodings(bool in_unit_range, std::string& why) {
     const auto scores = scores_of(reading_.normal_encoding, reading_.normal_unorm);
-    if (scores.empty() || agrees(scores[0])) return false;
-    std::optional<std::pair<NormalEncoding, double>> best;
+    if (scores.empty()) return false;
+    const NormalScore* const own = sharpest_of(scores);
+    const NormalScore& as_is = own ? *own : scores[0];
+    if (agrees(as_is) && as_is.close > kUnit) return false;
+    std::optional<std::pair<NormalEncoding, NormalScore>> best;
     for (const auto encoding : {NormalEncoding::signed_float, NormalEncoding::octahedral, NormalEncoding::spheremap}) {
       const auto others = scores_of(encoding, in_unit_range);
-      if (others.empty() || !agrees(others[0]) || (best && others[0].angle >= best->second)) continue;
-      if (kClear * others[0].angle < scores[0].angle || scores[0].agreement < kAsGood * others[0].agreement)
-        best = {encoding, others[0].angle};
+      const NormalScore* const other = sharpest_of(others);
+      if (!other || !agrees(*other) || (best && other->close <= best->second.close)) continue;
+      if (is_sharper(*other, as_is) || as_is.agreement < kAsGood * other->agreement) best = {encoding, *other};
     }
     if (!best) return false;
     why = fmt::format(
-        "as {} the best quarter of the normals agrees with depth within {:.1f} degrees, as {} within {:.1f}, and "
-        "{:.0f} % agree at all",
-        encoding_name(best->first, in_unit_range), best->second,
-        encoding_name(reading_.normal_encoding, reading_.normal_unorm), scores[0].angle, 100 * scores[0].agreement);
+        "as {} {:.0f} % of the normals agree with depth within 3 degrees, as {} {:.0f} %, and {:.0f} % agree "
+        "at all",
+        encoding_name(best->first, in_unit_range), 100 * best->second.close,
+        encoding_name(reading_.normal_encoding, reading_.normal_unorm), 100 * as_is.close, 100 * as_is.agreement);
     if (!source_.open.normal_encoding) {
       note(NoteCode::said_otherwise, why + ": is --normal-encoding right?");
       return false;

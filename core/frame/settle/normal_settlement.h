@@ -15,9 +15,8 @@ namespace alcove {
 /// If the normals agree with depth less than this part of the best agreement, another reading of them is chosen or
 /// noted.
 inline constexpr double kNoBetter = 0.95;
-/// Another camera is the right one if so many times as many normals are close to those of depth by it, and so large a
-/// share more.
-inline constexpr double kSharper = 1.2, kLeastSharper = 0.1;
+/// Another reading of the camera is taken for the right one if so many times as many normals are close by it.
+inline constexpr double kSharper = 1.2;
 /// If this part of the normals has unit length, and less than the other part by another encoding, they are vectors.
 inline constexpr double kUnit = 0.9, kNotUnit = 0.5;
 /// A reading explains the normals as well as the best one if, with those of the other side turned round, it explains
@@ -68,6 +67,10 @@ void settle_normal_space(const Settlement& settlement, const NormalStatistics& s
 /// Returns whether they are such.
 bool settle_cut_normals(const Settlement& settlement, const std::vector<NormalScore>& scores,
                         const NormalStatistics& statistics);
+
+/// Refuses normals whose components are in another order, or in two of the three channels, unless another camera
+/// explains them. `scores`: of the normals as they stand; none: they have no reading.
+void refuse_other_components(const Settlement& settlement, const std::vector<NormalScore>& scores);
 
 /// Refuses the camera where the normals agree with depth by one that is turned in a usual way, and by the given one do
 /// not. `sharpest` is the share that another reading of the normals brings close.

@@ -143,6 +143,12 @@ std::optional<OtherCamera> best_other_point(const NormalPlanes& planes, const No
   return best_of(hypotheses, as);
 }
 
+std::optional<NormalScore> square_pixels(NormalPlanes planes, const NormalScore& as) {
+  auto& tangent = planes.view.tangent_per_pixel;
+  tangent.y = std::copysign(tangent.x, tangent.y);
+  return score_normals_as(as.space, as.flips, planes);
+}
+
 std::optional<OtherCamera> best_other_width(const NormalPlanes& planes, const NormalScore& as) {
   const Camera& camera = planes.camera;
   if (camera.orthographic) return std::nullopt;

@@ -32,6 +32,9 @@ std::optional<OtherCamera> best_other_rotation(const NormalPlanes& planes, const
 /// both, or in the centre.
 std::optional<OtherCamera> best_other_point(const NormalPlanes& planes, const NormalScore& as);
 
+/// The score with pixels as high as wide.
+std::optional<NormalScore> square_pixels(NormalPlanes planes, const NormalScore& as);
+
 /// Gives the best of a few wider and narrower fields of view; none for an orthographic camera.
 std::optional<OtherCamera> best_other_width(const NormalPlanes& planes, const NormalScore& as);
 

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/samples.h"
-#include "core/frame/settle/settlement.h"
+#include "core/frame/settle/normal_settlement.h"
+#include "core/frame/settle/settle.h"
 
 namespace alcove {
 namespace {
@@ -59,7 +61,8 @@ std::optional<ConstantComponent> constant_component(std::span<const float> norma
                                                     const DepthMap& map) {
   constexpr float kSame = 1e-3f;
   const std::size_t pixels = normal.size() / 3;
-  std::array<float, 3> least, most;
+  std::array<float, 3> least{}, most{};
+  std::size_t surfaces = 0, bare = 0;
   least.fill(INFINITY);
   most.fill(-INFINITY);
   for (std::size_t i = 0; i < pixels; i += kSparse) {
@@ -67,12 +70,15 @@ std::optional<ConstantComponent> constant_component(std::span<const float> norma
         depth.size() == pixels ? Vector3{depth[i], 0, 0} : Vector3{depth[i], depth[i + pixels], depth[i + 2 * pixels]};
     if (std::isinf(planar_depth(map, raw, 1))) continue;
     const std::array n{normal[i], normal[i + pixels], normal[i + 2 * pixels]};
-    if (std::ranges::all_of(n, [](float v) { return v == 0 || !std::isfinite(v); })) continue;
+    surfaces++;
+    bare += std::ranges::all_of(n, [](float v) { return v == 0 || !std::isfinite(v); });
+    if (n == std::array{0.0f, 0.0f, 0.0f}) continue;
     for (std::size_t c = 0; c < 3; c++) least[c] = std::min(least[c], n[c]), most[c] = std::max(most[c], n[c]);
   }
   const auto is_constant = [&](std::size_t c) { return most[c] - least[c] < kSame; };
   for (const std::size_t c : {std::size_t(2), std::size_t(0), std::size_t(1)})
-    if (is_constant(c) && !is_constant((c + 1) % 3) && !is_constant((c + 2) % 3)) return ConstantComponent{c, least[c]};
+    if (is_constant(c) && !is_constant((c + 1) % 3) && !is_constant((c + 2) % 3))
+      return ConstantComponent{c, least[c], double(bare) / double(surfaces)};
   return std::nullopt;
 }
 
@@ -92,6 +98,49 @@ bool are_alike(std::span<const float> normal, std::span<const float> depth, cons
     count++;
   }
   return std::ranges::any_of(sums, [&](const Vector3& sum) { return length(sum) > kAlike * double(count); });
+}
+
+namespace {
+
+class OtherChannels : private NormalSettlement {
+ public:
+  using NormalSettlement::NormalSettlement;
+
+  void refuse(const std::vector<NormalScore>& scores) const {
+    constexpr double kGood = 0.8;  // close to depth: no other order has so many more
+    const auto& all = source_.channels[RawPlane::normal];
+    const NormalScore* sharpest = sharpest_of(scores);
+    const NormalScore score = sharpest ? *sharpest : scores.empty() ? NormalScore{} : scores[0];
+    if (all.size() != 3 || source_.open.camera || has_coarse_depth(reading_) || score.close > kGood) return;
+    NormalPlanes sparse = planes();
+    sparse.sparse = 3;
+    const auto other = best_other_components(sparse, score);
+    if (!other) return;
+    // Another axis up looks like another order.
+    if (const NormalScore* usual = score_of(scores, source_.program.normal_space, settings_.flip_normal))
+      refuse_turned_camera(*this, *usual, kSharper * score.close);
+    fail(ErrorKind::input, "{}: {}; {}", normal_path(), text_of(*other, score), kWithout);
+  }
+
+ private:
+  std::string text_of(const OtherComponents& other, const NormalScore& score) const {
+    const auto& all = source_.channels[RawPlane::normal];
+    std::string names;
+    for (const std::size_t channel : other.channels) names += (names.empty() ? "" : ",") + all[channel].channel;
+    const bool is_encoded = other.encoding == NormalEncoding::octahedral || other.encoding == NormalEncoding::spheremap;
+    return fmt::format(
+        "its normals have {}: as {} {:.0f} % of them agree with depth to 3 degrees, as they stand {:.0f} %: give "
+        "--normal-channels {}{}",
+        other.channels.size() == 2 ? "two components" : "another order of components", names, 100 * other.score.close,
+        100 * score.close, names,
+        is_encoded ? fmt::format(" --normal-encoding {}", encoding_name(other.encoding, other.unorm)) : "");
+  }
+};
+
+}  // namespace
+
+void refuse_other_components(const Settlement& settlement, const std::vector<NormalScore>& scores) {
+  OtherChannels(settlement).refuse(scores);
 }
 
 }  // namespace alcove

@@ -27,6 +27,7 @@ std::optional<OtherComponents> best_other_components(const NormalPlanes& planes,
 struct ConstantComponent {
   std::size_t channel;
   float value;
+  double bare;  // the share of surfaces without a normal
 };
 std::optional<ConstantComponent> constant_component(std::span<const float> normal, std::span<const float> depth,
                                                     const DepthMap& map);

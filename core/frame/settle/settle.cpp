@@ -75,13 +75,6 @@ void note_overflow(FrameSource& source, std::span<const float> depth) {
            100 * double(beyond) / double(depth.size()), source.channels[RawPlane::depth][0].channel)});
 }
 
-/// The number that depth must be added to be in proportion to distances, by the options.
-double said_offset(const Reading& reading) {
-  const DepthRange& range = reading.depth_range;
-  if (reading.depth_kind != DepthKind::normalized || !range.near || !range.far || *range.far == *range.near) return 0;
-  return (range.reversed ? -*range.far : *range.near) / (*range.far - *range.near);
-}
-
 /// What the walk over the frame's pixels shows. The depth is settled; `has_read_normals` says that the normals are.
 Findings findings_of(const FrameSource& source, const RawPart& raw, const Evidence& seen, bool has_read_normals) {
   const Reading reading = over(source.reading, raw.window);

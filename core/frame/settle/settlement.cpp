@@ -3,9 +3,11 @@
 #include "core/frame/settle/settlement.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace alcove {
 
@@ -21,6 +23,11 @@ Settlement::Settlement(FrameSource& source, const InputSettings& settings, const
 
 void Settlement::note(NoteCode code, std::string text) {
   source_.notes.push_back({code, std::move(text), about_ == RawPlane::normal ? source_.normal_file() : ""});
+}
+
+bool Settlement::is_allowed(NoteCode code) const {
+  const auto allowed = split(settings_.allow);
+  return std::ranges::find(allowed, facts_of(code).name) != allowed.end();
 }
 
 void Settlement::take_down(const std::string& what, const std::string& chosen, const std::string& why,

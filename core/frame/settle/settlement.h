@@ -31,6 +31,8 @@ class Settlement {
   void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
              bool unusual, bool proven = false);
   void note(NoteCode code, std::string text);
+  /// Whether --set allow names the code: then it is no error.
+  bool is_allowed(NoteCode code) const;
 
   FrameSource& source_;
   Reading& reading_;
