@@ -100,7 +100,7 @@ TEST(Lines, a_range_that_begins_again_drops_by_itself) {
   DropSample wrapped, edge;
   for (int i = 0; i < 20; i++) {
     sample_drops(line_of([](int k) { return std::fmod(3 + 0.02 * k, 4.096); }), wrapped);
-    sample_drops(line_of([&](int k) { return k < 100 ? 0.2 + 0.01 * i : 4; }), edge);
+    sample_drops(line_of([&](int k) { return k < 100 ? 0.001 * i + 0.0001 * k : 4; }), edge);
   }
   const Wrapping found = wrapping_of(wrapped);
   EXPECT_EQ(found.whole, found.drops);
@@ -110,9 +110,12 @@ TEST(Lines, a_range_that_begins_again_drops_by_itself) {
 
 std::vector<int> shifts(int displaced) {
   Line line = line_of(step);
+  std::vector<float> normals;
   for (const double component : {1.0, 0.0})
-    for (int i = 0; i < 200; i++) line.normals.push_back(float(i < 100 + displaced ? component : 1 - component));
-  line.normals.resize(600);
+    for (int i = 0; i < 200; i++) normals.push_back(float(i < 100 + displaced ? component : 1 - component));
+  normals.resize(600);
+  line.normals = normals;
+  line.pixels = 200;
   std::vector<int> found;
   sample_normal_shifts(line, found);
   return found;

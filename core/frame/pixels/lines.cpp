@@ -196,6 +196,8 @@ void sample_drops(const Line& line, DropSample& sample) {
     if (std::abs(here - next) < 0.5 * most || !are_surfaces(line, i - 1, i + 3)) continue;
     const double before = here - line.raw[i - 1], after = line.raw[i + 2] - next;
     if (std::max(std::abs(before), std::abs(after)) > kSmooth * most) continue;
+    // One surface has about the same slope on both sides; a sky of one value has none.
+    if (!(before * after > 0) || std::max(before / after, after / before) > 2) continue;
     const double slope = 0.5 * (before + after);
     sample.drops.push_back(here > next ? here - next + slope : next - here - slope);
   }
@@ -230,8 +232,9 @@ bool are_plane(const Line& line, std::size_t first, std::size_t end) {
 
 double squared_distance(const Line& line, std::size_t i, std::size_t k) {
   double sum = 0;
-  for (std::size_t plane = 0; plane < line.normals.size(); plane += line.size())
-    sum += std::pow(double(line.normals[plane + i]) - line.normals[plane + k], 2);
+  const std::size_t at = line.first + i * line.stride, other = line.first + k * line.stride;
+  for (std::size_t plane = 0; plane < line.normals.size(); plane += line.pixels)
+    sum += std::pow(double(line.normals[plane + at]) - line.normals[plane + other], 2);
   return sum;
 }
 

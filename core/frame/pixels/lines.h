@@ -14,8 +14,9 @@ namespace alcove {
 struct Line {
   std::vector<float> raw;       // depth as in the file
   std::vector<double> inverse;  // 1/z; 0 where there is no surface
-  // components of the normals one after the other, as in the file; empty: none
-  std::vector<float> normals;
+  // the normals of the picture, as in the file, and the line's pixels among them; empty: there are none
+  std::span<const float> normals;
+  std::size_t pixels = 0, first = 0, stride = 1;
 
   std::size_t size() const { return raw.size(); }
   bool is_surface(std::size_t i) const { return inverse[i] > 0; }

@@ -65,6 +65,13 @@ std::optional<SurfacePlace> surface_at(std::span<const float> raw, const DepthMa
 const double kAgreeing = std::cos(kAgreementDegrees * kRadians);
 const double kClose = std::cos(kCloseDegrees * kRadians);
 
+Vector3 normal_at(const NormalPlanes& planes, std::size_t plane, std::size_t i) {
+  if (planes.components.empty()) return decoded_normal(planes.normal, plane, i, planes.encoding, planes.unorm);
+  std::vector<float> values;
+  for (const std::size_t component : planes.components) values.push_back(planes.normal[component * plane + i]);
+  return decoded_normal(values, 1, 0, planes.encoding, planes.unorm);
+}
+
 /// Calls `visit` with each place of a smooth surface that is looked at and the unit normal of the file there, in its
 /// own space. Gives how many there are.
 template <class Visit>
@@ -77,7 +84,7 @@ std::size_t for_each_normal(const NormalPlanes& planes, const Visit& visit) {
     for (int x = 1; x + 1 < view.size.x; x += stride) {
       auto surface = surface_at(planes.raw, planes.map, view, x, y);
       if (!surface) continue;
-      const Vector3 vector = decoded_normal(planes.normal, plane, index_of(view, x, y), planes.encoding, planes.unorm);
+      const Vector3 vector = normal_at(planes, plane, index_of(view, x, y));
       const double size = length(vector), by_depth = length(surface->normal);
       if (!(size * by_depth > 0) || std::isinf(size * by_depth)) continue;
       count++;

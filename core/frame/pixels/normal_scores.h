@@ -40,9 +40,9 @@ struct NormalScore {
   double explained() const { return agreement + opposite; }
   double turn_degrees() const;
 };
-/// Whether one camera, or one way to take the components, fits so much better than another that it is no chance: so many
-/// times as many normals are close to those of depth, so large a share more, and a least share. Of the right cameras of
-/// 13 frames the least is 38 %.
+/// Whether one camera, or one way to take the components, fits so much better than another that it is no chance: so
+/// many times as many normals are close to those of depth, so large a share more, and a least share. Of the right
+/// cameras of 13 frames the least is 38 %.
 bool is_sharper(const NormalScore& other, const NormalScore& score);
 /// Normals as they stand in a file, the depth that they are held against, and how both are read.
 struct NormalPlanes {
@@ -54,7 +54,8 @@ struct NormalPlanes {
   DepthMap map;
   Camera camera;
   View view;
-  int sparse = 1;  // of so many places across and down one is looked at
+  int sparse = 1;                            // of so many places across and down one is looked at
+  std::vector<std::size_t> components = {};  // of the planes, in the order in which they are read; empty: as they stand
 };
 /// Scores world space, where the camera knows it, and view space, each with all flips, the best agreement first. Gives
 /// nothing where too little of the frame is smooth.

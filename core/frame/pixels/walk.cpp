@@ -19,7 +19,7 @@
 namespace alcove {
 namespace {
 
-constexpr int kLines = 128;          // of each direction: enough for shares to a percent
+constexpr int kLines = 96;           // of each direction: enough for shares to a percent
 constexpr int kMostThreads = 8;      // more take longer to start than they save
 constexpr int kLinesPerThread = 16;  // the same of fewer
 
@@ -43,7 +43,10 @@ class LineSource {
     Line line;
     line.raw.resize(size);
     line.inverse.resize(size);
-    line.normals.resize(planes_.normal.size() / pixels_ * size);
+    line.normals = planes_.normal;
+    line.pixels = pixels_;
+    line.first = is_column ? std::size_t(place) : std::size_t(place) * std::size_t(view_.size.x);
+    line.stride = is_column ? std::size_t(view_.size.x) : 1;
     for (std::size_t i = 0; i < size; i++) take(line, i, is_column ? place : int(i), is_column ? int(i) : place);
     return line;
   }
@@ -55,8 +58,6 @@ class LineSource {
     const double z = planar_depth(map_, value, map_.along_ray ? ray_length(view_, x, y) : 1);
     line.raw[i] = map_.form == kDepthPosition ? float(z) : planes_.depth[at];
     line.inverse[i] = std::isinf(z) ? 0 : 1 / z;
-    for (std::size_t c = 0; c * pixels_ < planes_.normal.size(); c++)
-      line.normals[c * line.size() + i] = planes_.normal[c * pixels_ + at];
   }
 
   const WalkedPlanes& planes_;
@@ -211,8 +212,8 @@ std::optional<Plateau> plateau_of(const WalkedPlanes& planes, const LineSource& 
     };
     for (std::size_t x = 1; x + 1 < line.size(); x++) {
       if (!is_within(x)) continue;
-      const Vector3 n =
-          times(turn, decoded_normal(line.normals, line.size(), x, reading.normal_encoding, reading.normal_unorm));
+      const Vector3 n = times(turn, decoded_normal(planes.normal, line.pixels, line.first + x, reading.normal_encoding,
+                                                   reading.normal_unorm));
       if (!(length(n) > 0)) continue;
       plateau.places++;
       frontal += n[2] > kFrontal * length(n);

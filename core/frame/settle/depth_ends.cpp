@@ -128,7 +128,7 @@ class DepthEnds : private DepthSettlement {
   };
 
   Farthest farthest() const {
-    constexpr std::size_t kSampled = 1 << 16;
+    constexpr std::size_t kSampled = 1 << 15;
     constexpr double kFar = 2;  // times as far as all others
     const double limit = depth_map_of(reading_).sky_depth / reading_.depth_scale;
     const std::size_t step = raw_.depth.size() / kSampled + 1;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMostShortened = 0.02;         // of the normals
 constexpr double kMostOfOtherLength = 0.1;      // of normals that were all scaled alike; edges are shorter
-constexpr std::size_t kNormalPixels = 1 << 16;  // enough for shares to a percent
+constexpr std::size_t kNormalPixels = 1 << 14;  // enough for shares to a percent
 
 bool is_lossy(const FrameSource& source, const ChannelRef& ref) {
   return source.part_of(ref).dwa && is_lossy_in_dwa(ref.channel);

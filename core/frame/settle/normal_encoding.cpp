@@ -43,12 +43,12 @@ class EncodingSettlement : private NormalSettlement {
         why = fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share);
       reading_.normal_unorm = is_unorm || said == NormalEncoding::unorm;
     }
-    if (has_lengths(source_)) refuse_missing(n);
     if (has_lengths(source_)) refuse_altered(n);
     const double unit = reading_.normal_unorm ? n.unorm_unit_share : n.unit_share;
     const double otherwise = reading_.normal_unorm ? n.unit_share : n.unorm_unit_share;
     const bool tells = has_lengths(source_) && std::max(unit, otherwise) > kUnit;
     const bool differs = !tells && compare_encodings(in_unit_range, why);
+    if (has_lengths(source_)) refuse_missing(n);
     if (!is_open) return n;
     const std::string name = encoding_name(reading_.normal_encoding, reading_.normal_unorm);
     if (tells && unit > kUnit && otherwise < kNotUnit)
@@ -66,13 +66,15 @@ class EncodingSettlement : private NormalSettlement {
     return score_normals(read);
   }
 
-  /// Refuses two components that were saved as three: the third one has one value, and vectors of it have no length of 1.
+  /// Refuses two components that were saved as three: the third one has one value, and lengths are not 1.
   void refuse_missing(const NormalStatistics& n) const {
     constexpr double kMostBare = 0.02;  // of the surfaces
+    constexpr double kUnitAxes = 0.97;  // from there on only normals along the third axis can be missing, and are 0
     const auto missing = constant_component(raw_.normal, raw_.depth, depth_map_of(reading_));
     if (!missing) return;
-    if (std::max(n.unit_share, n.unorm_unit_share) > kNotUnit && missing->bare < kMostBare) return;
-    refuse_other_components(*this, {});
+    const double unit = std::max(n.unit_share, n.unorm_unit_share);
+    if (unit > kUnitAxes || (unit > kNotUnit && missing->bare < kMostBare)) return;
+    refuse_other_components(*this, {}, {});
     const auto& all = source_.channels[RawPlane::normal];
     fail(ErrorKind::input,
          "{}: {} is {:.3g} everywhere, so that its normals lack a component: name the two channels that are there "

@@ -70,7 +70,8 @@ bool settle_cut_normals(const Settlement& settlement, const std::vector<NormalSc
 
 /// Refuses normals whose components are in another order, or in two of the three channels, unless another camera
 /// explains them. `scores`: of the normals as they stand; none: they have no reading.
-void refuse_other_components(const Settlement& settlement, const std::vector<NormalScore>& scores);
+void refuse_other_components(const Settlement& settlement, const std::vector<NormalScore>& scores,
+                             const NormalStatistics& statistics);
 
 /// Refuses the camera where the normals agree with depth by one that is turned in a usual way, and by the given one do
 /// not. `sharpest` is the share that another reading of the normals brings close.

@@ -30,7 +30,7 @@ class SpaceSettlement : private NormalSettlement {
     }
     const auto all_scores = score_normals(planes());
     if (settle_cut_normals(*this, all_scores, statistics)) return;
-    if (!all_scores.empty()) refuse_other_components(*this, all_scores);
+    if (!all_scores.empty()) refuse_other_components(*this, all_scores, statistics);
     if (!source_.open.normal_space) return doubt_normals(*this, all_scores);
     const std::string given = to_string(settings_.flip_normal);
     auto scores = all_scores;

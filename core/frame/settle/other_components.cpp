@@ -18,20 +18,9 @@ namespace {
 
 using Places = std::vector<std::size_t>;
 
-std::vector<float> chosen(std::span<const float> normal, std::size_t pixels, const Places& channels) {
-  std::vector<float> planes;
-  planes.reserve(channels.size() * pixels);
-  for (const std::size_t channel : channels) {
-    const auto plane = normal.subspan(channel * pixels, pixels);
-    planes.insert(planes.end(), plane.begin(), plane.end());
-  }
-  return planes;
-}
-
 /// The sharpest reading of these components that is one of the frame's depth.
 std::optional<OtherComponents> tried(NormalPlanes planes, const Places& channels, NormalEncoding encoding, bool unorm) {
-  const std::vector<float> normal = chosen(planes.normal, planes.normal.size() / 3, channels);
-  planes.normal = normal;
+  planes.components = channels;
   planes.encoding = encoding;
   planes.unorm = unorm;
   std::optional<OtherComponents> best;
@@ -44,13 +33,16 @@ std::optional<OtherComponents> tried(NormalPlanes planes, const Places& channels
 
 }  // namespace
 
-std::optional<OtherComponents> best_other_components(const NormalPlanes& planes, const NormalScore& score) {
+std::optional<OtherComponents> best_other_components(const NormalPlanes& planes, bool are_vectors,
+                                                     const NormalScore& score) {
   const std::array<Places, 5> orders{{{2, 1, 0}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}}};
   std::vector<std::optional<OtherComponents>> all;
-  for (const Places& order : orders) all.push_back(tried(planes, order, planes.encoding, planes.unorm));
+  if (are_vectors)
+    for (const Places& order : orders) all.push_back(tried(planes, order, planes.encoding, planes.unorm));
   for (const bool unorm : {false, true})
-    for (const auto encoding : {NormalEncoding::octahedral, NormalEncoding::spheremap, NormalEncoding::signed_float})
-      all.push_back(tried(planes, {0, 1}, encoding, unorm));
+    if (!are_vectors)
+      for (const auto encoding : {NormalEncoding::octahedral, NormalEncoding::spheremap, NormalEncoding::signed_float})
+        all.push_back(tried(planes, {0, 1}, encoding, unorm));
   std::optional<OtherComponents> best;
   for (const auto& other : all)
     if (other && is_sharper(other->score, score) && (!best || other->score.close > best->score.close)) best = other;
@@ -106,15 +98,18 @@ class OtherChannels : private NormalSettlement {
  public:
   using NormalSettlement::NormalSettlement;
 
-  void refuse(const std::vector<NormalScore>& scores) const {
-    constexpr double kGood = 0.8;  // close to depth: no other order has so many more
+  void refuse(const std::vector<NormalScore>& scores, const NormalStatistics& n) const {
+    constexpr double kGood = 0.8;     // close to depth: no other order has so many more
+    constexpr double kVectors = 0.5;  // of unit length
     const auto& all = source_.channels[RawPlane::normal];
     const NormalScore* sharpest = sharpest_of(scores);
     const NormalScore score = sharpest ? *sharpest : scores.empty() ? NormalScore{} : scores[0];
     if (all.size() != 3 || source_.open.camera || has_coarse_depth(reading_) || score.close > kGood) return;
+    const bool are_vectors = (reading_.normal_unorm ? n.unorm_unit_share : n.unit_share) > kVectors;
+    if (!are_vectors && !source_.open.normal_encoding) return;  // another one is named elsewhere
     NormalPlanes sparse = planes();
-    sparse.sparse = 3;
-    const auto other = best_other_components(sparse, score);
+    sparse.sparse = 4;
+    const auto other = best_other_components(sparse, are_vectors, score);
     if (!other) return;
     // Another axis up looks like another order.
     if (const NormalScore* usual = score_of(scores, source_.program.normal_space, settings_.flip_normal))
@@ -139,8 +134,9 @@ class OtherChannels : private NormalSettlement {
 
 }  // namespace
 
-void refuse_other_components(const Settlement& settlement, const std::vector<NormalScore>& scores) {
-  OtherChannels(settlement).refuse(scores);
+void refuse_other_components(const Settlement& settlement, const std::vector<NormalScore>& scores,
+                             const NormalStatistics& statistics) {
+  OtherChannels(settlement).refuse(scores, statistics);
 }
 
 }  // namespace alcove

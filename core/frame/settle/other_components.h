@@ -18,10 +18,11 @@ struct OtherComponents {
   NormalScore score;
 };
 
-/// Gives the order of the components, or the encoding of the first two, by which most of the normals agree with depth
-/// within 3 degrees, of those that are clearly better than `score`. Normals of two channels are those of view space,
-/// unless the encoding holds both signs of z. None where none is, or where too little of the frame is smooth.
-std::optional<OtherComponents> best_other_components(const NormalPlanes& planes, const NormalScore& score);
+/// Gives the order of the components of vectors, or else the encoding of the first two channels, by which most of the
+/// normals agree with depth within 3 degrees, of those that are clearly better than `score`. None where none is, or
+/// where too little of the frame is smooth.
+std::optional<OtherComponents> best_other_components(const NormalPlanes& planes, bool are_vectors,
+                                                     const NormalScore& score);
 
 /// The place of a channel that has one value on all surfaces while the two others vary, and that value.
 struct ConstantComponent {
