@@ -15,9 +15,6 @@ namespace {
 /// Degrees. If the best quarter of the normals is farther off than this, normals and depth are of different cameras or
 /// planes.
 constexpr double kLargestAngle = 2;
-/// Degrees. If all normals are turned by more than this against those of depth, they are of another space or another
-/// camera. Bumps do not turn them as a whole; half depth does so by up to a degree.
-constexpr double kLeastTurn = 1, kLeastTurnOfHalf = 3;
 /// The same where nothing but the turn speaks for another space.
 constexpr double kClearTurn = 2;
 

@@ -22,6 +22,9 @@ inline constexpr double kUnit = 0.9, kNotUnit = 0.5;
 /// A reading explains the normals as well as the best one if, with those of the other side turned round, it explains
 /// this part of as many, and this part of those need not be turned.
 inline constexpr double kAsMany = 0.98, kLeastOwn = 0.2;
+/// Degrees. If all normals are turned by more than this against those of depth, they are of another space or another
+/// camera. Bumps do not turn them as a whole; half depth does so by up to a degree.
+inline constexpr double kLeastTurn = 1, kLeastTurnOfHalf = 3;
 
 class NormalSettlement : protected Settlement {
  public:

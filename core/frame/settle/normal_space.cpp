@@ -28,6 +28,7 @@ class SpaceSettlement : private NormalSettlement {
         reading_.normal_space = has_usual ? source_.program.normal_space : NormalSpace::view;
       return;
     }
+    if (!source_.open.normal_space && is_plainly_right()) return;
     const auto all_scores = score_normals(planes());
     if (settle_cut_normals(*this, all_scores, statistics)) return;
     if (!all_scores.empty()) refuse_other_components(*this, all_scores, statistics);
@@ -57,6 +58,14 @@ class SpaceSettlement : private NormalSettlement {
   }
 
  private:
+  /// Whether the reading that is said fits so well that no other one need be tried.
+  bool is_plainly_right() const {
+    constexpr double kAgreement = 0.95, kClose = 0.8;
+    if (source_.open.camera || is_off_centre(reading_.camera) || !reading_.camera.view_from_world) return false;
+    const auto score = score_normals_as(reading_.normal_space, reading_.flip_normal, planes());
+    return score && score->agreement >= kAgreement && score->close >= kClose && score->turn_degrees() < kLeastTurn;
+  }
+
   /// Takes a reading, and says so where it is not the usual one, or where no matrix would turn normals of the world.
   void take(const NormalScore& score, const std::string& why, bool has_world) {
     reading_.normal_space = score.space;
