@@ -34,7 +34,7 @@ Sentence no_surfaces(const Findings& f) {
 
 /// Holes all over the surfaces: gaps between things gather in few places.
 bool are_pierced(const Holes& h) {
-  constexpr double kMostGaps = 0.25, kMostWithin = 0.03;  // of the surfaces
+  constexpr double kMostGaps = 0.25, kMostWithin = 0.02;  // of the surfaces
   const auto surfaces = double(h.surfaces + h.between);
   const bool are_many = double(h.between) > kMostGaps * surfaces || double(h.within_planes) > kMostWithin * surfaces;
   return are_many && 2 * h.pierced > h.cells;

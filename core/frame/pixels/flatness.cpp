@@ -199,8 +199,9 @@ std::optional<CurvePoint> curve_point(const Fit& fit, double mean, double noise)
 
 /// A line through the thirds of the points with the least and the largest values.
 Curve curve_of(std::vector<CurvePoint> points) {
-  constexpr double kLeastRange = 1.15;
-  constexpr double kStraight = 50;  // times the value: the values themselves are affine over planes
+  constexpr double kLeastRange = 1.05;  // from the smaller to the larger values
+  constexpr double kClear = 5;          // times the spread
+  constexpr double kStraight = 50;      // times the value: the values themselves are affine over planes
   constexpr double kMostStraight = 0.2;
   const auto count = points.size();
   std::erase_if(points, [](const CurvePoint& p) { return !(std::abs(p.ratio) < kStraight * p.value); });
@@ -214,14 +215,14 @@ Curve curve_of(std::vector<CurvePoint> points) {
   const std::span all(points), low = all.first(all.size() / 3), high = all.last(all.size() / 3);
   const double least = middle_of(low, &CurvePoint::value), most = middle_of(high, &CurvePoint::value);
   Curve curve{.planes = points.size(), .median = middle_of(all, &CurvePoint::value)};
-  curve.is_wide = most > kLeastRange * least;
-  if (curve.is_wide)
+  if (most > kLeastRange * least)
     curve.slope = (middle_of(high, &CurvePoint::ratio) - middle_of(low, &CurvePoint::ratio)) / (most - least);
   std::vector<double> rests;
   for (const auto& point : points) rests.push_back(point.ratio - curve.slope * point.value);
   curve.offset = median_of(rests);
   for (double& rest : rests) rest = std::abs(rest - curve.offset) / curve.median;
   curve.spread = median_of(std::move(rests));
+  curve.is_wide = most > kLeastRange * least && most - least > kClear * curve.spread * curve.median;
   return curve;
 }
 
