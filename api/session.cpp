@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/frame/settle/radius.h"
+#include "core/frame/pixels/radius.h"
 
 namespace alcove {
 namespace {

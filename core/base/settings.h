@@ -87,6 +87,7 @@ struct InputSettings {
   // automatic: the one whose points lie on the rays of their pixels
   PositionSpace position_space = PositionSpace::automatic;
   bool strict = false;                    // guesses and warnings are errors
+  std::string allow;                      // codes of notes, with commas, that would be errors
   std::string camera;                     // a camera file: JSON, or .chan
   std::string chan_rotation = "zxy";      // of a .chan file: the axes in the order of their turns
   std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive
@@ -99,7 +100,7 @@ struct InputSettings {
 struct EstimatorSettings {
   Estimator estimator = Estimator::gtao;
   std::optional<double> radius;  // scene units, > 0; no default, since no number fits all scenes
-  bool radius_auto = false;      // instead: as core/frame/settle/radius.h proposes
+  bool radius_auto = false;      // instead: as core/frame/pixels/radius.h proposes
   // scene units, > 0: more scales. The AO is the mean of all: that is AO itself, with a falloff that drops by a step at
   // each radius
   std::vector<double> further_radii;

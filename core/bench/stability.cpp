@@ -10,7 +10,7 @@
 
 #include "core/chain/compute.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/frame/settle/radius.h"
+#include "core/frame/pixels/radius.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_scene.h"
 

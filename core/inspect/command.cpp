@@ -7,9 +7,8 @@
 #include "core/base/option_words.h"
 #include "core/base/text.h"
 #include "core/frame/camera/camera.h"
-#include "core/frame/evidence.h"
+#include "core/frame/pixels/radius.h"
 #include "core/frame/raw_plane.h"
-#include "core/frame/settle/radius.h"
 #include "core/frame/settle/settle.h"
 #include "core/inspect/inspect.h"
 

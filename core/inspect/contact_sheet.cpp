@@ -13,7 +13,6 @@
 #include "core/chain/compute.h"
 #include "core/formats/png.h"
 #include "core/formats/sequence.h"
-#include "core/frame/evidence.h"
 #include "core/frame/raw_plane.h"
 
 namespace alcove {

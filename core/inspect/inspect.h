@@ -18,6 +18,8 @@
 #include "core/frame/evidence.h"
 #include "core/frame/find/frame_source.h"
 #include "core/frame/find/matte.h"
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/statistics.h"
 #include "core/run/plan.h"
 
 namespace alcove {

@@ -249,6 +249,15 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
   using S = InputSettings;
   OptionGroup(rows, "Input", Effect::none, &Settings::input)
       .flag("--strict", &S::strict, "guesses and warnings are errors");
+  OptionGroup(rows, "Input", Effect::none, &Settings::input)
+      .own(
+          {"allow", "normals-disagree", "", "", "faults that are no errors: normals that mostly disagree with depth"},
+          [](const S& s) { return s.allow; },
+          [](S& s, const std::string& text) {
+            s.allow = text;
+            return std::ranges::all_of(split(text), [](const std::string& code) { return code == "normals-disagree"; });
+          },
+          "is no list of codes; it takes normals-disagree");
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
       .text("--camera", &S::camera, "FILE.json|.chan", "the camera; see docs/inputs.md")
       .names(FileRole::input)

@@ -10,7 +10,7 @@
 #include "core/base/text.h"
 #include "core/chain/results/outputs.h"
 #include "core/formats/sequence.h"
-#include "core/frame/settle/radius.h"
+#include "core/frame/pixels/radius.h"
 #include "core/frame/settle/settle.h"
 #include "core/options/options.h"
 #include "core/run/frame_files.h"

@@ -14,6 +14,7 @@
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
+#include "core/frame/pixels/detectors.h"
 #include "core/frame/settle/settle.h"
 #include "core/run/memory.h"
 #include "core/run/run_files.h"
@@ -130,6 +131,9 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
   report_.repaired_pixels =
       counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
   report_.notes = notes_on(source, settings.input);
+  if (counts_.sky == source.reading.data.pixels())
+    add_new(report_.notes,
+            {{NoteCode::no_surfaces, no_surfaces_text(source.channels[RawPlane::depth].front().channel)}});
   add_new(report_.notes, behind_.notes(source));
   add_new(report_.notes, deep_notes(source));
   if (has_ao_) {
@@ -268,8 +272,11 @@ class FrameRun {
     const Notes own = std::exchange(source.notes, settled.notes);
     add_new(source.notes, own);
     source.suspicious = settled.suspicious;
-    // A damaged file harms its own frame alone; others that are damaged fail when they are read.
-    std::erase_if(source.suspicious, [](const Note& note) { return note.code == NoteCode::damaged_file; });
+    // A damaged file harms its own frame alone; others that are damaged fail when they are read. An empty frame is
+    // counted by itself.
+    std::erase_if(source.suspicious, [](const Note& note) {
+      return note.code == NoteCode::damaged_file || note.code == NoteCode::no_surfaces;
+    });
   }
 
   /// Ends the frame before it is computed where what is known then counts as an error.

@@ -10,7 +10,7 @@
 #include "core/formats/color.h"
 #include "core/frame/find/behind.h"
 #include "core/frame/find/frame_source.h"
-#include "core/frame/settle/radius.h"
+#include "core/frame/pixels/radius.h"
 #include "core/run/first_look.h"
 #include "core/run/frame_files.h"
 #include "core/run/lanes.h"

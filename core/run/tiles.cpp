@@ -16,7 +16,7 @@
 #include "core/chain/results/confidence.h"
 #include "core/chain/results/outputs.h"
 #include "core/chain/results/reduce.h"
-#include "core/frame/evidence.h"
+#include "core/frame/pixels/statistics.h"
 #include "core/frame/settle/settle.h"
 #include "core/run/frame_files.h"
 #include "kernels/estimate/exact.h"

@@ -199,7 +199,7 @@ TEST_F(Library, takes_or_refuses_every_option_of_the_table) {
   const Options names = typed(
       "accumulate depth normal position beauty material-ao matte occluders ignore objects object-channel "
       "depth-channel normal-channels position-channels beauty-channels ambient material-ao-channel "
-      "albedo-channels matte-channel matte-object layer view supersampling roi source strict camera "
+      "albedo-channels matte-channel matte-object layer view supersampling roi source strict allow camera "
       "chan-rotation behind behind-channel deep deep-opacity other-views around motion motion-channels "
       "motion-kind frames output-offset chunk missing keep-going warnings-as-errors resume overwrite dry-run "
       "output environment ao-name filter filter-width composite fog-density gain tint mix composite-layers "

@@ -16,9 +16,9 @@
 #include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/frame/camera/camera.h"
-#include "core/frame/evidence.h"
 #include "core/frame/find/channels.h"
 #include "core/frame/raw_plane.h"
+#include "core/frame/samples.h"
 
 namespace alcove {
 

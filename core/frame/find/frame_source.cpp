@@ -564,6 +564,24 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   return source;
 }
 
+std::vector<std::string> other_depths(const FrameSource& source) {
+  const ChannelRef& depth = source.channels[RawPlane::depth][0];
+  std::vector<std::string> others;
+  for (const ExrPart& part : source.file_of(depth).parts()) {
+    if (part.deep || part.data != source.reading.data) continue;
+    for (const ExrChannel& channel : part.channels) {
+      const std::string name = lower_case(channel.name), word = name.substr(name.rfind('.') + 1);
+      const bool is_depth = word == "z" || word == "depth" || name.ends_with("depth.v") || name.ends_with("depth.r");
+      const bool is_of_vector = word == "z" && std::ranges::any_of(part.channels, [&](const ExrChannel& other) {
+                                  return lower_case(other.name) == name.substr(0, name.size() - 1) + "y";
+                                });
+      if (is_depth && !is_of_vector && channel.name != depth.channel && !channel.subsampled)
+        others.push_back(channel.name);
+    }
+  }
+  return others;
+}
+
 NoWorldToCamera::NoWorldToCamera(const std::string& file)
     : Error(ErrorKind::input,
             file +

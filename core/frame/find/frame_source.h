@@ -113,6 +113,9 @@ struct FrameSource {
 /// depth; the message lists the channels and names the option that decides. Fails with NoCamera if nothing gives one.
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo = false);
 
+/// Other channels of the depth's file that are depth by their names, over the same pixels. Options name none of them.
+std::vector<std::string> other_depths(const FrameSource& source);
+
 /// ErrorKind::input: the normals of this file are in world space, and the camera has no world_to_camera.
 struct NoWorldToCamera : Error {
   explicit NoWorldToCamera(const std::string& file);

@@ -7,8 +7,8 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/frame/evidence.h"
 #include "core/frame/find/channels.h"
+#include "core/frame/samples.h"
 
 namespace alcove {
 namespace {

@@ -14,7 +14,6 @@
 #include "core/base/error.h"
 #include "core/base/ranks.h"
 #include "core/frame/camera/resection.h"
-#include "core/frame/evidence.h"
 
 namespace alcove {
 namespace {

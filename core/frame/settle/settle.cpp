@@ -1,143 +1,55 @@
-// Settles what is open about a frame, and looks at it for what harms AO.
+// The order of settling.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/settle/settle.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <set>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
-#include "core/frame/evidence.h"
 #include "core/frame/find/behind.h"
 #include "core/frame/find/position_pass.h"
-#include "core/frame/settle/precision.h"
-#include "core/frame/settle/radius.h"
+#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/precision.h"
+#include "core/frame/pixels/radius.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/faults.h"
 
 namespace alcove {
 
-// Faults that harm AO.
-
 namespace {
 
-constexpr double kMostShortened = 0.02;         // of the normals
-constexpr double kMostOfOtherLength = 0.1;      // of normals that were all scaled alike; edges are shorter
-constexpr std::size_t kNormalPixels = 1 << 16;  // enough for shares to a percent
-
-bool is_lossy(const FrameSource& source, const ChannelRef& ref) {
-  return source.part_of(ref).dwa && is_lossy_in_dwa(ref.channel);
+/// What the walk over the frame's pixels shows. The depth is settled; `has_read_normals` says that the normals are.
+Findings findings_of(const FrameSource& source, const RawPart& raw, const Evidence& seen, bool has_read_normals) {
+  Findings found = findings_of(source.reading, raw.window, raw.depth, raw.normal, seen,
+                               source.channels[RawPlane::depth][0].channel, has_read_normals);
+  found.other_depths = other_depths(source);
+  return found;
 }
 
-/// Parts that the frame does not need and whose first or last rows cannot be read: of a file that was cut short behind
-/// the frame's own parts. Those are read anyway.
-Notes cut_parts(ExrFile& file, const std::set<int>& needed) {
-  Notes found;
-  for (std::size_t p = 0; p < file.parts().size(); p++) {
-    const ExrPart& part = file.parts()[p];
-    const auto channel = std::ranges::find(part.channels, false, &ExrChannel::subsampled);
-    if (part.deep || channel == part.channels.end() || needed.contains(int(p))) continue;
-    std::vector<float> row(std::size_t(part.data.width));
-    const ExrRead read{int(p), channel->name, row.data()};
-    try {
-      for (const int y : {0, part.data.height - 1}) file.read({&read, 1}, y, 1);
-    } catch (const Error& error) {
-      found.push_back({NoteCode::damaged_file, error.what()});
-    }
+/// Adds what the detectors say of a settled frame.
+void note_findings(FrameSource& source, const RawPart& raw, const Evidence& seen) {
+  for (Note& note : detected(findings_of(source, raw, seen, true))) {
+    if (note.code == NoteCode::displaced_normals) note.file = source.normal_file();
+    source.suspicious.push_back(std::move(note));
   }
-  return found;
 }
 
-/// Normals that were averaged over the pixels, by some of them. It is no warning where the program does so always, for
-/// nobody can have it do otherwise.
-Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
-  // Normals that lost components are short for that reason.
-  if (!has_lengths(source) || std::ranges::count(source.notes, NoteCode::cut_normals, &Note::code) > 0) return {};
-  std::size_t step = raw.window.pixels() / kNormalPixels + 1;
-  while (std::gcd(step, std::size_t(raw.window.width)) > 1) step++;  // so that no column is favoured
-  const NormalStatistics s = normal_statistics(raw.normal, raw.depth, depth_map_of(source.reading), step);
-  const double unit = source.reading.normal_unorm ? s.unorm_unit_share : s.unit_share;
-  if (!s.count || unit >= 1 - kMostShortened) return {};
-  const bool is_scaled = s.usual_share > 1 - kMostOfOtherLength && std::abs(s.usual_length - 1) > kUnitTolerance;
-  if (!source.reading.normal_unorm && is_scaled)
-    return {
-        {NoteCode::scaled_normals,
-         fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO uses their direction only",
-                     s.usual_length, 100 * s.usual_share),
-         source.normal_file()}};
-  const bool is_usual = source.program.rules->normal_averaged;
-  return {{is_usual ? NoteCode::averaged_normals : NoteCode::shortened_normals,
-           fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over the pixel, at edges "
-                       "over several surfaces{}",
-                       100 * (1 - unit), is_usual ? ", as " + source.program.rules->name + " always does" : ""),
-           source.normal_file()}};
-}
-
-/// Channels that DWA has quantized, and files that end too early.
-Notes damage(FrameSource& source) {
-  Notes found;
-  std::vector<std::set<int>> needed(source.files.size());
-  for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})
-    for (const auto& channel : source.channels[plane]) {
-      needed[channel.file].insert(channel.part);
-      if (is_lossy(source, channel))
-        found.push_back(
-            {NoteCode::lossy_compression,
-             fmt::format("{} is compressed by DWA, which is lossy for a channel of that name; write data with zip",
-                         channel.channel),
-             plane == RawPlane::normal ? source.normal_file() : ""});
-    }
-  for (std::size_t file = 0; file < source.files.size(); file++)
-    std::ranges::move(cut_parts(source.files[file], needed[file]), std::back_inserter(found));
-  return found;
-}
-
-/// Windows that are not those of the depth.
-Notes windows(const FrameSource& source) {
-  Notes found;
-  for (const auto& part : source.file_of(source.channels[RawPlane::depth][0]).parts())
-    if (part.data != source.reading.data) {
-      found.push_back({NoteCode::windows_differ, fmt::format("part {} is {}, and the depth is {}", part.name,
-                                                             to_string(part.data), to_string(source.reading.data))});
-      break;
-    }
-  if (source.reading.data != source.reading.display)
-    found.push_back(
-        {NoteCode::windows_differ,
-         fmt::format("the data window is {} and the display window {}: AO is computed on the data window, and the "
-                     "camera is for the display window",
-                     to_string(source.reading.data), to_string(source.reading.display))});
-  return found;
-}
-
-}  // namespace
-
-bool has_lengths(const FrameSource& source) {
-  return source.channels[RawPlane::normal].size() == 3 &&
-         (source.reading.normal_encoding == NormalEncoding::signed_float ||
-          source.reading.normal_encoding == NormalEncoding::unorm);
-}
-
-// The order of settling.
-
-namespace {
-
-/// Gives one sentence for each finding: shortened normals, channels that a lossy codec has damaged, other parts that
-/// are cut short or have other windows, overscan and crops. The frame's meaning is settled; of large frames a part of
-/// the pixels is looked at.
-Notes findings(FrameSource& source, const RawPart& raw) {
-  Notes found;
-  for (Notes some : {averaged_normals(source, raw), damage(source), windows(source)})
-    std::ranges::move(some, std::back_inserter(found));
-  return found;
+/// The faults of a frame that cannot be settled, which may be the reason: "; ..." for each.
+std::string reasons_of(const FrameSource& source, const RawPart& raw, const Evidence& seen) {
+  std::string text;
+  try {
+    for (const Note& note : detected(findings_of(source, raw, seen, false))) text += "; " + note.text;
+  } catch (const Error&) {  // the depth has no meaning yet
+  }
+  return text;
 }
 
 /// Settles depth and normals by the camera as it is.
 void settle_meaning(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
-  settle_depth({source.reading, source.notes, settings, raw, seen, source.depth_path()},
-               {source.program, source.open.depth_kind, [&] { return kind_by_positions(source, settings, raw); }});
+  settle_depth(source, settings, raw, seen);
   settle_deep(source, raw);
   if (source.channels[RawPlane::normal].empty())
     note_centre(source);
@@ -159,21 +71,25 @@ Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
 }  // namespace
 
 void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
-  const std::string& channel = source.channels[RawPlane::depth][0].channel;
-  seen.grain = measure_rounding(source.reading, raw.window, raw.depth, source.depth_path() + ": " + channel);
+  const std::string& depth_channel = source.channels[RawPlane::depth][0].channel;
+  seen.grain = measure_rounding(source.reading, raw.window, raw.depth,
+                                fmt::format("{}: {}", source.depth_path(), depth_channel));
   const std::string refutation = settle_camera(source, settings);
   try {
     settle_meaning(source, settings, raw, seen);
+  } catch (const NoWorldToCamera&) {
+    throw;
   } catch (const Error& error) {
-    // By a wrong lens anything may look wrong.
-    if (refutation.empty()) throw;
-    fail(error.kind(), "{}; {}", error.what(), refutation);
+    // By a wrong lens, and from pixels that are no depth's, anything may look wrong.
+    const std::string why = (refutation.empty() ? "" : "; " + refutation) + reasons_of(source, raw, seen);
+    if (why.empty()) throw;
+    fail(error.kind(), "{}{}", error.what(), why);
   }
-  const Reading& reading = source.reading;
+  std::ranges::move(overflown_depth(source.reading, raw.depth, depth_channel), std::back_inserter(source.suspicious));
+  note_findings(source, raw, seen);
   measure_levels(source.reading, raw.depth);
-  add_new(source.suspicious, precision_notes(reading, raw.window, raw.depth, seen.grain, channel));
-  seen.median_depth = median_depth(over(reading, raw.window), raw.depth);
-  std::ranges::move(findings(source, raw), std::back_inserter(source.suspicious));
+  seen.median_depth = median_depth(over(source.reading, raw.window), raw.depth);
+  std::ranges::move(faults_of(source, raw), std::back_inserter(source.suspicious));
 }
 
 void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw) {

@@ -13,7 +13,6 @@
 #include "core/base/settings.h"
 #include "core/frame/evidence.h"
 #include "core/frame/find/frame_source.h"
-#include "core/frame/settle/settlement.h"
 
 namespace alcove {
 
@@ -42,11 +41,11 @@ void settle_by_rows(FrameSource& source, const InputSettings& settings,
 /// settled by itself.
 bool settle_like(FrameSource& source, const FrameSource& settled);
 
-/// Whether the normals are vectors in x, y and z, so that they have lengths.
-bool has_lengths(const FrameSource& source);
-
 /// The word of --normal-encoding for normals of a frame that is settled.
 const char* encoding_name(NormalEncoding encoding, bool unorm);
+
+/// Settles kind and sign of the depth, or the space of positions.
+void settle_depth(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen);
 
 /// Settles encoding and space of the normals of a frame whose depth is settled. Refuses
 /// normals that depth and camera refute.

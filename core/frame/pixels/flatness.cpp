@@ -1,6 +1,6 @@
 // Least-squares fits over blocks of pixels, and common divisors of values.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/evidence.h"
+#include "core/frame/pixels/flatness.h"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/ranks.h"
 
 namespace alcove {
 namespace {
@@ -65,6 +66,7 @@ using Samples = std::array<double, kSamples>;
 /// block's edge, and the root mean square of the rest.
 struct Fit {
   double slope = 0, bend = 0, residual = 0;
+  std::array<double, kTerms> terms{};
 };
 // From the root mean squares of x and of x^2 over nine samples from -1 to 1 to their amplitudes.
 constexpr double kLineEdge = 1.549, kSquareEdge = 2.735;
@@ -87,7 +89,7 @@ Fit fit(const Samples& values, const Basis& basis) {
   }
   const double scale = 1 / std::sqrt(double(kSamples));
   return {kLineEdge * std::hypot(c[1], c[2]) * scale, kSquareEdge * std::hypot(c[3], c[4], c[5]) * scale,
-          std::sqrt(std::max(squares, 0.0) / double(kSamples - kTerms))};
+          std::sqrt(std::max(squares, 0.0) / double(kSamples - kTerms)), c};
 }
 
 /// The largest number of which all differences between neighbours are multiples, by Euclid's algorithm within the
@@ -163,11 +165,66 @@ Samples quotients(const Samples& over, const Samples& under) {
   return q;
 }
 
+/// What a block that shows a plane says of the curve of its values.
+struct CurvePoint {
+  double value, ratio;  // v and v'^2 / v''
+};
+
 /// The kinds by which a block is flat, of planar, ray and inverse; whether it is smooth at all.
 struct Flat {
   bool is_smooth = false;
   std::array<bool, 3> by{};
+  std::optional<CurvePoint> curve;
 };
+
+/// Over a plane the second derivatives of any function of 1/z vanish across its gradient. A block that is curved
+/// across it shows no plane, and one that is hardly curved along it says nothing.
+std::optional<CurvePoint> curve_point(const Fit& fit, double mean, double noise) {
+  constexpr double kLeastSlope = 0.02, kMostSlope = 0.15;  // relative change from the block's middle to its edge
+  constexpr double kAcross = 0.03;                         // of the curvature that distances of the same slope have
+  constexpr double kClear = 10;                            // times the noise
+  // The norms of x, x y and x^2 without its mean over the samples.
+  constexpr double kLine = 5.80948, kCross = 3.75, kSquare = 3.29060;
+  const double x = fit.terms[1] / kLine, y = fit.terms[2] / kLine, slope = std::hypot(x, y);
+  if (slope < kLeastSlope || slope > kMostSlope) return std::nullopt;
+  const double xx = 2 * fit.terms[3] / kSquare, xy = fit.terms[4] / kCross, yy = 2 * fit.terms[5] / kSquare;
+  const double nx = x / slope, ny = y / slope, usual = slope * slope;
+  const double along = xx * nx * nx + 2 * xy * nx * ny + yy * ny * ny;
+  const double across = xx * ny * ny - 2 * xy * nx * ny + yy * nx * nx;
+  const double between = (yy - xx) * nx * ny + xy * (nx * nx - ny * ny);
+  if (std::hypot(across, between) > kAcross * usual + noise || usual < kClear * noise) return std::nullopt;
+  if (fit.residual > kAcross * usual + 0.3 * usual * slope) return std::nullopt;
+  return CurvePoint{mean, along == 0 ? kInfinity : mean * usual / along};
+}
+
+/// A line through the thirds of the points with the least and the largest values.
+Curve curve_of(std::vector<CurvePoint> points) {
+  constexpr double kLeastRange = 1.05;  // from the smaller to the larger values
+  constexpr double kClear = 5;          // times the spread
+  constexpr double kStraight = 50;      // times the value: the values themselves are affine over planes
+  constexpr double kMostStraight = 0.2;
+  const auto count = points.size();
+  std::erase_if(points, [](const CurvePoint& p) { return !(std::abs(p.ratio) < kStraight * p.value); });
+  if (points.size() < kLeastBlocks || double(points.size()) < (1 - kMostStraight) * double(count)) return {};
+  std::ranges::sort(points, {}, &CurvePoint::value);
+  const auto middle_of = [](std::span<const CurvePoint> some, double CurvePoint::*member) {
+    std::vector<double> values;
+    for (const auto& point : some) values.push_back(point.*member);
+    return median_of(std::move(values));
+  };
+  const std::span all(points), low = all.first(all.size() / 3), high = all.last(all.size() / 3);
+  const double least = middle_of(low, &CurvePoint::value), most = middle_of(high, &CurvePoint::value);
+  Curve curve{.planes = points.size(), .median = middle_of(all, &CurvePoint::value)};
+  if (most > kLeastRange * least)
+    curve.slope = (middle_of(high, &CurvePoint::ratio) - middle_of(low, &CurvePoint::ratio)) / (most - least);
+  std::vector<double> rests;
+  for (const auto& point : points) rests.push_back(point.ratio - curve.slope * point.value);
+  curve.offset = median_of(rests);
+  for (double& rest : rests) rest = std::abs(rest - curve.offset) / curve.median;
+  curve.spread = median_of(std::move(rests));
+  curve.is_wide = most > kLeastRange * least && most - least > kClear * curve.spread * curve.median;
+  return curve;
+}
 
 Flat flat_by(const Samples& values, const Samples& lengths, bool is_orthographic, const Basis& basis,
              const Grain& grain) {
@@ -179,10 +236,14 @@ Flat flat_by(const Samples& values, const Samples& lengths, bool is_orthographic
   std::array fits{inverse, is_orthographic ? inverse : fit(quotients(lengths, values), basis), value};
   if (is_orthographic) std::swap(fits[0], fits[2]);
   const double residual = std::ranges::min(fits, {}, &Fit::residual).residual;
-  Flat flat{residual < kSmooth, {}};
+  Flat flat;
+  flat.is_smooth = residual < kSmooth;
   if (!flat.is_smooth) return flat;
   const double step = relative_step(grain, values[kSamples / 2]);
   const double noise = kNoise * residual + kStep * step + kFloatRounding;
+  double mean = 0;
+  for (const double v : values) mean += v / double(kSamples);
+  if (!is_orthographic) flat.curve = curve_point(value, mean, kStep * step + kFloatRounding);
   for (std::size_t k = 0; k < 3; k++) {
     if (is_orthographic && k == 1) continue;
     bool is_alone = fits[k].bend < noise;
@@ -193,10 +254,14 @@ Flat flat_by(const Samples& values, const Samples& lengths, bool is_orthographic
   return flat;
 }
 
-/// Scores by blocks of one size; nothing where too few of them are smooth.
-std::vector<DepthScore> scores_by(std::span<const float> raw, const View& view, double sky, int side,
-                                  const Grain& grain) {
+/// The scores by blocks of one size, none where too few of them are smooth; and the curve of the values.
+struct BlockScores {
+  std::vector<DepthScore> scores;
+  std::vector<CurvePoint> curve;
+};
+BlockScores scores_by(std::span<const float> raw, const View& view, double sky, int side, const Grain& grain) {
   std::vector<DepthScore> scores{{DepthKind::planar}, {DepthKind::ray}, {DepthKind::inverse}};
+  std::vector<CurvePoint> curve;
   if (side < kLeastSide) return {};
   const Basis basis(side);
   std::size_t count = 0;
@@ -209,12 +274,13 @@ std::vector<DepthScore> scores_by(std::span<const float> raw, const View& view, 
   for_each_block(view, side, step, basis, value_of, [&](const Samples& values, const Samples& lengths) {
     const Flat flat = flat_by(values, lengths, view.orthographic != 0, basis, grain);
     count += flat.is_smooth;
+    if (flat.curve) curve.push_back(*flat.curve);
     for (std::size_t k = 0; k < 3; k++) scores[k].straight += flat.by[k];
   });
   if (count < kLeastBlocks) return {};
   for (auto& score : scores) score.straight /= double(count);
   std::ranges::stable_sort(scores, std::greater(), &DepthScore::straight);
-  return scores;
+  return {std::move(scores), std::move(curve)};
 }
 
 }  // namespace
@@ -261,14 +327,16 @@ Grain grain_of(std::span<const float> raw, double sky) {
   return grain;
 }
 
-std::vector<DepthScore> score_depth(std::span<const float> raw, const View& view, double sky, const Grain& grain) {
+DepthShape shape_of(std::span<const float> raw, const View& view, double sky, const Grain& grain) {
   std::vector<DepthScore> best;
+  std::vector<CurvePoint> points;
   for (const int per_picture : kSidesPerPicture) {
-    auto scores = scores_by(raw, view, sky, side_of(view, per_picture), grain);
+    auto [scores, curve] = scores_by(raw, view, sky, side_of(view, per_picture), grain);
+    std::ranges::move(curve, std::back_inserter(points));
     if (!scores.empty() && (best.empty() || scores[0].straight > best[0].straight)) best = std::move(scores);
     if (!best.empty() && best[0].straight >= kTells) break;
   }
-  return best;
+  return {std::move(best), curve_of(std::move(points))};
 }
 
 std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map, const View& view, const Grain& grain) {

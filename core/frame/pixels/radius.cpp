@@ -1,6 +1,6 @@
 // A radius from how far away things are and how much of them the picture shows, and the notes on one.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/settle/radius.h"
+#include "core/frame/pixels/radius.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/ranks.h"
 #include "core/base/text.h"
-#include "core/frame/evidence.h"
+#include "core/frame/samples.h"
 
 namespace alcove {
 namespace {

@@ -1,85 +1,30 @@
-// Statistics over pixels, and hypotheses tried on them.
+// Readings of normals, tried on places of smooth surfaces.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/evidence.h"
+#include "core/frame/pixels/normal_scores.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "core/base/ranks.h"
-#include "kernels/geometry/geometry.h"
+#include "core/frame/pixels/places.h"
+#include "core/frame/pixels/statistics.h"
 
 namespace alcove {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;  // of a degree
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAgreementDegrees = 20;    // to the normal that depth gives; depth's own steps turn it by less
 constexpr double kCloseDegrees = 3;         // to it; less than a wrong camera turns most of the normals
 constexpr std::size_t kLeastSamples = 200;  // fewer smooth places tell nothing
-constexpr int kSamplesAcross = 160;         // places that are looked at in x and in y: enough for shares to a percent
-
-int sparseness(const View& view) { return std::max(1, std::max(view.size.x, view.size.y) / kSamplesAcross); }
-std::size_t index_of(const View& view, int x, int y) {
-  return std::size_t(y) * std::size_t(view.size.x) + std::size_t(x);
-}
-
-/// Gives the point where the pixel's ray meets the plane at unit depth; orthographic: the pixel's place in the plane.
-Vector3 tangent_at(const View& view, int x, int y) {
-  return {(x + 0.5 - view.center.x) * view.tangent_per_pixel.x, (y + 0.5 - view.center.y) * view.tangent_per_pixel.y,
-          -1};
-}
 
 Vector3 position_at(const View& view, int x, int y, double z) {
   const Vector3 t = tangent_at(view, x, y);
   return view.orthographic ? Vector3{t[0], t[1], -z} : Vector3{t[0] * z, t[1] * z, -z};
 }
 
-Vector3 value_at(std::span<const float> raw, std::size_t plane, std::size_t i) {
-  return raw.size() == 3 * plane ? Vector3{raw[i], raw[i + plane], raw[i + 2 * plane]} : Vector3{raw[i], 0, 0};
-}
-
 /// Relative second difference of three evenly spaced values.
 double bend(double before, double here, double after) { return std::abs(before + after - 2 * here) / std::abs(here); }
-
-void count_value(ValueStatistics& s, float x) {
-  s.pixels++;
-  if (std::isnan(x)) {
-    s.nan++;
-    return;
-  }
-  if (std::isinf(x)) {
-    s.infinite++;
-    return;
-  }
-  s.negative += x < 0;
-  s.zero += x == 0;
-  s.one += x == 1;
-  s.positive += x > 0;
-  s.least = std::min(s.least, double(x));
-  s.most = std::max(s.most, double(x));
-}
-
-/// Counts a normal as it stands in the file, unless it is zero or not finite. Components beyond `components` are 0.
-void count_normal(NormalStatistics& s, std::vector<double>& lengths, const Vector3& n, std::size_t components) {
-  Vector3 unorm{};
-  for (std::size_t c = 0; c < components; c++) unorm[c] = 2 * n[c] - 1;
-  const double length = std::sqrt(dot(n, n));
-  const double unorm_length = std::sqrt(dot(unorm, unorm));
-  if (!(length > 0) || std::isinf(length)) return;
-  s.count++;
-  lengths.push_back(length);
-  s.mean_length += length;
-  s.unorm_mean_length += unorm_length;
-  s.unit_share += std::abs(length - 1) < kUnitTolerance;
-  s.unorm_unit_share += std::abs(unorm_length - 1) < kUnitTolerance;
-  for (std::size_t c = 0; c < components; c++) {
-    s.least = std::min(s.least, n[c]);
-    s.most = std::max(s.most, n[c]);
-  }
-}
 
 /// World space, where the camera knows it, and view space, with all flips.
 std::vector<NormalScore> readings_of_normals(const Camera& camera) {
@@ -117,16 +62,15 @@ std::optional<SurfacePlace> surface_at(std::span<const float> raw, const DepthMa
                       view.orthographic ? Vector3{0, 0, 1} : Vector3{-p[0], -p[1], -p[2]}};
 }
 
-/// The distance, in pixels, from a pixel to the place where a point of view space is seen; infinite behind the camera.
-double pixels_beside(const View& view, int x, int y, const Vector3& p) {
-  if (!(-p[2] > 0)) return kInfinity;
-  const Vector3 t = tangent_at(view, x, y);
-  const double scale = view.orthographic ? 1 : -p[2];
-  return std::hypot((p[0] / scale - t[0]) / view.tangent_per_pixel.x, (p[1] / scale - t[1]) / view.tangent_per_pixel.y);
-}
-
 const double kAgreeing = std::cos(kAgreementDegrees * kRadians);
 const double kClose = std::cos(kCloseDegrees * kRadians);
+
+Vector3 normal_at(const NormalPlanes& planes, std::size_t plane, std::size_t i) {
+  if (planes.components.empty()) return decoded_normal(planes.normal, plane, i, planes.encoding, planes.unorm);
+  std::vector<float> values;
+  for (const std::size_t component : planes.components) values.push_back(planes.normal[component * plane + i]);
+  return decoded_normal(values, 1, 0, planes.encoding, planes.unorm);
+}
 
 /// Calls `visit` with each place of a smooth surface that is looked at and the unit normal of the file there, in its
 /// own space. Gives how many there are.
@@ -134,13 +78,13 @@ template <class Visit>
 std::size_t for_each_normal(const NormalPlanes& planes, const Visit& visit) {
   const View& view = planes.view;
   const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
-  const int stride = sparseness(view);
+  const int stride = sparseness(view) * planes.sparse;
   std::size_t count = 0;
   for (int y = 1; y + 1 < view.size.y; y += stride)
     for (int x = 1; x + 1 < view.size.x; x += stride) {
       auto surface = surface_at(planes.raw, planes.map, view, x, y);
       if (!surface) continue;
-      const Vector3 vector = decoded_normal(planes.normal, plane, index_of(view, x, y), planes.encoding, planes.unorm);
+      const Vector3 vector = normal_at(planes, plane, index_of(view, x, y));
       const double size = length(vector), by_depth = length(surface->normal);
       if (!(size * by_depth > 0) || std::isinf(size * by_depth)) continue;
       count++;
@@ -216,88 +160,6 @@ bool score(std::vector<NormalScore>& scores, const NormalPlanes& planes) {
 
 }  // namespace
 
-Vector3 decoded_normal(std::span<const float> raw, std::size_t pixels, std::size_t i, NormalEncoding encoding,
-                       bool unorm) {
-  Vector3 n{};
-  for (std::size_t c = 0; c * pixels < raw.size(); c++)
-    n[c] = unorm ? 2 * raw[c * pixels + i] - 1.0 : raw[c * pixels + i];
-  const double squared = n[0] * n[0] + n[1] * n[1];
-  if (encoding == NormalEncoding::octahedral) {
-    n[2] = 1 - std::abs(n[0]) - std::abs(n[1]);
-    if (n[2] < 0) n = {std::copysign(1 - std::abs(n[1]), n[0]), std::copysign(1 - std::abs(n[0]), n[1]), n[2]};
-  } else if (encoding == NormalEncoding::spheremap) {
-    const double across = 2 * std::sqrt(std::max(1 - squared, 0.0));
-    n = squared <= 1 ? Vector3{across * n[0], across * n[1], 2 * squared - 1} : Vector3{};
-  } else if (raw.size() < 3 * pixels) {
-    n[2] = std::sqrt(std::max(1 - squared, 0.0));
-  }
-  return n;
-}
-
-ValueStatistics statistics_of(std::span<const float> values, std::size_t step) {
-  ValueStatistics s;
-  s.least = kInfinity;
-  s.most = -kInfinity;
-  for (std::size_t i = 0; i < values.size(); i += step) count_value(s, values[i]);
-  if (s.least > s.most) s.least = s.most = 0;
-  return s;
-}
-
-NormalStatistics normal_statistics(std::span<const float> normal, std::span<const float> raw, const DepthMap& map,
-                                   std::size_t step) {
-  NormalStatistics s;
-  std::vector<double> lengths;
-  s.least = kInfinity;
-  s.most = -kInfinity;
-  const std::size_t plane = map.form == kDepthPosition ? raw.size() / 3 : raw.size();
-  const std::size_t components = normal.size() / plane;
-  for (std::size_t i = 0; i < plane; i += step) {
-    if (std::isinf(planar_depth(map, value_at(raw, plane, i), 1))) continue;
-    Vector3 n{};
-    for (std::size_t c = 0; c < components; c++) n[c] = normal[c * plane + i];
-    count_normal(s, lengths, n, components);
-  }
-  if (!s.count) return {};
-  s.usual_length = value_at_rank(lengths, lengths.size() / 2);
-  const double tolerance = kUnitTolerance * s.usual_length;
-  s.usual_share =
-      double(std::ranges::count_if(lengths, [&](double l) { return std::abs(l - s.usual_length) < tolerance; }));
-  for (double* share : {&s.mean_length, &s.unorm_mean_length, &s.unit_share, &s.unorm_unit_share, &s.usual_share})
-    *share /= double(s.count);
-  return s;
-}
-
-std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map, const View& view, int row_step) {
-  const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
-  std::vector<float> planar;
-  planar.reserve(plane / std::size_t(row_step) + std::size_t(view.size.x));
-  for (int y = 0; y < view.size.y; y += row_step)
-    for (int x = 0; x < view.size.x; x++)
-      planar.push_back(float(planar_depth(map, value_at(raw, plane, index_of(view, x, y)), ray_length(view, x, y))));
-  return planar;
-}
-
-std::optional<double> reprojection_error(std::span<const float> position, PositionSpace space, bool mirrored,
-                                         const Camera& camera, const View& view) {
-  const std::size_t plane = position.size() / 3;
-  const int stride = sparseness(view);
-  std::vector<double> errors;
-  for (int y = 0; y < view.size.y; y += stride)
-    for (int x = 0; x < view.size.x; x += stride) {
-      const std::size_t i = index_of(view, x, y);
-      Vector3 p{position[i], position[i + plane], position[i + 2 * plane]};
-      if (!(dot(p, p) > 0) || !(dot(p, p) < 1e18)) continue;
-      if (space == PositionSpace::world) {
-        p = times(*camera.view_from_world, p);
-        for (std::size_t c = 0; c < 3; c++) p[c] += camera.view_from_world_offset[c];
-      } else if (camera.left_handed != mirrored) {
-        p[2] = -p[2];
-      }
-      errors.push_back(pixels_beside(view, x, y, p));
-    }
-  return errors.empty() ? std::nullopt : std::optional(median_of(std::move(errors)));
-}
-
 NormalPlanes::NormalPlanes(const Reading& reading, std::span<const float> of_file, std::span<const float> depth)
     : normal(of_file),
       raw(depth),
@@ -312,6 +174,19 @@ std::vector<NormalScore> score_normals(const NormalPlanes& planes) {
   if (!score(scores, planes)) return {};
   std::ranges::stable_sort(scores, std::greater(), &NormalScore::agreement);
   return scores;
+}
+
+bool is_sharper(const NormalScore& other, const NormalScore& score) {
+  constexpr double kLeastClose = 0.3, kSharper = 1.2, kLeastSharper = 0.1;
+  return other.close >= kLeastClose && other.close > kSharper * score.close &&
+         other.close > score.close + kLeastSharper;
+}
+
+const NormalScore* sharpest_of(const std::vector<NormalScore>& scores) {
+  const NormalScore* sharpest = nullptr;
+  for (const auto& score : scores)
+    if (score.explained() >= kLeastAgreement && (!sharpest || score.close > sharpest->close)) sharpest = &score;
+  return sharpest;
 }
 
 const NormalScore* score_of(const std::vector<NormalScore>& scores, NormalSpace space, const NormalFlips& flips) {
