@@ -83,7 +83,6 @@ Notes check_planes(Reading& reading, const HostPlanes& planes, const InputSettin
     seen.depth_scores = std::move(shape.scores);
     seen.curve = shape.curve;
   }
-  add_new(notes, doubted_kind(reading, reading.data, depth, seen, "--depth-kind, the camera or default"));
   refuse_unused_range(name, settings, reading.depth_kind);
   measure_levels(reading, depth);
   add_new(notes, overflown_depth(reading, depth, name));

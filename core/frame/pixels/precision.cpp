@@ -8,13 +8,10 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/option_words.h"
 #include "core/frame/pixels/detectors.h"
 #include "core/frame/pixels/empty.h"
 #include "core/frame/pixels/flatness.h"
-#include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/radius.h"
-#include "core/frame/pixels/statistics.h"
 #include "core/frame/pixels/walk.h"
 #include "core/frame/samples.h"
 
@@ -49,14 +46,6 @@ void take_down(Reading& reading, const Grain& grain, std::span<const float> dept
         grain.is_half ? kHalfPrecision : 0.5 * std::exp2(std::ceil(std::log2(grain.step / grain.median)));
 }
 
-/// The scores of the distances that depth gives if it is read as is said.
-std::vector<DepthScore> scores_of_distances(const Reading& reading, const Window& window,
-                                            std::span<const float> depth) {
-  const View view = view_of(reading, window);
-  const auto planar = planar_depths(depth, depth_map_of(reading), view);
-  return shape_of(planar, view, reading.sky, grain_of(planar, reading.sky)).scores;
-}
-
 }  // namespace
 
 Grain measure_rounding(Reading& reading, const Window& window, std::span<const float> depth, const std::string& name) {
@@ -71,33 +60,6 @@ Grain measure_rounding(Reading& reading, const Window& window, std::span<const f
 
 void measure_levels(Reading& reading, std::span<const float> depth) {
   if (is_between_planes(reading.depth_kind)) reading.depth_step = std::max(reading.depth_step, step_of(depth));
-}
-
-double straightness(const std::vector<DepthScore>& scores, DepthKind kind, const Reading& reading) {
-  if (reading.camera.orthographic && kind == DepthKind::ray) kind = DepthKind::planar;
-  const auto found = std::ranges::find(scores, kind, &DepthScore::kind);
-  return found == scores.end() ? 0 : found->straight;
-}
-
-std::string straight(const DepthScore& score) {
-  return fmt::format("as {} alone {:.0f} % of the smooth places are flat", word_of(score.kind), 100 * score.straight);
-}
-
-Notes doubted_kind(const Reading& reading, const Window& window, std::span<const float> depth, const Evidence& seen,
-                   const std::string& said_by) {
-  const auto& scores = seen.depth_scores;
-  const bool linear = reading.depth_kind == DepthKind::normalized || reading.depth_kind == DepthKind::log;
-  if (scores.empty() || scores[0].straight < (linear ? kSurelyStraight : kLeastStraight)) return {};
-  const DepthKind said = reading.depth_kind != DepthKind::device ? reading.depth_kind
-                         : reading.camera.orthographic           ? DepthKind::planar
-                                                                 : DepthKind::inverse;
-  const double as_said = linear ? straightness(scores_of_distances(reading, window, depth), DepthKind::planar, reading)
-                                : straightness(scores, said, reading);
-  if (kClear * as_said > scores[0].straight) return {};
-  return {{NoteCode::said_otherwise,
-           fmt::format("depth is read as {}, as {} says, but {}: is it {}?", word_of(reading.depth_kind), said_by,
-                       straight(scores[0]),
-                       scores[0].kind == DepthKind::inverse ? "inverse or device" : word_of(scores[0].kind))}};
 }
 
 Notes overflown_depth(const Reading& reading, std::span<const float> depth, const std::string& name) {

@@ -4,7 +4,6 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
 #include "core/base/image.h"
 #include "core/base/note.h"
@@ -21,20 +20,6 @@ Grain measure_rounding(Reading& reading, const Window& window, std::span<const f
 
 /// Takes down the step of depth between planes that was stored as integers. The kind of the depth must be settled.
 void measure_levels(Reading& reading, std::span<const float> depth);
-
-/// If a smaller part of the smooth places is straight, the frame has no flat surfaces that could tell.
-inline constexpr double kLeastStraight = 0.02;
-/// From this part of the smooth places on, flat surfaces speak for a kind by themselves.
-inline constexpr double kSurelyStraight = 0.1;
-
-/// The straightness of flat surfaces by a kind of depth, as a reading's camera sees them.
-double straightness(const std::vector<DepthScore>& scores, DepthKind kind, const Reading& reading);
-/// The same in words.
-std::string straight(const DepthScore& score);
-
-/// Notes depth whose flat surfaces speak against the kind that is read, as `said_by` says. `seen` has their scores.
-Notes doubted_kind(const Reading& reading, const Window& window, std::span<const float> depth, const Evidence& seen,
-                   const std::string& said_by);
 
 /// Notes half floats, called `name`, whose sky may be surfaces: those beyond the largest number became infinite.
 Notes overflown_depth(const Reading& reading, std::span<const float> depth, const std::string& name);

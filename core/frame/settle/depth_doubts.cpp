@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/base/option_words.h"
-#include "core/frame/pixels/precision.h"
+#include "core/frame/pixels/flatness.h"
+#include "core/frame/pixels/statistics.h"
 #include "core/frame/settle/depth_settlement.h"
 
 namespace alcove {
@@ -21,10 +21,21 @@ class DepthDoubts : private DepthSettlement {
   /// Notes where the pixels speak against the kind of depth that is said. It is read so all the same.
   void run() {
     doubt_range();
-    doubt_fractions(seen_.depth_scores);
-    std::ranges::move(
-        doubted_kind(reading_, raw_.window, raw_.depth, seen_, "--depth-kind, --source or the camera file"),
-        std::back_inserter(source_.notes));
+    const bool linear = reading_.depth_kind == DepthKind::normalized || reading_.depth_kind == DepthKind::log;
+    const DepthKind said = reading_.depth_kind != DepthKind::device ? reading_.depth_kind
+                           : reading_.camera.orthographic           ? DepthKind::planar
+                                                                    : DepthKind::inverse;
+    const auto& scores = seen_.depth_scores;
+    doubt_fractions(scores);
+    if (scores.empty() || scores[0].straight < (linear ? kSurelyStraight : kLeastStraight)) return;
+    if (kClear * straightness(linear ? scores_as_said() : scores, linear ? DepthKind::planar : said) >
+        scores[0].straight)
+      return;
+    source_.notes.push_back(
+        {NoteCode::said_otherwise,
+         fmt::format("depth is read as {}, as --depth-kind, --source or the camera file says, but {}: is it {}?",
+                     word_of(reading_.depth_kind), straight(scores[0]),
+                     scores[0].kind == DepthKind::inverse ? "inverse or device" : word_of(scores[0].kind))});
   }
 
   /// Notes near planes that differ. A projection matrix made for another depth range than the buffer's scales all
@@ -69,6 +80,12 @@ class DepthDoubts : private DepthSettlement {
                        "--depth-kind {} says that these are distances",
                        text_of_range(), word_of(reading_.depth_kind), normalized_line(false),
                        word_of(reading_.depth_kind)));
+  }
+
+  /// The scores of the distances that the depth gives if it is read as is said.
+  std::vector<DepthScore> scores_as_said() const {
+    const auto planar = planar_depths(raw_.depth, depth_map_of(reading_), view_);
+    return shape_of(planar, view_, settings_.sky, grain_of(planar, settings_.sky)).scores;
   }
 
   /// Notes a z-buffer that uses only half of its range, or that leaves it.

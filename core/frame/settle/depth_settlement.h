@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/frame/pixels/precision.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/settle/settlement.h"
 
@@ -33,6 +32,10 @@ struct DepthValues {
   bool has_any = false;            // that may be a surface
 };
 
+/// If a smaller part of the smooth places is straight, the frame has no flat surfaces that could tell.
+inline constexpr double kLeastStraight = 0.02;
+/// From this part of the smooth places on, flat surfaces speak for a kind by themselves.
+inline constexpr double kSurelyStraight = 0.1;
 /// If this part of the pixels is exactly 1, that is a background.
 inline constexpr double kPlateau = 0.001;
 /// A range of 0 to 1 may exceed 1 by so much because it was computed.
@@ -50,6 +53,8 @@ class DepthSettlement : protected Settlement {
   /// Whether all surfaces lie within 0 to 1, whatever stands for the sky.
   bool is_fraction() const { return values_.surfaces.positive && values_.surfaces.most <= 1 + kRounded; }
   std::string text_of_range() const;
+  std::string straight(const DepthScore& score) const;
+  double straightness(const std::vector<DepthScore>& scores, DepthKind kind) const;
   /// The straightness of flat surfaces if the depth falls from 1 at the eye to 0 at its far end.
   double straightness_from_1() const;
   /// The options that read normalized depth, and the meaning of their number.

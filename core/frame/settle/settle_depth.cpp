@@ -50,10 +50,20 @@ std::string DepthSettlement::text_of_range() const {
   return fmt::format("all depth lies within 0 to 1 ({:.3g} to {:.3g})", values_.surfaces.least, values_.surfaces.most);
 }
 
+std::string DepthSettlement::straight(const DepthScore& score) const {
+  return fmt::format("as {} alone {:.0f} % of the smooth places are flat", word_of(score.kind), 100 * score.straight);
+}
+
+double DepthSettlement::straightness(const std::vector<DepthScore>& scores, DepthKind kind) const {
+  if (reading_.camera.orthographic && kind == DepthKind::ray) kind = DepthKind::planar;
+  const auto found = std::ranges::find(scores, kind, &DepthScore::kind);
+  return found == scores.end() ? 0 : found->straight;
+}
+
 double DepthSettlement::straightness_from_1() const {
   std::vector<float> turned(raw_.depth.begin(), raw_.depth.end());
   for (float& d : turned) d = d > 0 && d < 1 ? 1 - d : 0;
-  return straightness(shape_of(turned, view_, settings_.sky, seen_.grain).scores, DepthKind::planar, reading_);
+  return straightness(shape_of(turned, view_, settings_.sky, seen_.grain).scores, DepthKind::planar);
 }
 
 std::string DepthSettlement::normalized_line(bool reversed) {
