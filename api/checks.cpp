@@ -9,11 +9,11 @@
 #include "core/base/option_words.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/frame/pixels/detectors.h"
-#include "core/frame/pixels/flatness.h"
 #include "core/frame/pixels/normal_scores.h"
-#include "core/frame/pixels/precision.h"
 #include "core/frame/pixels/radius.h"
 #include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/depth_settlement.h"
+#include "core/frame/settle/precision.h"
 
 namespace alcove {
 namespace {
@@ -75,19 +75,18 @@ Notes check_planes(Reading& reading, const HostPlanes& planes, const InputSettin
   const auto depth = planes[RawPlane::depth], normal = planes[RawPlane::normal];
   const std::string name = reading.depth_kind == DepthKind::position ? "position" : "depth";
   check_depth(reading, depth);
+  const RawPart raw{reading.data, depth, normal};
   Notes notes;
   Evidence seen;
-  seen.grain = measure_rounding(reading, reading.data, depth, name);
-  if (depth.size() == reading.data.pixels()) {
-    DepthShape shape = shape_of(depth, view_of(reading, reading.data), reading.sky, seen.grain);
-    seen.depth_scores = std::move(shape.scores);
-    seen.curve = shape.curve;
-  }
-  refuse_unused_range(name, settings, reading.depth_kind);
-  measure_levels(reading, depth);
-  add_new(notes, overflown_depth(reading, depth, name));
-  add_new(notes, detected(findings_of(reading, reading.data, depth, normal, seen, name, !normal.empty())));
+  DepthFacts said;
+  said.program.rules = &input_rules("generic");
+  said.said_by = "--depth-kind, the camera or default";
+  seen.grain = measure_rounding(reading, raw.window, depth, name);
+  settle_depth({reading, notes, settings, raw, seen, name}, said);
   if (!normal.empty()) check_normals(reading, planes, notes);
+  add_new(notes, overflown_depth(reading, depth, name));
+  add_new(notes, detected(findings_of(reading, raw, seen, name, true)));
+  measure_levels(reading, depth);
   return notes;
 }
 

@@ -164,13 +164,6 @@ void refuse_range_options(const std::string& depth, std::span<const std::string>
        fmt::join(options, ", "), is_one ? "has" : "have", word_of(kind), is_one ? "it" : "them");
 }
 
-void refuse_unused_range(const std::string& depth, const InputSettings& settings, DepthKind kind) {
-  auto unused = unused_range_options(settings.depth_range, kind);
-  const auto& left_out = settings.from_presets;
-  std::erase_if(unused, [&](const auto& option) { return std::ranges::find(left_out, option) != left_out.end(); });
-  if (!unused.empty()) refuse_range_options(depth, unused, kind);
-}
-
 bool is_all_sky(const DepthMap& map, std::span<const float> raw) {
   if (map.form == kDepthPosition) return std::ranges::all_of(raw, [](float x) { return x == 0; });
   const auto below = float(map.sky_below);

@@ -55,8 +55,6 @@ bool is_distance(DepthKind kind);
 std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind kind);
 /// Fails with ErrorKind::usage, since these options have no effect on the depth of that name.
 [[noreturn]] void refuse_range_options(const std::string& depth, std::span<const std::string> options, DepthKind kind);
-/// Does so with those of the user. Presets serve frames of every kind.
-void refuse_unused_range(const std::string& depth, const InputSettings& settings, DepthKind kind);
 
 /// Whether every raw value plainly says that there is no surface: none is one, or has to be repaired to be none. Of
 /// positions: x, y and z are 0.

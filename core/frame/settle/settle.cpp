@@ -11,20 +11,21 @@
 #include "core/frame/find/behind.h"
 #include "core/frame/find/position_pass.h"
 #include "core/frame/pixels/detectors.h"
-#include "core/frame/pixels/normal_scores.h"
-#include "core/frame/pixels/precision.h"
 #include "core/frame/pixels/radius.h"
 #include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/depth_settlement.h"
 #include "core/frame/settle/faults.h"
+#include "core/frame/settle/precision.h"
 
 namespace alcove {
 
 namespace {
 
+const std::string& depth_channel(const FrameSource& source) { return source.channels[RawPlane::depth][0].channel; }
+
 /// What the walk over the frame's pixels shows. The depth is settled; `has_read_normals` says that the normals are.
 Findings findings_of(const FrameSource& source, const RawPart& raw, const Evidence& seen, bool has_read_normals) {
-  Findings found = findings_of(source.reading, raw.window, raw.depth, raw.normal, seen,
-                               source.channels[RawPlane::depth][0].channel, has_read_normals);
+  Findings found = findings_of(source.reading, raw, seen, depth_channel(source), has_read_normals);
   found.other_depths = other_depths(source);
   return found;
 }
@@ -49,7 +50,8 @@ std::string reasons_of(const FrameSource& source, const RawPart& raw, const Evid
 
 /// Settles depth and normals by the camera as it is.
 void settle_meaning(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
-  settle_depth(source, settings, raw, seen);
+  settle_depth({source.reading, source.notes, settings, raw, seen, source.depth_path()},
+               {source.program, source.open.depth_kind, [&] { return kind_by_positions(source, settings, raw); }});
   settle_deep(source, raw);
   if (source.channels[RawPlane::normal].empty())
     note_centre(source);
@@ -71,9 +73,8 @@ Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
 }  // namespace
 
 void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
-  const std::string& depth_channel = source.channels[RawPlane::depth][0].channel;
-  seen.grain = measure_rounding(source.reading, raw.window, raw.depth,
-                                fmt::format("{}: {}", source.depth_path(), depth_channel));
+  seen.grain =
+      measure_rounding(source.reading, raw.window, raw.depth, source.depth_path() + ": " + depth_channel(source));
   const std::string refutation = settle_camera(source, settings);
   try {
     settle_meaning(source, settings, raw, seen);
@@ -85,7 +86,7 @@ void settle(FrameSource& source, const InputSettings& settings, const RawPart& r
     if (why.empty()) throw;
     fail(error.kind(), "{}{}", error.what(), why);
   }
-  std::ranges::move(overflown_depth(source.reading, raw.depth, depth_channel), std::back_inserter(source.suspicious));
+  add_new(source.suspicious, overflown_depth(source.reading, raw.depth, depth_channel(source)));
   note_findings(source, raw, seen);
   measure_levels(source.reading, raw.depth);
   seen.median_depth = median_depth(over(source.reading, raw.window), raw.depth);

@@ -1,8 +1,7 @@
 // Looks at depth for what its values cannot tell.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/pixels/precision.h"
+#include "core/frame/settle/precision.h"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -11,7 +10,7 @@
 #include "core/frame/pixels/detectors.h"
 #include "core/frame/pixels/empty.h"
 #include "core/frame/pixels/flatness.h"
-#include "core/frame/pixels/radius.h"
+#include "core/frame/pixels/statistics.h"
 #include "core/frame/pixels/walk.h"
 #include "core/frame/samples.h"
 
@@ -78,20 +77,19 @@ Notes overflown_depth(const Reading& reading, std::span<const float> depth, cons
                100 * double(beyond) / double(depth.size()), name)}};
 }
 
-Findings findings_of(const Reading& whole, const Window& window, std::span<const float> depth,
-                     std::span<const float> normal, const Evidence& seen, const std::string& name,
+Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& seen, const std::string& name,
                      bool has_read_normals) {
-  const Reading reading = over(whole, window);
+  const Reading reading = over(frame, raw.window);
   Findings found{.depth_channel = name,
                  .depth_kind = reading.depth_kind,
                  .has_half_type = reading.depth_is_half,
                  .grain = seen.grain,
                  .curve = seen.curve,
                  .said_offset = said_offset(reading)};
-  found.jitter = jitter_of(depth, depth_map_of(reading), view_of(reading, window), seen.grain);
-  if (window == whole.data && depth.size() == window.pixels())
-    found.borders = borders_of(depth, window, depth_map_of(reading));
-  walk({reading, depth, normal, has_read_normals}, found);
+  found.jitter = jitter_of(raw.depth, depth_map_of(reading), view_of(reading, raw.window), seen.grain);
+  if (raw.window == frame.data && raw.depth.size() == raw.window.pixels())
+    found.borders = borders_of(raw.depth, raw.window, depth_map_of(reading));
+  walk({reading, raw.depth, raw.normal, has_read_normals}, found);
   return found;
 }
 

@@ -1,4 +1,4 @@
-// The precision of depth values, from files or from memory, and what a walk over settled planes shows.
+// What the pixels of planes, from files or from memory, show: how depth was rounded, and what detectors look at.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,6 +8,7 @@
 #include "core/base/image.h"
 #include "core/base/note.h"
 #include "core/frame/evidence.h"
+#include "core/frame/find/frame_source.h"
 #include "core/frame/pixels/findings.h"
 #include "core/frame/reading.h"
 
@@ -24,10 +25,9 @@ void measure_levels(Reading& reading, std::span<const float> depth);
 /// Notes half floats, called `name`, whose sky may be surfaces: those beyond the largest number became infinite.
 Notes overflown_depth(const Reading& reading, std::span<const float> depth, const std::string& name);
 
-/// Gives what the pixels of a window show, for detectors. Depth is settled in `reading`, and called `name`;
-/// `has_read_normals` says that the normals are settled, too.
-Findings findings_of(const Reading& reading, const Window& window, std::span<const float> depth,
-                     std::span<const float> normal, const Evidence& seen, const std::string& name,
+/// What a walk over the pixels shows, for the detectors. The depth, called `name`, is settled; `has_read_normals` says
+/// that the normals are.
+Findings findings_of(const Reading& reading, const RawPart& raw, const Evidence& seen, const std::string& name,
                      bool has_read_normals);
 
 }  // namespace alcove
