@@ -52,11 +52,17 @@ struct Parser {
   }
 };
 
-std::vector<std::string> option_names(const Command& command) {
-  std::vector<std::string> names{"--help", "--help-all"};
-  for (const auto& row : command.rows)
-    if (row.name.starts_with('-')) names.push_back(row.long_name());
-  return names;
+/// The options that a misspelt one may mean. One letter is the first of a common option's name.
+std::string suggested_options(const Command& command, const std::string& typed) {
+  Words names{"--help", "--help-all"}, first;
+  for (const auto& row : command.rows) {
+    if (!row.name.starts_with('-')) continue;
+    names.push_back(row.long_name());
+    const bool is_shown = row.is_common || !has_common_rows(command);
+    if (is_shown && names.back().starts_with("-" + typed)) first.push_back(names.back());
+  }
+  const bool is_letter = typed.size() == 2 && !first.empty();
+  return is_letter ? fmt::format(" (did you mean {}?)", fmt::join(first, " or ")) : suggestion(typed, names);
 }
 
 /// What a value of the row is: "FILE", or "NUMBER (scene units, above 0)".
@@ -76,7 +82,7 @@ const OptionRow* row_of(const Command& command, const std::string& complaint) {
 [[noreturn]] void refuse_extra(const Command& command, const std::string& extra) {
   if (extra.starts_with('-')) {
     const std::string option = extra.substr(0, extra.find('='));
-    fail(ErrorKind::usage, "there is no option {}{}{}", option, suggestion(option, option_names(command)),
+    fail(ErrorKind::usage, "there is no option {}{}{}", option, suggested_options(command, option),
          see_help(command.name));
   }
   Words places;

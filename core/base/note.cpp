@@ -85,10 +85,12 @@ constexpr std::array kTable = {
     NoteFacts{NoteCode::sequence_hole, "sequence-hole", true, "numbers are left out between the frames on the disk",
               InHeader::nothing},
     NoteFacts{NoteCode::frame_number, "frame-number", false, "the number in a file's name chose the camera"},
+    NoteFacts{NoteCode::other_frame, "other-frame", true, "the number in a file's name is that of another frame"},
     NoteFacts{NoteCode::automatic_radius, "automatic-radius", false, "the radius was chosen by the frame"},
     NoteFacts{NoteCode::computed_again, "computed-again", false, "why --resume computes frames that are there"},
     NoteFacts{NoteCode::ao_layer, "ao-layer", false, "the AO of a comparison was found by its layer's name"},
     NoteFacts{NoteCode::sky_differs, "sky-differs", true, "sky of 0 against 1 decides a comparison"},
+    NoteFacts{NoteCode::holes, "holes", true, "pixels of a comparison are NaN or infinite in one file only"},
 };
 
 constexpr bool is_in_order() {

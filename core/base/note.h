@@ -78,11 +78,13 @@ enum class NoteCode {
   // frames, and choices for them
   sequence_hole,
   frame_number,
+  other_frame,
   automatic_radius,
   computed_again,
   // comparisons
   ao_layer,
   sky_differs,
+  holes,
 };
 
 /// The form of a note in the header of an output. Headers are the same bits for the same inputs.

@@ -70,7 +70,7 @@ struct InputSettings {
   MotionKind motion_kind = MotionKind::automatic;
   std::string layer;  // look only at channels of this layer or part
   std::string view;   // of a stereo file; empty: its default
-  // pixels of depth and normals for each of the picture, in x and in y, 1 to 4; auto: by the beauty's size
+  // pixels of depth and normals for each of the picture, in x and in y, 1 to 4; auto: 1
   std::string supersampling = "auto";
   std::optional<Region> roi;  // compute and write no more than this, in px of the picture; none: the data window
   // the program that wrote the frame, of presets/input; auto: by its header and channels
@@ -241,6 +241,7 @@ struct ProgressSettings {
 };
 
 struct Settings {
+  std::vector<std::string> preset_files;  // from which the command line has taken values
   FrameSettings frames;
   InputSettings input;
   EstimatorSettings estimator;

@@ -20,7 +20,7 @@ namespace alcove {
 namespace {
 
 constexpr long kMostFrames = 1'000'000;
-constexpr long kFrameLimit = 1'000'000'000;  // frame numbers lie nearer to 0
+constexpr long kFrameLimit = 1'000'000'000;  // frame numbers lie nearer to 0: they have 9 digits at most
 constexpr int kMostPadding = 16;
 
 /// A place for the frame number in a path.
@@ -75,12 +75,15 @@ struct Range {
   long first = 0, last = 0, step = 1;
 };
 
-std::optional<Range> range_of(const std::string& text) {
+std::optional<Range> range_of(const std::string& text, const std::string& list) {
   const char *at = text.data(), *end = at + text.size();
   const auto number = [&](long& value) {
     const auto [stop, error] = std::from_chars(at, end, value);
+    if (error == std::errc::result_out_of_range || value <= -kFrameLimit || value >= kFrameLimit)
+      fail(ErrorKind::usage, "--frames {}: {} is too far from 0: numbers have 9 digits at most", list,
+           std::string(at, stop));
     at = stop;
-    return error == std::errc() && -kFrameLimit < value && value < kFrameLimit;
+    return error == std::errc();
   };
   Range range;
   if (!number(range.first)) return std::nullopt;
@@ -95,7 +98,7 @@ std::optional<Range> range_of(const std::string& text) {
 /// Adds one part of a list. `list` is for messages. `listed` counts frames, repeated ones too.
 void add_part(const std::string& text, const std::string& list, std::vector<int>& frames,
               std::unordered_set<int>& distinct, long& listed) {
-  const auto range = range_of(text);
+  const auto range = range_of(text, list);
   if (!range)
     fail(ErrorKind::usage,
          "--frames {}: \"{}\" is no frame and no range; write 1001, 1001-1100 or 1001-1100x2, with commas between",
@@ -203,8 +206,7 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
 }
 
 void require_ending(const std::string& path, const char* option, const char* ending, const char* format) {
-  const std::string found = ending_of(path);
-  if (found.empty() || found == ending) return;
+  if (path.empty() || ending_of(path) == ending) return;
   fail(ErrorKind::usage, "{}: {} writes only {}: let its name end in {}", path, option, format, ending);
 }
 

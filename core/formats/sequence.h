@@ -50,9 +50,8 @@ struct FrameNumber {
 /// a date do not count, nor do fewer digits at the end of a word, which may be a shot's (sh010).
 FrameNumber frame_number_in(const std::string& path);
 
-/// Fails with ErrorKind::usage if the name of an output has the ending of another format than `format`, whose ending is
-/// `ending`, such as ".exr". A name without an ending passes, and a frame number or the suffix of a file in the making
-/// may follow the ending: ao.exr.0001, ao.exr.tmp.
+/// Fails with ErrorKind::usage if the name of an output, where it has one, has not the ending of `format`, such as
+/// ".exr". A frame number or the suffix of a file in the making may follow the ending: ao.exr.0001, ao.exr.tmp.
 void require_ending(const std::string& path, const char* option, const char* ending, const char* format);
 
 }  // namespace alcove

@@ -106,8 +106,8 @@ double thickness_of_run(const ReferenceScene& scene, const ReferenceLine& line, 
   const double chord = length(line[last].position - line[first].position) + pixel;
   // A long run levels off: a wall is not as thick as it is long.
   const double most = kWidest * settings.radius;
-  const double width = std::min(settings.width_share * chord + settings.width_pixels * pixel, most);
-  const double thickness = width - width * width * width / (3 * most * most);
+  const double part = std::min((settings.width_share * chord + settings.width_pixels * pixel) / most, 1.0);
+  const double thickness = most * part * (1 - part * part / 3);
   return cut && settings.complete != Completion::none ? std::max(thickness, kThicknessOfCut * settings.radius)
                                                       : thickness;
 }

@@ -271,7 +271,7 @@ EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, Prep
   if (limits.allow(whole)) {
     compute(whole, whole);
   } else {
-    const WindowLimits of_parts = limits.in_parts(source);
+    const WindowLimits of_parts = limits.in_parts(source, settings);
     read_for_parts(source, settings, read, of_parts.room.bytes - of_parts.kept);
     Surroundings surroundings(source, settings, read[RawPlane::depth]);
     for (const auto& row : tiles_of(whole, surroundings, of_parts, source))

@@ -94,7 +94,7 @@ TEST_F(BadInput, of_every_kind_ends_with_its_code) {
            {3, good(file("cut8.exr", whole.substr(0, 8))), {"cut8.exr"}},
            {3, good(file("cut400.exr", whole.substr(0, 400))), {"cut400.exr"}},
            {3, good(file("cut.exr", whole.substr(0, whole.size() - 1))), {"cut.exr"}},
-           {5, good(file("wide.exr", claim)), {"wide.exr", "--memory"}},
+           {5, good(file("wide.exr", claim)), {"wide.exr", "more than Alcove takes"}},
            {3, good(deph), {"deph.exr", "--depth-channel", there, "did you mean ViewLayer.Deph.Z"}},
            {3, good(frame, {"--depth-channel", "ViewLayer.Dept.Z"}), {frame, "did you mean ViewLayer.Depth.Z"}},
            {3, good(frame, {"--normal-channels", "ViewLayer.Norml"}), {frame, "--normal-channels", "ViewLayer.Norml"}},

@@ -69,6 +69,9 @@ TEST(ParseFrames, anything_else_is_an_error_that_quotes_it) {
                            "12345678901", "1-2147483648", "0x10", "1e3", "1-+3", "99999999999999999999"})
     EXPECT_THAT(error_of(ErrorKind::usage, [&] { parse_frames(list); }), HasSubstr(list)) << list;
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("  "); }), HasSubstr("empty"));
+  for (const char* number : {"1000000000", "-1000000000", "2000000000", "99999999999999999999"})
+    EXPECT_THAT(error_of(ErrorKind::usage, [&] { parse_frames(std::string("1-") + number); }),
+                HasSubstr(std::string(": ") + number + " is too far from 0: numbers have 9 digits at most"));
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-10x0"); }), HasSubstr("step"));
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-10x-2"); }), HasSubstr("backwards"));
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-100000000"); }), HasSubstr("more than 1000000 frames"));

@@ -196,7 +196,8 @@ std::string rooms_markdown() {
       {"core/frame/settle", "What do the channels mean, by options, headers and pixels?"},
       {"core/chain", "Which passes run, and in which order?"},
       {"core/options",
-       "Which options are there? One table for flags, presets, help, this page and the digest of `--resume`."},
+       "Which options are there? One table for flags, presets, help, this page, the files of a run and the digest of "
+       "`--resume`."},
       {"core/run", "How do many frames go from files to files? Plan, lanes, tiles, resuming, reports."},
       {"core/reference", "What is right? The estimators again, slowly, in double precision."},
       {"core/measure", "How far off is a result?"},

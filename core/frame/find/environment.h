@@ -16,6 +16,7 @@ struct Environment {
   /// The share of the light, 0 to 1, that comes from elsewhere than the nine colours say: half the integral of the
   /// difference over that of the light.
   double missed = 0;
+  bool operator==(const Environment&) const = default;
 };
 
 /// Nine colours hold a sky whose `missed` is at most this: that of gradients is .03 to .1, with a sun .3 and more.

@@ -248,12 +248,6 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
   find_ambient(source, search, file, settings);
   source.reading.supersampling = supersampling_of(source, source.channels[RawPlane::beauty][0], settings);
-  if (source.reading.supersampling > 1 && settings.supersampling == "auto")
-    source.notes.push_back(
-        {NoteCode::windows_differ,
-         fmt::format("the depth is {} times the beauty's size: outputs are filtered down to the beauty's size, {} "
-                     "(--set supersampling, --set filter)",
-                     source.reading.supersampling, to_string(picture_of(source.reading, source.reading.display)))});
   for (const auto* aov : {&source.channels[RawPlane::beauty], &source.channels[RawPlane::indirect],
                           &source.channels[RawPlane::diffuse_color]})
     require_common_window(source, *aov, "beauty", "--beauty",

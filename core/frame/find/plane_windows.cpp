@@ -113,13 +113,14 @@ int supersampling_of(const FrameSource& source, const InputSettings& settings) {
 
 int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const InputSettings& settings) {
   const ExrFile& file = source.file_of(beauty);
-  if (settings.supersampling == "auto") {
-    for (const int factor : {2, 3, 4})
-      if (is_times(source.reading.display, file.display(), factor)) return factor;
-    return 1;
-  }
   const int factor = supersampling_of(source, settings);
-  if (!is_times(source.reading.display, file.display(), factor))
+  for (const int times : {2, 3, 4})
+    if (factor == 1 && is_times(source.reading.display, file.display(), times))
+      fail(ErrorKind::input,
+           "{}: the beauty is of a picture of {}, and the depth, {}, is {} times as large: --set supersampling={} "
+           "filters all outputs down to the beauty's size; or render both at the same size",
+           file.path(), to_string(file.display()), to_string(source.reading.display), times, times);
+  if (factor > 1 && !is_times(source.reading.display, file.display(), factor))
     fail(ErrorKind::input,
          "{}: the beauty is of a picture of {}, and --set supersampling={} of the depth, {}, makes {}", file.path(),
          to_string(file.display()), factor, to_string(source.reading.display),

@@ -21,7 +21,7 @@ constexpr double kBelowZero = -1.0 / 256, kLeastNeeded = 0.02, kLeastCut = 0.8;
 
 class CutNormals : private NormalSettlement {
  public:
-  using NormalSettlement::NormalSettlement;
+  explicit CutNormals(const NormalSettlement& normals) : NormalSettlement(normals) {}
 
   /// Takes normals without components below 0 if depth says that they lost some: the file does not hold the lost ones.
   /// Returns whether they are such.
@@ -45,7 +45,7 @@ class CutNormals : private NormalSettlement {
         "as 0.5 + 0.5 n",
         channels(), 100 * best.needed,
         best.absolute > best.clamped ? "their absolute values were saved" : "values below 0 were cut off");
-    if (as->explained() < kLeastAgreement) fail(ErrorKind::input, "{}: {}; {}", normal_path(), why, kWithout);
+    if (as->explained() < kLeastAgreement) fail(ErrorKind::input, "{}: {}; {}", path_, why, kWithout);
     if (source_.open.normal_space) {
       reading_.normal_space = as->space;
       guess("normal space", word_of(as->space), text_of(*as), "--normal-space", false);
@@ -57,9 +57,9 @@ class CutNormals : private NormalSettlement {
 
 }  // namespace
 
-bool settle_cut_normals(const Settlement& settlement, const std::vector<NormalScore>& scores,
+bool settle_cut_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores,
                         const NormalStatistics& statistics) {
-  return CutNormals(settlement).settle(scores, statistics);
+  return CutNormals(normals).settle(scores, statistics);
 }
 
 }  // namespace alcove

@@ -14,7 +14,7 @@ namespace {
 
 class DepthEnds : private DepthSettlement {
  public:
-  using DepthSettlement::DepthSettlement;
+  explicit DepthEnds(const DepthSettlement& depth) : DepthSettlement(depth) {}
 
   void run() {
     settle_sign();
@@ -132,7 +132,7 @@ class DepthEnds : private DepthSettlement {
     constexpr double kFar = 2;  // times as far as all others
     const double limit = depth_map_of(reading_).sky_depth / reading_.depth_scale;
     const std::size_t step = raw_.depth.size() / kSampled + 1;
-    Farthest far{.has_normals = source_.channels[RawPlane::normal].size() == 3};
+    Farthest far{.has_normals = has_vectors()};
     for (std::size_t i = 0; i < raw_.depth.size(); i += step)
       if (const float d = std::abs(raw_.depth[i]); d < limit) far.value = std::max(far.value, d);
     std::optional<std::size_t> first;
@@ -177,6 +177,6 @@ class DepthEnds : private DepthSettlement {
 
 }  // namespace
 
-void settle_depth_ends(const Settlement& settlement, const DepthValues& values) { DepthEnds(settlement, values).run(); }
+void settle_depth_ends(const DepthSettlement& depth) { DepthEnds(depth).run(); }
 
 }  // namespace alcove

@@ -11,32 +11,32 @@ namespace {
 
 class FractionRules : private DepthSettlement {
  public:
-  FractionRules(const Settlement& settlement, const DepthValues& values, DepthKind usual)
-      : DepthSettlement(settlement, values), usual_(usual) {}
+  FractionRules(const DepthSettlement& depth, DepthKind usual) : DepthSettlement(depth), usual_(usual) {}
 
   /// Depth within 0 to 1 is the part of a range more often than a distance, and no pixel shows how long that range is.
   /// It is refused where nothing supports distances, and noted where straight lines do: z / far has them too.
-  void refuse(const std::vector<DepthScore>& scores) {
+  void run() {
     if (!is_fraction()) return;
+    const auto& scores = seen_.depth_scores;
     const double straight = scores.empty() ? 0 : scores[0].straight, from_1 = straightness_from_1();
     if (from_1 >= kLeastStraight && from_1 > kClear * straight)
       fail(ErrorKind::input,
            "{}: {}, and flat surfaces are straight on {:.0f} % as 1 - depth, on {:.0f} % as depth: it is normalized, "
            "and 1 at the eye: give {}; if it is a distance all the same, --depth-kind planar",
-           depth_path(), text_of_range(), 100 * from_1, 100 * straight, normalized_line(true));
+           path_, text_of_range(), 100 * from_1, 100 * straight, normalized_line(true));
     const bool is_supported = straight >= kSurelyStraight;
     const bool is_inverse =
         straight >= kLeastStraight && scores[0].kind == DepthKind::inverse && straight >= kClear * scores[1].straight;
-    if (source_.program.rules->depth_kind != DepthKind::automatic && !is_supported && !is_inverse)
+    if (facts_.program.rules->depth_kind != DepthKind::automatic && !is_supported && !is_inverse)
       return note_fractions();
-    if (source_.program.rules->depth_kind != DepthKind::automatic || is_inverse) return;
+    if (facts_.program.rules->depth_kind != DepthKind::automatic || is_inverse) return;
     refuse_plateau();
     if (!is_supported)
       fail(ErrorKind::input,
            "{}: {}, and no flat surfaces show that these are distances: if it is 0 at the eye, give {}; if it is 1 at "
            "the eye, {}; if it is a distance, --depth-kind planar; if it is 1/z, --depth-kind inverse; if it is a "
            "z-buffer, --depth-kind device with --near and --far",
-           depth_path(), text_of_range(), normalized_line(false), normalized_line(true));
+           path_, text_of_range(), normalized_line(false), normalized_line(true));
     refuse_before_near_plane();
     note_fractions();
   }
@@ -62,8 +62,7 @@ class FractionRules : private DepthSettlement {
     fail(ErrorKind::input,
          "{}: {}, and {:.0f} % of it is nearer than the camera's near plane at {:.3g}, so these are no distances: if "
          "they are normalized, give {}; if they are distances all the same, --depth-kind planar",
-         depth_path(), text_of_range(), 100 * double(nearer) / double(count), *reading_.camera.near,
-         normalized_line(false));
+         path_, text_of_range(), 100 * double(nearer) / double(count), *reading_.camera.near, normalized_line(false));
   }
 
   /// A background of exactly 1 behind depths of 0 to 1 is the far end of a range.
@@ -75,7 +74,7 @@ class FractionRules : private DepthSettlement {
          "{}: the depth may be normalized or planar (all in 0 to 1, {:.1f} % of exactly 1): say --depth-kind "
          "normalized with --near and --far (or log, with "
          "--far and --set log-constant), or --depth-kind planar",
-         depth_path(), 100 * double(values_.all.one) / double(values_.all.pixels));
+         path_, 100 * double(values_.all.one) / double(values_.all.pixels));
   }
 
   DepthKind usual_;  // of the program
@@ -83,8 +82,6 @@ class FractionRules : private DepthSettlement {
 
 }  // namespace
 
-void refuse_fractions(const Settlement& settlement, const DepthValues& values, DepthKind usual) {
-  FractionRules(settlement, values, usual).refuse(settlement.evidence().depth_scores);
-}
+void refuse_fractions(const DepthSettlement& depth, DepthKind usual) { FractionRules(depth, usual).run(); }
 
 }  // namespace alcove

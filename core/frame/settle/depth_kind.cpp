@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "core/base/option_words.h"
-#include "core/frame/find/position_pass.h"
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/settle/depth_settlement.h"
 
@@ -19,8 +18,8 @@ constexpr double kClearNormals = 1.5;
 
 class DepthKindSettlement : private DepthSettlement {
  public:
-  DepthKindSettlement(const Settlement& settlement, const DepthValues& values)
-      : DepthSettlement(settlement, values), usual_(source_.program.depth_kind) {}
+  explicit DepthKindSettlement(const DepthSettlement& depth)
+      : DepthSettlement(depth), usual_(facts_.program.depth_kind) {}
 
   /// Decides an open kind: by flat surfaces, else by positions, else by normals, else by the program, else the usual
   /// one.
@@ -32,14 +31,14 @@ class DepthKindSettlement : private DepthSettlement {
     const auto& scores = seen_.depth_scores;
     const bool tells = !scores.empty() && scores[0].straight >= kLeastStraight;
     if (!tells) seen_.tells = false;
-    if (tells || usual_ != DepthKind::inverse) refuse_fractions(*this, values_, usual_);
+    if (tells || usual_ != DepthKind::inverse) refuse_fractions(*this, usual_);
     if (tells) return take_flattest(scores);
     const std::string why = scores.empty() ? "too little of the frame is smooth to tell"
                                            : "the frame has no flat surfaces that tell: " + text_of(scores);
     if (take_by_positions(why) || take_by_normals(why)) return;
     if (usual_ == DepthKind::inverse) return assume_passed_on(why);
     take_usual(why);
-    if (!source_.program.is_said() || source_.program.rules->depth_kind == DepthKind::automatic) note_assumption(why);
+    if (!facts_.program.is_said() || facts_.program.rules->depth_kind == DepthKind::automatic) note_assumption(why);
   }
 
  private:
@@ -52,7 +51,7 @@ class DepthKindSettlement : private DepthSettlement {
     if (expected.straight >= kAsGood * best.straight) return take_usual(why);
     if (best.straight < kClear * second.straight)
       fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}",
-           depth_path(), word_of(best.kind), word_of(second.kind), why, word_of(best.kind), word_of(second.kind));
+           path_, word_of(best.kind), word_of(second.kind), why, word_of(best.kind), word_of(second.kind));
     reading_.depth_kind = best.kind;
     if (best.kind == DepthKind::inverse && values_.all.least >= 0 && is_fraction()) return settle_device(why);
     // A plane's distances are affine in the picture without perspective.
@@ -68,15 +67,15 @@ class DepthKindSettlement : private DepthSettlement {
   /// named the program.
   void take_usual(const std::string& why) {
     reading_.depth_kind = usual_;
-    const std::string by = source_.program.by.empty()
+    const std::string by = facts_.program.by.empty()
                                ? ""
-                               : fmt::format("{} writes it ({}); ", source_.program.rules->name, source_.program.by);
+                               : fmt::format("{} writes it ({}); ", facts_.program.rules->name, facts_.program.by);
     guess("depth kind", word_of(reading_.depth_kind), by + why, "--depth-kind", false);
   }
 
   /// Takes the kind by which the depth is that of the positions beside it. False: none.
   bool take_by_positions(const std::string& but) {
-    const auto kind = kind_by_positions(source_, settings_, raw_);
+    const auto kind = facts_.kind_by_positions ? facts_.kind_by_positions() : std::nullopt;
     if (!kind) return false;
     reading_.depth_kind = *kind;
     guess("depth kind", word_of(*kind), "so it is that of the positions; " + but, "--depth-kind",
@@ -106,8 +105,8 @@ class DepthKindSettlement : private DepthSettlement {
   void take_passed_on(DepthKind kind, const std::string& why) {
     reading_.depth_kind = kind;
     guess("depth kind", word_of(kind),
-          fmt::format("{} ({}) writes 1/z, and passes on what others wrote; {}", source_.program.rules->name,
-                      source_.program.by, why),
+          fmt::format("{} ({}) writes 1/z, and passes on what others wrote; {}", facts_.program.rules->name,
+                      facts_.program.by, why),
           "--depth-kind", false);
   }
 
@@ -116,7 +115,7 @@ class DepthKindSettlement : private DepthSettlement {
       fail(ErrorKind::input,
            "{}: {}, and neither flat surfaces nor normals tell whether it is 1/z, as {} writes it: give --depth-kind "
            "inverse; if it is normalized, {}",
-           depth_path(), text_of_range(), source_.program.rules->name, normalized_line(false));
+           path_, text_of_range(), facts_.program.rules->name, normalized_line(false));
     take_passed_on(DepthKind::planar, why + ", and it holds more than 1");
     note_assumption(why);
   }
@@ -125,9 +124,9 @@ class DepthKindSettlement : private DepthSettlement {
   void note_assumption(const std::string& why) {
     note(NoteCode::assumed_reading,
          fmt::format("depth is read as {}, {}: {} (--depth-kind)", word_of(reading_.depth_kind),
-                     source_.program.by.empty() || source_.program.rules->depth_kind == DepthKind::automatic
+                     facts_.program.by.empty() || facts_.program.rules->depth_kind == DepthKind::automatic
                          ? "the usual kind"
-                         : "as " + source_.program.rules->name + " writes it",
+                         : "as " + facts_.program.rules->name + " writes it",
                      why));
   }
 
@@ -138,7 +137,7 @@ class DepthKindSettlement : private DepthSettlement {
 
   /// The share of the normals that agree with the depth if it is of that kind, in their best space; 0 without normals.
   double agreement_as(DepthKind kind) const {
-    if (source_.channels[RawPlane::normal].size() != 3) return 0;
+    if (!has_vectors()) return 0;
     const NormalStatistics n = normal_statistics(raw_.normal, raw_.depth, depth_map_of(reading_), values_.step);
     Reading reading = over(reading_, raw_.window);
     reading.depth_kind = kind;
@@ -161,7 +160,7 @@ class DepthKindSettlement : private DepthSettlement {
          "and goes on beyond its planes, as V-Ray writes it without clamp, give --depth-kind normalized --near N --far "
          "F, the distances of 0 and of 1 (with --reversed-z, of 1 and of 0); if values below 0 are no surfaces, give "
          "--depth-kind planar",
-         depth_path(), values_.all.least, values_.surfaces.most, 100 * double(values_.below_0.count) / double(all));
+         path_, values_.all.least, values_.surfaces.most, 100 * double(values_.below_0.count) / double(all));
   }
 
   /// Inverse depth and that of a z-buffer are both affine in 1/z. A near plane that somebody knows tells them apart.
@@ -173,7 +172,7 @@ class DepthKindSettlement : private DepthSettlement {
            "{}: the depth may be device or inverse (all in 0 to 1, {}): say --depth-kind device with --near and --far "
            "(inf where there is none) and, "
            "where near is 1, --reversed-z; or --depth-kind inverse",
-           depth_path(), why);
+           path_, why);
     reading_.depth_range.reversed = reversed;
     reading_.depth_kind = DepthKind::device;
     guess("depth kind", reversed ? "device with --reversed-z" : "device", "all in 0 to 1, --near is given, and " + why,
@@ -185,8 +184,6 @@ class DepthKindSettlement : private DepthSettlement {
 
 }  // namespace
 
-void settle_depth_kind(const Settlement& settlement, const DepthValues& values) {
-  DepthKindSettlement(settlement, values).run();
-}
+void settle_depth_kind(const DepthSettlement& depth) { DepthKindSettlement(depth).run(); }
 
 }  // namespace alcove

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,10 +46,23 @@ inline constexpr double kRounded = 1e-3;
 /// bring them, these are errors.
 inline constexpr double kFewErrors = 0.005;
 
-/// A frame whose depth is being settled.
+/// What is known of a depth beside its planes.
+struct DepthFacts {
+  Program program;
+  bool is_kind_open = false;
+  // Gives the kind by which it is the depth of positions beside it, if those tell. Null: there are none.
+  std::function<std::optional<DepthKind>()> kind_by_positions = nullptr;
+  const char* said_by = "--depth-kind, --source or the camera file";  // what may say the kind that is not open
+};
+
+/// Settles kind and sign of the depth, or the space of positions; where they are said, notes what speaks against them.
+void settle_depth(const PlanesToSettle& planes, const DepthFacts& facts);
+
+/// Depth that is being settled.
 class DepthSettlement : protected Settlement {
  public:
-  DepthSettlement(const Settlement& settlement, const DepthValues& values) : Settlement(settlement), values_(values) {}
+  DepthSettlement(const PlanesToSettle& planes, const DepthFacts& facts, const DepthValues& values)
+      : Settlement(planes), facts_(facts), values_(values) {}
 
  protected:
   /// Whether all surfaces lie within 0 to 1, whatever stands for the sky.
@@ -60,28 +75,31 @@ class DepthSettlement : protected Settlement {
   /// The options that read normalized depth, and the meaning of their number.
   static std::string normalized_line(bool reversed);
 
+  bool has_vectors() const { return raw_.normal.size() == 3 * raw_.window.pixels(); }
+
+  const DepthFacts& facts_;
   const DepthValues& values_;
 };
 
 /// Decides an open kind: by flat surfaces, else by positions, else by normals, else by the program, else the usual
 /// one.
-void settle_depth_kind(const Settlement& settlement, const DepthValues& values);
+void settle_depth_kind(const DepthSettlement& depth);
 
 /// Depth within 0 to 1 is the part of a range more often than a distance, and no pixel shows how long that range is.
 /// It is refused where nothing supports distances, and noted where straight lines do: z / far has them too. `usual`:
 /// the kind that the program writes.
-void refuse_fractions(const Settlement& settlement, const DepthValues& values, DepthKind usual);
+void refuse_fractions(const DepthSettlement& depth, DepthKind usual);
 
 /// Notes where the pixels, or two sources of planes, speak against the kind of depth that is said. It is read so all
 /// the same.
-void doubt_depth_kind(const Settlement& settlement, const DepthValues& values);
+void doubt_depth_kind(const DepthSettlement& depth);
 /// Notes near planes that differ.
-void compare_near_planes(const Settlement& settlement, const DepthValues& values);
+void compare_near_planes(const DepthSettlement& depth);
 
 /// Settles the sign, depth at the ends of a range and beyond them, and one distance that may be the sky.
-void settle_depth_ends(const Settlement& settlement, const DepthValues& values);
+void settle_depth_ends(const DepthSettlement& depth);
 
 /// Settles the space of positions.
-void settle_position_space(const Settlement& settlement);
+void settle_position_space(const PlanesToSettle& planes);
 
 }  // namespace alcove

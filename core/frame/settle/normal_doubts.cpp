@@ -24,7 +24,7 @@ constexpr double kUsable = 0.5;
 
 class NormalDoubts : private NormalSettlement {
  public:
-  using NormalSettlement::NormalSettlement;
+  explicit NormalDoubts(const NormalSettlement& normals) : NormalSettlement(normals) {}
 
   /// Notes normals that depth speaks against, and refuses normals that it refutes.
   void run(const std::vector<NormalScore>& scores) {
@@ -64,8 +64,8 @@ class NormalDoubts : private NormalSettlement {
     fail(ErrorKind::input,
          "{}: the camera{} does not fit: by it {:.0f} % of the normals in {} space agree with depth; {}, then {:.0f} % "
          "agree; {}",
-         normal_path(), from(), 100 * chosen.agreement, word_of(chosen.space), turned->what,
-         100 * turned->score.agreement, kWithout);
+         path_, from(), 100 * chosen.agreement, word_of(chosen.space), turned->what, 100 * turned->score.agreement,
+         kWithout);
   }
 
  private:
@@ -88,8 +88,8 @@ class NormalDoubts : private NormalSettlement {
     const NormalScore& best = scores[0];
     refuse_flips(chosen, scores);
     refuse_turned_camera(chosen, best.close);
-    const std::string read = fmt::format("{}: its normals, read as {}, are not those of this depth and this camera",
-                                         normal_path(), text_of(chosen));
+    const std::string read =
+        fmt::format("{}: its normals, read as {}, are not those of this depth and this camera", path_, text_of(chosen));
     if (best.agreement >= kLeastAgreement && best.agreement > kClear * chosen.agreement)
       fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
@@ -109,7 +109,7 @@ class NormalDoubts : private NormalSettlement {
     fail(ErrorKind::input,
          "{}: --flip-normal {} does not fit: with it {:.0f} % of the normals agree with depth, without "
          "it {:.0f} %: leave it out",
-         normal_path(), to_string(settings_.flip_normal), 100 * chosen.agreement, 100 * plain->agreement);
+         path_, to_string(settings_.flip_normal), 100 * chosen.agreement, 100 * plain->agreement);
   }
 
   /// Refuses a principal point that fits elsewhere, and says where no pixel can tell.
@@ -121,7 +121,7 @@ class NormalDoubts : private NormalSettlement {
       fail(ErrorKind::input,
            "{}: the camera{} does not fit: by it {:.0f} % of the normals agree with depth to 3 degrees; {}, then "
            "{:.0f} % do; {}",
-           normal_path(), from(), 100 * chosen.close, other->what, 100 * other->score.close, kWithout);
+           path_, from(), 100 * chosen.close, other->what, 100 * other->score.close, kWithout);
     if (is_sharper(chosen, other->score)) return;
     note_centre(source_);
   }
@@ -169,12 +169,12 @@ class NormalDoubts : private NormalSettlement {
 
 }  // namespace
 
-void refuse_turned_camera(const Settlement& settlement, const NormalScore& chosen, double sharpest) {
-  NormalDoubts(settlement).refuse_turned_camera(chosen, sharpest);
+void refuse_turned_camera(const NormalSettlement& normals, const NormalScore& chosen, double sharpest) {
+  NormalDoubts(normals).refuse_turned_camera(chosen, sharpest);
 }
 
-void doubt_normals(const Settlement& settlement, const std::vector<NormalScore>& scores) {
-  NormalDoubts(settlement).run(scores);
+void doubt_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores) {
+  NormalDoubts(normals).run(scores);
 }
 
 }  // namespace alcove

@@ -20,7 +20,7 @@ namespace {
 
 class EncodingSettlement : private NormalSettlement {
  public:
-  using NormalSettlement::NormalSettlement;
+  explicit EncodingSettlement(const NormalSettlement& normals) : NormalSettlement(normals) {}
 
   NormalStatistics run() {
     const bool is_open = source_.open.normal_encoding;
@@ -81,7 +81,7 @@ class EncodingSettlement : private NormalSettlement {
          "(--normal-channels {},{}), which rebuilds z for those of view space; --normal-encoding octahedral or "
          "spheremap "
          "reads those of two channels in any space; {}",
-         normal_path(), all[missing->channel].channel, missing->value, all[missing->channel == 0 ? 1 : 0].channel,
+         path_, all[missing->channel].channel, missing->value, all[missing->channel == 0 ? 1 : 0].channel,
          all[missing->channel == 2 ? 1 : 2].channel, kWithout);
   }
 
@@ -89,8 +89,8 @@ class EncodingSettlement : private NormalSettlement {
   void refuse_altered(const NormalStatistics& n) const {
     if (std::max(n.unit_share, n.unorm_unit_share) > kUnit || n.usual_share > kUnit) return;
     if (const auto what = alteration_of(raw_, depth_map_of(reading_)))
-      fail(ErrorKind::input, "{}: its normals ({}) are of unit length on {:.0f} % only: they look like {}; {}",
-           normal_path(), channels(), 100 * n.unit_share, *what, kWithout);
+      fail(ErrorKind::input, "{}: its normals ({}) are of unit length on {:.0f} % only: they look like {}; {}", path_,
+           channels(), 100 * n.unit_share, *what, kWithout);
   }
 
   /// If the normals do not agree with depth, and do so much better in another encoding, that one is chosen where nobody
@@ -142,6 +142,6 @@ class EncodingSettlement : private NormalSettlement {
 
 }  // namespace
 
-NormalStatistics settle_normal_encoding(const Settlement& settlement) { return EncodingSettlement(settlement).run(); }
+NormalStatistics settle_normal_encoding(const NormalSettlement& normals) { return EncodingSettlement(normals).run(); }
 
 }  // namespace alcove

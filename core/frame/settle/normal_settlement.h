@@ -28,7 +28,10 @@ inline constexpr double kLeastTurn = 1, kLeastTurnOfHalf = 3;
 
 class NormalSettlement : protected Settlement {
  public:
-  explicit NormalSettlement(const Settlement& settlement) : Settlement(settlement) {}
+  NormalSettlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen)
+      : Settlement({source.reading, source.notes, settings, raw, seen, source.path_of(RawPlane::normal),
+                    source.normal_file()}),
+        source_(source) {}
 
  protected:
   NormalPlanes planes() const { return {over(reading_, raw_.window), raw_.normal, raw_.depth}; }
@@ -58,28 +61,30 @@ class NormalSettlement : protected Settlement {
       "check --normal-space, --normal-encoding, --depth-kind with --near, --far and --reversed-z, and --camera, "
       "--chan-rotation or --fov: "
       "it may also be the camera of another frame";
+
+  FrameSource& source_;
 };
 
 /// Settles the encoding of the normals, and refuses vectors that were treated as colours. Gives the statistics of some
 /// of them.
-NormalStatistics settle_normal_encoding(const Settlement& settlement);
+NormalStatistics settle_normal_encoding(const NormalSettlement& normals);
 /// Settles their space.
-void settle_normal_space(const Settlement& settlement, const NormalStatistics& statistics);
+void settle_normal_space(const NormalSettlement& normals, const NormalStatistics& statistics);
 
 /// Takes normals without components below 0 if depth says that they lost some: the file does not hold the lost ones.
 /// Returns whether they are such.
-bool settle_cut_normals(const Settlement& settlement, const std::vector<NormalScore>& scores,
+bool settle_cut_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores,
                         const NormalStatistics& statistics);
 
 /// Refuses normals whose components are in another order, or in two of the three channels, unless another camera
 /// explains them. `scores`: of the normals as they stand; none: they have no reading.
-void refuse_other_components(const Settlement& settlement, const std::vector<NormalScore>& scores,
+void refuse_other_components(const NormalSettlement& normals, const std::vector<NormalScore>& scores,
                              const NormalStatistics& statistics);
 
 /// Refuses the camera where the normals agree with depth by one that is turned in a usual way, and by the given one do
 /// not. `sharpest` is the share that another reading of the normals brings close.
-void refuse_turned_camera(const Settlement& settlement, const NormalScore& chosen, double sharpest);
+void refuse_turned_camera(const NormalSettlement& normals, const NormalScore& chosen, double sharpest);
 /// Notes normals that depth speaks against, and refuses normals that it refutes.
-void doubt_normals(const Settlement& settlement, const std::vector<NormalScore>& scores);
+void doubt_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores);
 
 }  // namespace alcove

@@ -16,7 +16,7 @@ namespace {
 
 class SpaceSettlement : private NormalSettlement {
  public:
-  using NormalSettlement::NormalSettlement;
+  explicit SpaceSettlement(const NormalSettlement& normals) : NormalSettlement(normals) {}
 
   void run(const NormalStatistics& statistics) {
     const bool has_world = reading_.camera.view_from_world.has_value();
@@ -94,31 +94,31 @@ class SpaceSettlement : private NormalSettlement {
     if (other == scores.end() || other->agreement < kAsGood * best.explained() || is_straighter(best, *other)) return;
     fail(ErrorKind::input,
          "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal",
-         normal_path(), word_of(best.space), word_of(other->space), text_of(best), text_of(*other));
+         path_, word_of(best.space), word_of(other->space), text_of(best), text_of(*other));
   }
 
   /// Refuses normals that are read in view space where they look like those of a world that nothing turns.
   void refuse_turned_world(const NormalScore& score) const {
     if (source_.program.normal_space == NormalSpace::view) return;
     if (const auto turned = turned_world(score))
-      fail(ErrorKind::input, "{}: {}: give a --camera file with world_to_camera; {}", normal_path(), *turned, kWithout);
+      fail(ErrorKind::input, "{}: {}: give a --camera file with world_to_camera; {}", path_, *turned, kWithout);
   }
 
   /// Refuses normals that are not those of view space where no matrix turns those of the world.
   [[noreturn]] void refuse_without_matrix(const std::vector<NormalScore>& scores) const {
-    if (!source_.program.by.empty()) throw NoWorldToCamera(normal_path());
+    if (!source_.program.by.empty()) throw NoWorldToCamera(path_);
     fail(
         ErrorKind::input,
         "{}: {:.0f} % of its normals at most agree with depth in view space; those of world space need a --camera file "
         "with world_to_camera; if they are in view space, {}; {}",
-        normal_path(), scores.empty() ? 0 : 100 * scores[0].agreement, kCheck, kWithout);
+        path_, scores.empty() ? 0 : 100 * scores[0].agreement, kCheck, kWithout);
   }
 };
 
 }  // namespace
 
-void settle_normal_space(const Settlement& settlement, const NormalStatistics& statistics) {
-  SpaceSettlement(settlement).run(statistics);
+void settle_normal_space(const NormalSettlement& normals, const NormalStatistics& statistics) {
+  SpaceSettlement(normals).run(statistics);
 }
 
 }  // namespace alcove

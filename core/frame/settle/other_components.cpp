@@ -96,7 +96,7 @@ namespace {
 
 class OtherChannels : private NormalSettlement {
  public:
-  using NormalSettlement::NormalSettlement;
+  explicit OtherChannels(const NormalSettlement& normals) : NormalSettlement(normals) {}
 
   void refuse(const std::vector<NormalScore>& scores, const NormalStatistics& n) const {
     constexpr double kGood = 0.8;     // close to depth: no other order has so many more
@@ -114,7 +114,7 @@ class OtherChannels : private NormalSettlement {
     // Another axis up looks like another order.
     if (const NormalScore* usual = score_of(scores, source_.program.normal_space, settings_.flip_normal))
       refuse_turned_camera(*this, *usual, kSharper * score.close);
-    fail(ErrorKind::input, "{}: {}; {}", normal_path(), text_of(*other, score), kWithout);
+    fail(ErrorKind::input, "{}: {}; {}", path_, text_of(*other, score), kWithout);
   }
 
  private:
@@ -134,9 +134,9 @@ class OtherChannels : private NormalSettlement {
 
 }  // namespace
 
-void refuse_other_components(const Settlement& settlement, const std::vector<NormalScore>& scores,
+void refuse_other_components(const NormalSettlement& normals, const std::vector<NormalScore>& scores,
                              const NormalStatistics& statistics) {
-  OtherChannels(settlement).refuse(scores, statistics);
+  OtherChannels(normals).refuse(scores, statistics);
 }
 
 }  // namespace alcove

@@ -18,7 +18,7 @@ constexpr double kLargestError = 2;
 
 class PositionSettlement : private Settlement {
  public:
-  explicit PositionSettlement(const Settlement& settlement) : Settlement(settlement) {}
+  using Settlement::Settlement;
 
   void run() {
     struct Candidate {
@@ -39,8 +39,7 @@ class PositionSettlement : private Settlement {
     if (!(*best->error <= kLargestError))
       fail(
           ErrorKind::input,
-          "{}: its positions lie {} from the pixels that hold them: check --set position-space and --camera",
-          depth_path(),
+          "{}: its positions lie {} from the pixels that hold them: check --set position-space and --camera", path_,
           *best->error < 1e6 ? fmt::format("{:.1f} pixels (median)", *best->error) : "on the other side of the camera");
     reading_.position_space = best->space;
     reading_.depth_range.negative = best->forward;
@@ -53,6 +52,6 @@ class PositionSettlement : private Settlement {
 
 }  // namespace
 
-void settle_position_space(const Settlement& settlement) { PositionSettlement(settlement).run(); }
+void settle_position_space(const PlanesToSettle& planes) { PositionSettlement(planes).run(); }
 
 }  // namespace alcove

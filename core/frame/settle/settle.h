@@ -44,9 +44,6 @@ bool settle_like(FrameSource& source, const FrameSource& settled);
 /// The word of --normal-encoding for normals of a frame that is settled.
 const char* encoding_name(NormalEncoding encoding, bool unorm);
 
-/// Settles kind and sign of the depth, or the space of positions.
-void settle_depth(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen);
-
 /// Settles encoding and space of the normals of a frame whose depth is settled. Refuses
 /// normals that depth and camera refute.
 void settle_normals(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen);

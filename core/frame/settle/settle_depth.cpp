@@ -9,7 +9,6 @@
 #include "core/frame/pixels/flatness.h"
 #include "core/frame/samples.h"
 #include "core/frame/settle/depth_settlement.h"
-#include "core/frame/settle/settle.h"
 
 namespace alcove {
 namespace {
@@ -31,11 +30,17 @@ Side side_of(std::vector<float>& values) {
 }
 
 /// Refuses options of the user for a range that depth of this kind lacks. Presets serve frames of every kind.
-void refuse_unused_range(const FrameSource& source, const InputSettings& settings) {
-  auto unused = unused_range_options(settings.depth_range, source.reading.depth_kind);
-  const auto& left_out = settings.from_presets;
+void refuse_unused_range(const PlanesToSettle& planes) {
+  auto unused = unused_range_options(planes.settings.depth_range, planes.reading.depth_kind);
+  const auto& left_out = planes.settings.from_presets;
   std::erase_if(unused, [&](const auto& option) { return std::ranges::find(left_out, option) != left_out.end(); });
-  if (!unused.empty()) refuse_range_options(source.depth_path(), unused, source.reading.depth_kind);
+  if (!unused.empty()) refuse_range_options(planes.path, unused, planes.reading.depth_kind);
+}
+
+void settle_plane(const DepthSettlement& depth, bool is_kind_open) {
+  is_kind_open ? settle_depth_kind(depth) : doubt_depth_kind(depth);
+  compare_near_planes(depth);
+  settle_depth_ends(depth);
 }
 
 }  // namespace
@@ -80,21 +85,20 @@ std::string DepthSettlement::normalized_line(bool reversed) {
       reversed ? " --reversed-z" : "", reversed ? 0 : 1);
 }
 
-void settle_depth(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
-  const Settlement settlement(source, settings, raw, seen);
-  const DepthValues values(raw.depth, settings.sky);
-  seen.tells = values.has_any;
-  if (source.reading.depth_kind == DepthKind::position) {
-    settle_position_space(settlement);
+void settle_depth(const PlanesToSettle& planes, const DepthFacts& facts) {
+  const auto depth = planes.raw.depth;
+  const double sky = planes.settings.sky;
+  const DepthValues values(depth, sky);
+  planes.seen.tells = values.has_any;
+  if (planes.reading.depth_kind == DepthKind::position) {
+    settle_position_space(planes);
   } else {
-    DepthShape shape = shape_of(raw.depth, view_of(source.reading, raw.window), settings.sky, seen.grain);
-    seen.depth_scores = std::move(shape.scores);
-    seen.curve = shape.curve;
-    source.open.depth_kind ? settle_depth_kind(settlement, values) : doubt_depth_kind(settlement, values);
-    compare_near_planes(settlement, values);
-    settle_depth_ends(settlement, values);
+    DepthShape shape = shape_of(depth, view_of(planes.reading, planes.raw.window), sky, planes.seen.grain);
+    planes.seen.depth_scores = std::move(shape.scores);
+    planes.seen.curve = shape.curve;
+    settle_plane({planes, facts, values}, facts.is_kind_open);
   }
-  refuse_unused_range(source, settings);
+  refuse_unused_range(planes);
 }
 
 }  // namespace alcove

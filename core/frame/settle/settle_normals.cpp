@@ -26,9 +26,9 @@ void note_centre(FrameSource& source) {
 }
 
 void settle_normals(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
-  const Settlement settlement(source, settings, raw, seen, RawPlane::normal);
-  const NormalStatistics statistics = settle_normal_encoding(settlement);
-  settle_normal_space(settlement, statistics);
+  const NormalSettlement normals(source, settings, raw, seen);
+  const NormalStatistics statistics = settle_normal_encoding(normals);
+  settle_normal_space(normals, statistics);
 }
 
 }  // namespace alcove

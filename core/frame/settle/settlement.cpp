@@ -11,19 +11,17 @@
 
 namespace alcove {
 
-Settlement::Settlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen,
-                       RawPlane about)
-    : source_(source),
-      reading_(source.reading),
-      settings_(settings),
-      raw_(raw),
-      seen_(seen),
-      view_(view_of(source.reading, raw.window)),
-      about_(about) {}
+Settlement::Settlement(PlanesToSettle planes)
+    : reading_(planes.reading),
+      settings_(planes.settings),
+      raw_(planes.raw),
+      seen_(planes.seen),
+      view_(view_of(planes.reading, planes.raw.window)),
+      path_(std::move(planes.path)),
+      notes_(planes.notes),
+      file_(std::move(planes.file)) {}
 
-void Settlement::note(NoteCode code, std::string text) {
-  source_.notes.push_back({code, std::move(text), about_ == RawPlane::normal ? source_.normal_file() : ""});
-}
+void Settlement::note(NoteCode code, std::string text) { notes_.push_back({code, std::move(text), file_}); }
 
 bool Settlement::is_allowed(NoteCode code) const {
   const auto allowed = split(settings_.allow);
@@ -41,8 +39,8 @@ void Settlement::take_down(const std::string& what, const std::string& chosen, c
 void Settlement::guess(const std::string& what, const std::string& chosen, const std::string& why,
                        const std::string& option, bool unusual, bool proven) {
   if (settings_.strict)
-    fail(ErrorKind::input, "{}: --strict, and nothing says the {}; it would be {} ({}): give {}",
-         about_ == RawPlane::normal ? normal_path() : depth_path(), what, chosen, why, option);
+    fail(ErrorKind::input, "{}: --strict, and nothing says the {}; it would be {} ({}): give {}", path_, what, chosen,
+         why, option);
   take_down(what, chosen, why, option, unusual, proven);
 }
 

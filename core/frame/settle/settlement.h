@@ -1,9 +1,10 @@
-// A frame that is being settled: what its steps share.
+// A frame that is being settled, from files or from memory: what its steps share.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <string>
 
+#include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/frame/evidence.h"
 #include "core/frame/find/frame_source.h"
@@ -11,19 +12,22 @@
 
 namespace alcove {
 
-/// A frame that is being settled, by planes of depth and normals as they were read.
+/// Planes of depth and normals that are being settled, as they were read.
+struct PlanesToSettle {
+  Reading& reading;
+  Notes& notes;
+  const InputSettings& settings;
+  const RawPart& raw;
+  Evidence& seen;
+  std::string path;       // of the planes in question, for errors
+  std::string file = {};  // the same for notes; empty: the frame's own
+};
+
 class Settlement {
  public:
-  /// Messages name the file of the plane `about`.
-  Settlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen,
-             RawPlane about = RawPlane::depth);
-
-  const Evidence& evidence() const { return seen_; }
+  explicit Settlement(PlanesToSettle planes);
 
  protected:
-  const std::string& depth_path() const { return source_.depth_path(); }
-  const std::string& normal_path() const { return source_.path_of(RawPlane::normal); }
-
   /// Takes down a choice, and notes an unusual one: with a warning unless the pixels prove it.
   void take_down(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
                  bool unusual, bool proven);
@@ -34,15 +38,16 @@ class Settlement {
   /// Whether --set allow names the code: then it is no error.
   bool is_allowed(NoteCode code) const;
 
-  FrameSource& source_;
   Reading& reading_;
   const InputSettings& settings_;
   const RawPart& raw_;
   Evidence& seen_;
   View view_;
+  const std::string path_;
 
  private:
-  const RawPlane about_;
+  Notes& notes_;
+  const std::string file_;
 };
 
 }  // namespace alcove

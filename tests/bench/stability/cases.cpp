@@ -40,7 +40,7 @@ const std::vector<Axis>& axes() {
     return changes;
   }();
   static const std::vector<Axis> all{
-      axis(&Spec::scale, {1e-6, 1e-3, 1e3, 1e6, 1e9}),
+      axis(&Spec::scale, {1e-15, 1e-6, 1e-3, 1e3, 1e9, 1e15}),
       axis(&Spec::range, {1e2, 1e4, 1e6}),
       axis(&Spec::fov, {0.0, 0.5, 5.0, 90.0, 120.0, 150.0, 170.0}),
       axis(&Spec::shift, {-3.0, 0.4, 1.0}),
