@@ -251,7 +251,7 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
       .flag("--strict", &S::strict, "guesses and warnings are errors");
   OptionGroup(rows, "Input", Effect::none, &Settings::input)
       .own(
-          {"allow", "CODE,...", "", "", "faults that are no errors: normals-disagree, of normals that mostly disagree"},
+          {"allow", "normals-disagree", "", "", "faults that are no errors: normals that mostly disagree with depth"},
           [](const S& s) { return s.allow; },
           [](S& s, const std::string& text) {
             s.allow = text;

@@ -1,7 +1,7 @@
 // Pictures that are no EXR: textures of RenderDoc, and normals of 8 and 16 bits; and files made to do harm.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/find/frame_source.h"
-#include "core/frame/settle/precision.h"
+#include "core/frame/settle/settle.h"
 #include "tests/support/command_line.h"
 #include "tests/support/dds_file.h"
 #include "tests/support/difference.h"
