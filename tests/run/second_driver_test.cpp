@@ -88,9 +88,7 @@ class SecondDriver : public WalkedShot {
 TEST_F(SecondDriver, searches_slices_as_the_first_does) { compared("--slices 2 --steps 8"); }
 
 // Rounding decides for one pixel whether a surface goes on behind others.
-TEST_F(SecondDriver, searches_exactly_as_the_first_does) {
-  compared("--search exact --slices 2 --set complete=none");
-}
+TEST_F(SecondDriver, searches_exactly_as_the_first_does) { compared("--search exact --slices 2 --set complete=none"); }
 
 TEST_F(SecondDriver, takes_hidden_surfaces_as_the_first_does) {
   compared("--search exact --slices 2 --behind " + (folder / "behind.exr"));

@@ -192,8 +192,9 @@ NormalOutlines normal_outlines(std::vector<int> shifts) {
 std::optional<Plateau> plateau_of(const WalkedPlanes& planes, const LineSource& source, const LineCounts& rows) {
   constexpr double kLeast = 0.005;  // of the surfaces
   if (rows.largest.empty() || rows.surfaces == 0) return std::nullopt;
-  const auto& [value, frequency] = *rows.largest.rbegin();
-  Plateau plateau{.value = value, .share = double(frequency) / double(rows.surfaces)};
+  const auto largest = rows.largest.rbegin();
+  const auto value = largest->first;
+  Plateau plateau{.value = value, .share = double(largest->second) / double(rows.surfaces)};
   if (plateau.share < kLeast) return std::nullopt;
   if (planes.normal.empty() || !planes.has_read_normals) return plateau;
   const Reading& reading = planes.reading;

@@ -34,9 +34,9 @@ const std::vector<Axis>& axes() {
   using N = NormalDefect;
   static const Axis sizes = [] {
     Axis changes;
-    for (const auto& [width, height] :
+    for (const auto& size :
          {std::pair{1, 1}, {1, 37}, {37, 1}, {3, 5}, {13, 31}, {47, 43}, {64, 48}, {16383, 1}, {1, 16383}, {16383, 2}})
-      changes.push_back([=](Spec& spec) { spec.width = width, spec.height = height; });
+      changes.push_back([=](Spec& spec) { spec.width = size.first, spec.height = size.second; });
     return changes;
   }();
   static const std::vector<Axis> all{
