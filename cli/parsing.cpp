@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <regex>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -90,6 +91,9 @@ const OptionRow* row_of(const Command& command, const std::string& complaint) {
     if (!row.name.starts_with('-')) places.push_back(row.name);
   if (places.empty())
     fail(ErrorKind::usage, "{}: {} takes options only{}", extra, command.name, see_help(command.name));
+  static const std::regex range(R"(\[?\d+-\d+(?:[x:]\d+)?\]?)");
+  if (std::regex_match(extra, range) && std::ranges::count(command.rows, "--frames", &OptionRow::long_name) > 0)
+    fail(ErrorKind::usage, "{}: a range of frames belongs to --frames{}", extra, see_help(command.name));
   const std::string pattern = names_input(extra) ? pattern_for(extra) : "";
   fail(ErrorKind::usage, "{}: {} takes one {}{}{}", extra, command.name, fmt::join(places, " and one "),
        pattern.empty() ? "" : "; a sequence is one name with a pattern: write " + pattern, see_help(command.name));

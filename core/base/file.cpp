@@ -42,6 +42,17 @@ std::string identity_of(const std::string& path) {
   return id + (below.empty() ? "" : "/" + below.string());
 }
 
+/// Says what stands in a file's place where a repository keeps its content elsewhere; "" for a file itself.
+std::string pointer_in(const std::string& path) {
+  constexpr std::uintmax_t kLongestPointer = 1024;  // by the specification of Git LFS
+  std::error_code error;
+  if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > kLongestPointer || error) return "";
+  std::ifstream file(path, std::ios::binary);
+  const std::string text = read_rest(file);
+  if (text.starts_with("version https://git-lfs.github.com/")) return "a pointer of Git LFS: git lfs pull fetches it";
+  return text.find("/annex/objects/") < 16 ? "a pointer of git-annex: git annex get fetches it" : "";
+}
+
 }  // namespace
 
 void require_readable(const std::string& path, const char* what, const char* option) {
@@ -53,6 +64,8 @@ void require_readable(const std::string& path, const char* what, const char* opt
   if (fs::is_directory(status)) fail(ErrorKind::input, "{}: is a folder; {} takes a {} file", path, option, what);
   if (const auto why = may_read(path))
     fail(ErrorKind::input, "{}: {} file cannot be read: {} ({})", path, what, why.message(), option);
+  if (const std::string why = pointer_in(path); !why.empty())
+    fail(ErrorKind::input, "{}: not the {} file itself but {} ({})", path, what, why, option);
 }
 
 std::string read_rest(std::istream& stream) {

@@ -14,6 +14,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/formats/absent_frames.h"
 
 namespace alcove {
 
@@ -22,6 +23,7 @@ namespace {
 constexpr long kMostFrames = 1'000'000;
 constexpr long kFrameLimit = 1'000'000'000;  // frame numbers lie nearer to 0: they have 9 digits at most
 constexpr int kMostPadding = 16;
+constexpr std::ptrdiff_t kMostParts = 10;  // of a short list
 
 /// A place for the frame number in a path.
 struct Token {
@@ -187,6 +189,13 @@ std::string frames_text(std::vector<int> frames) {
   return text;
 }
 
+std::string short_frames_text(const std::vector<int>& frames) {
+  const std::string text = frames_text(frames);
+  if (frames.empty() || std::ranges::count(text, ',') < kMostParts) return text;
+  const auto [first, last] = std::ranges::minmax(frames);
+  return fmt::format("{} frames from {} to {}", frames.size(), first, last);
+}
+
 std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option) {
   namespace fs = std::filesystem;
   if (pattern.after.find('/') != pattern.after.npos)
@@ -199,8 +208,11 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
   std::vector<int> frames;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (const auto frame = frame_of(name, entry->path().filename().string())) frames.push_back(*frame);
-  if (error) fail(ErrorKind::input, "{}: the folder {} cannot be read: {}", option, folder, error.message());
-  if (frames.empty()) fail(ErrorKind::input, "{}: there is no frame such as {}", option, pattern.path(1));
+  if (error)
+    fail(ErrorKind::input, "{}: the folder {} cannot be read: {}{}", option, folder, error.message(),
+         why_no_frames(pattern));
+  if (frames.empty())
+    fail(ErrorKind::input, "{}: there is no frame such as {}{}", option, pattern.path(1), why_no_frames(pattern));
   std::ranges::sort(frames);
   return frames;
 }

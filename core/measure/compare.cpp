@@ -10,6 +10,7 @@
 
 #include "core/base/image.h"
 #include "core/base/text.h"
+#include "core/formats/absent_frames.h"
 #include "core/formats/picture.h"
 #include "core/formats/sequence.h"
 #include "core/frame/find/frame_source.h"
@@ -61,7 +62,9 @@ std::vector<int> frames_of(const CompareSettings& settings) {
     if (pattern)
       std::ranges::copy_if(frames, std::back_inserter(missing),
                            [&](int frame) { return !is_there(pattern->path(frame)); });
-    if (!missing.empty()) fail(ErrorKind::input, "{}: frames are missing: {}", *path, frames_text(missing));
+    if (!missing.empty())
+      fail(ErrorKind::input, "{}: frames are missing: {}{}", *path, frames_text(missing),
+           missing.size() == frames.size() ? why_no_frames(*pattern) : "");
   }
   return frames;
 }

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/formats/absent_frames.h"
 #include "core/formats/sequence.h"
 #include "core/frame/raw_plane.h"
 
@@ -68,6 +69,12 @@ void refuse_glob(const std::string& path, const std::string& option) {
        pattern.find_first_of("*?") == pattern.npos ? pattern : "shot.####.exr");
 }
 
+/// Fails where a name that is no file has a placeholder of another program.
+void refuse_foreign_pattern(const std::string& path, const std::string& option) {
+  if (const std::string why = foreign_pattern_in(path); !why.empty())
+    fail(ErrorKind::usage, "{}: {} ({})", path, why, option);
+}
+
 /// Whether a name has a place for a frame number that no name has by chance, as one with a lone # may: ## or more, %d
 /// or %04d.
 bool has_clear_place(const std::string& name) {
@@ -104,7 +111,10 @@ void FramePlan::find_patterns(FileRole role) {
       if (are_inputs) refuse_folder(text, row.long_name());
       if (are_inputs ? exists(text) : !is_sequence_ && !has_clear_place(text)) continue;
       if (are_inputs) refuse_glob(text, row.long_name());
-      if (const auto name = frame_pattern(text)) patterns_.push_back({&row, i, text, *name});
+      if (const auto name = frame_pattern(text))
+        patterns_.push_back({&row, i, text, *name});
+      else if (are_inputs)
+        refuse_foreign_pattern(text, row.long_name());
     }
   }
 }
@@ -174,8 +184,9 @@ void FramePlan::find_inputs(const std::vector<int>& chunk) {
                          [&](int frame) { return !exists(pattern.name.path(frame)); });
     if (absent.empty()) continue;
     complaint +=
-        fmt::format("{}{}: {} of {} frames are missing: {} ({})", complaint.empty() ? "" : "; ", pattern.option(),
-                    absent.size(), chunk.size(), frames_text(absent), pattern.name.path(absent.front()));
+        fmt::format("{}{}: {} of {} frames are missing: {} ({}{})", complaint.empty() ? "" : "; ", pattern.option(),
+                    absent.size(), chunk.size(), frames_text(absent), pattern.name.path(absent.front()),
+                    absent.size() == chunk.size() ? why_no_frames(pattern.name) : "");
   }
   if (!complaint.empty() && settings_.frames.missing == Missing::error)
     fail(ErrorKind::input, "{}; --set missing=skip leaves them out, --frames says which to compute", complaint);

@@ -1,5 +1,6 @@
 // Whatever is wrong with files, settings or devices: the exit code, one line that helps, and every output as it was.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <openexr.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -130,6 +131,17 @@ TEST_F(BadInput, of_every_kind_ends_with_its_code) {
            {2, good(frame, {"--beauty", frame}), {"--beauty", "--composite"}},
        })
     expect_refused(code, words, arguments);
+}
+
+TEST_F(BadInput, a_compression_that_openexr_does_not_know_is_named) {
+  std::string bytes = read_bytes(frame);
+  char& compression = bytes[bytes.find("compression") + sizeof("compression") + sizeof("compression") + sizeof(int)];
+  for (const auto& [number, name] : {std::pair(10, "JPEG 2000"), std::pair(99, "number 99")}) {
+    if (number < EXR_COMPRESSION_LAST_TYPE) continue;
+    compression = char(number);
+    write_bytes(folder / "new.exr", bytes);
+    expect_refused(3, {"new.exr", name, "ZIP"}, good(folder / "new.exr"));
+  }
 }
 
 TEST_F(BadInput, a_pipe_is_refused_and_not_waited_for) {

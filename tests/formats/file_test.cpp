@@ -73,6 +73,13 @@ TEST_F(Files, read_text_tells_what_is_no_file) {
   expect_error(ErrorKind::input, {"camera", "--camera"}, [&] { read_text("", "camera", "--camera"); });
 }
 
+TEST_F(Files, a_pointer_in_place_of_a_file_is_no_file) {
+  write_bytes(path, "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n");
+  expect_error(ErrorKind::input, {path, "--test", "git lfs pull"}, [&] { read_text(path, "test", "--test"); });
+  write_bytes(path, "../.git/annex/objects/4d/7a/SHA256E-s12345--4d7a.exr");
+  expect_error(ErrorKind::input, {path, "--test", "git annex get"}, [&] { read_text(path, "test", "--test"); });
+}
+
 TEST_F(Files, read_text_tells_that_the_disk_fails) {  // as page 0 of a process does
   expect_error(ErrorKind::input, {"/proc/self/mem", "camera", "--camera"},
                [] { read_text("/proc/self/mem", "camera", "--camera"); });
