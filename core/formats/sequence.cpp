@@ -23,7 +23,6 @@ namespace {
 constexpr long kMostFrames = 1'000'000;
 constexpr long kFrameLimit = 1'000'000'000;  // frame numbers lie nearer to 0: they have 9 digits at most
 constexpr int kMostPadding = 16;
-constexpr std::ptrdiff_t kMostParts = 10;  // of a short list
 
 /// A place for the frame number in a path.
 struct Token {
@@ -174,26 +173,6 @@ std::vector<int> parse_frames(const std::string& list) {
     while (words >> word);
   }
   return frames;
-}
-
-std::string frames_text(std::vector<int> frames) {
-  std::ranges::sort(frames);
-  std::string text;
-  for (std::size_t i = 0; i < frames.size();) {
-    std::size_t end = i + 1;
-    while (end < frames.size() && frames[end] == frames[end - 1] + 1) end++;
-    if (!text.empty()) text += ", ";
-    text += end - i == 1 ? fmt::format("{}", frames[i]) : fmt::format("{}-{}", frames[i], frames[end - 1]);
-    i = end;
-  }
-  return text;
-}
-
-std::string short_frames_text(const std::vector<int>& frames) {
-  const std::string text = frames_text(frames);
-  if (frames.empty() || std::ranges::count(text, ',') < kMostParts) return text;
-  const auto [first, last] = std::ranges::minmax(frames);
-  return fmt::format("{} frames from {} to {}", frames.size(), first, last);
 }
 
 std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option) {

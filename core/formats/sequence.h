@@ -29,12 +29,6 @@ std::optional<FramePattern> frame_pattern(const std::string& path);
 /// anything else, on a step of 0, and on more than 1,000,000 frames, repeated ones counted.
 std::vector<int> parse_frames(const std::string& list);
 
-/// Writes the frames as the shortest list, in rising order: "1003, 1010-1012".
-std::string frames_text(std::vector<int> frames);
-
-/// The same, cut to the number of frames, the first and the last where the list has more than ten parts.
-std::string short_frames_text(const std::vector<int>& frames);
-
 /// Gives the frames of a pattern that lie on the disk, in rising order. Only names that the pattern itself makes count:
 /// shot.00042.exr is not a frame of shot.%04d.exr. `option` is for the message. Fails with ErrorKind::input if the
 /// folder cannot be read or holds no such file, and with ErrorKind::usage if the token is in the folder's name.

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <optional>
 
+#include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/formats/exr.h"
 #include "core/formats/png.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/sequence.h"
 
+#include "core/base/text.h"
 #include "core/formats/absent_frames.h"
 
 #include "tests/support/expect_error.h"

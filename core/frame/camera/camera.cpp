@@ -12,7 +12,6 @@
 #include "core/base/file.h"
 #include "core/base/option_words.h"
 #include "core/base/text.h"
-#include "core/formats/sequence.h"
 #include "core/frame/camera/foreign_camera.h"
 
 namespace alcove {
