@@ -29,8 +29,8 @@ constexpr ForeignCamera kForeignCameras[] = {
      "write a camera file with \"fx\" = w / 2 / tan(camera_angle_x / 2)"},
     {{"\"intrinsic_matrix\"", ""},
      "camera parameters of Open3D",
-     "write a camera file with fx, fy, cx and cy of its intrinsic_matrix, and as \"world_to_camera\" its extrinsic with "
-     "the second and the third row negated"},
+     "write a camera file with fx, fy, cx and cy of its intrinsic_matrix, and as \"world_to_camera\" its extrinsic "
+     "with the second and the third row negated"},
     {{"\"intrinsics\"", "\"poses\""}, "a scene of Meshroom (AliceVision)", kExport},
     {{"\"cameras\"", "\"shots\""}, "a reconstruction of OpenSfM", kExport},
     {{"\"asset\"", "\"cameras\""}, "a glTF scene", kExport},
