@@ -60,6 +60,8 @@ TEST_F(Library, refuses_what_makes_no_sense) {
   EXPECT_OK(handle, alcove_set(handle.get(), "fov", "60"));
   EXPECT_OK(handle, alcove_set(handle.get(), "depth-kind", "normalized"));
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "give 'far'");
+  EXPECT_OK(handle, alcove_set(handle.get(), "depth-kind", "position"));
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "'depth-kind' position takes the plane position");
   EXPECT_OK(handle, alcove_set(handle.get(), "depth-kind", "planar"));
   EXPECT_OK(handle, alcove_plane(handle.get(), "material-ao", values.data(), &other));
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT,
