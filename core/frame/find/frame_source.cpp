@@ -380,10 +380,9 @@ std::optional<std::variant<Resection, NoResection>> camera_by_positions(FrameSou
   const ExrFile& file = source.file_of(source.channels.positions.front());
   const auto points = points_of(source, settings.sky, kManyBands);
   auto found = resection_of(points, file.display());
-  if (std::holds_alternative<NoResection>(found))
-    if (const std::string panorama = panorama_of(points, file.display()); !panorama.empty())
-      refuse_panorama(file.path(), panorama + " by its positions");
-  return found;
+  const std::string why = fault_of_positions(points, file, found);
+  if (why.empty()) return found;
+  return NoResection{why};
 }
 
 /// The positions of a frame that has a camera. Where two layers hold some, none of them is needed.
@@ -425,6 +424,7 @@ void find_camera(FrameSource& source, const ChannelSearch& search, const InputSe
                        "its positions do not tell how far away an orthographic camera stands, and --around "
                        "needs that");
       source.camera_from = kByPositions;
+      note_pixel_aspect(source, kByPositions);
       return;
     }
   }

@@ -86,6 +86,7 @@ void settle(FrameSource& source, const InputSettings& settings, const RawPart& r
     if (why.empty()) throw;
     fail(error.kind(), "{}{}", error.what(), why);
   }
+  check_by_positions(source, settings, raw);
   add_new(source.suspicious, overflown_depth(source.reading, raw.depth, depth_channel(source)));
   note_findings(source, raw, seen);
   measure_levels(source.reading, raw.depth);
