@@ -250,13 +250,15 @@ std::optional<InspectedLight> light_passes_of(FrameSource& source, std::span<con
 
 std::string missing_light_text(const InspectedLight& light) {
   const std::string lacking =
-      light.lacking.empty() ? "" : fmt::format("; of {}'s passes the file lacks {}", light.renderer, list_of(light.lacking));
+      light.lacking.empty() ? ""
+                            : fmt::format("; of {}'s passes the file lacks {}", light.renderer, list_of(light.lacking));
   const std::string sum = fmt::format("{} is {:.3g} % of the beauty over the surfaces", light.sum, 100 * light.share);
   if (light.share > 1)
     return fmt::format("{}: the beauty lacks light, or is no linear light, such as one with a view transform", sum);
-  return fmt::format("{}: light is missing, and a composite of these passes is too dark{}; the beauty itself may also be no "
-                     "linear light, such as one with a view transform",
-                     sum, lacking);
+  return fmt::format(
+      "{}: light is missing, and a composite of these passes is too dark{}; the beauty itself may also be no "
+      "linear light, such as one with a view transform",
+      sum, lacking);
 }
 
 }  // namespace alcove

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/settle/settle.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/option_words.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
 #include "core/frame/find/behind.h"
@@ -41,8 +43,16 @@ void note_findings(FrameSource& source, const RawPart& raw, const Evidence& seen
 /// The faults of a frame that cannot be settled, which may be the reason: "; ..." for each.
 std::string reasons_of(const FrameSource& source, const RawPart& raw, const Evidence& seen) {
   std::string text;
+  const bool is_inverse = std::ranges::any_of(seen.guesses, [](const Guess& guess) {
+    return guess.what == "depth kind" && guess.chosen == word_of(DepthKind::inverse);
+  });
+  if (is_inverse && source.program.depth_kind != DepthKind::inverse && !source.reading.camera.orthographic)
+    text = fmt::format("; the depth is taken as 1/z by its flat surfaces, and {}", kOrthographicHint);
+  // An offset of distances, which are not below 0, says nothing of a range that begins among the surfaces.
+  const bool has_signs = std::ranges::any_of(raw.depth, [](float d) { return d < 0; });
   try {
-    for (const Note& note : detected(findings_of(source, raw, seen, false))) text += "; " + note.text;
+    for (const Note& note : detected(findings_of(source, raw, seen, false)))
+      if (!has_signs || note.code != NoteCode::depth_offset) text += "; " + note.text;
   } catch (const Error&) {  // the depth has no meaning yet
   }
   return text;
