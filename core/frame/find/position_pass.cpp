@@ -249,6 +249,27 @@ namespace {
 
 constexpr double kSame = 0.005;  // of depth that is that of the positions, in whatever unit
 
+/// Whether the frame has positions beside a depth of its own.
+bool has_positions_beside(const FrameSource& source) {
+  return !source.channels.positions.empty() && source.channels[RawPlane::depth].size() == 1;
+}
+
+/// Calls `take` with the planar depth of each point in front of the camera, with the raw value beside it, and with the
+/// length of its ray.
+template <class Take>
+void for_each_beside(const FrameSource& source, std::span<const SeenPoint> points, const RawPart& raw,
+                     const Take& take) {
+  const Window &data = raw.window, &display = source.reading.display;
+  const View view = view_of(source.reading, data);
+  for (const auto& point : points) {
+    const int x = int(point.x) + display.x - data.x, y = int(point.y) + display.y - data.y;
+    if (x < 0 || y < 0 || x >= data.width || y >= data.height) continue;
+    const double z = planar_of(point, source.reading.camera);
+    if (z > 0)
+      take(z, double(raw.depth[std::size_t(y) * std::size_t(data.width) + std::size_t(x)]), ray_length(view, x, y));
+  }
+}
+
 /// The difference of most numbers from another, at the most, relative to it. Half of a picture may be one wall, whose
 /// depth is the same.
 double most_apart(std::span<const double> numbers, double from) {
@@ -282,25 +303,18 @@ std::string difference_of(const std::vector<double>& depths, const std::vector<d
 
 void check_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
   const Camera& camera = source.reading.camera;
-  if (source.channels.positions.empty() || source.channels[RawPlane::depth].size() != 1 || source.open.camera ||
-      camera.orthographic)
-    return;
-  const Window &data = raw.window, &display = source.reading.display;
+  if (!has_positions_beside(source) || source.open.camera || camera.orthographic) return;
   const auto points = points_of(source, settings.sky, kFewBands);
-  const double limit = std::max(kLeastBeside, kLeastPart * display.width);
+  const double limit = std::max(kLeastBeside, kLeastPart * source.reading.display.width);
   if (points.empty() || beside(camera, camera, points) > limit) return;
-  const View view = view_of(source.reading, data);
   const DepthMap map = depth_map_of(source.reading);
   std::vector<double> depths, by_positions;
-  for (const auto& point : points) {
-    const int x = int(point.x) + display.x - data.x, y = int(point.y) + display.y - data.y;
-    if (x < 0 || y < 0 || x >= data.width || y >= data.height) continue;
-    const double value = raw.depth[std::size_t(y) * std::size_t(data.width) + std::size_t(x)];
-    const double depth = planar_depth(map, {value, 0, 0}, ray_length(view, x, y)), z = planar_of(point, camera);
-    if (!(depth > 0 && depth < settings.sky && z > 0)) continue;
+  for_each_beside(source, points, raw, [&](double z, double value, double ray) {
+    const double depth = planar_depth(map, {value, 0, 0}, ray);
+    if (!(depth > 0 && depth < settings.sky)) return;
     depths.push_back(depth);
     by_positions.push_back(z);
-  }
+  });
   if (depths.size() < kLeastPoints) return;
   const std::string why = difference_of(depths, by_positions);
   if (!why.empty())
@@ -312,20 +326,16 @@ void check_by_positions(FrameSource& source, const InputSettings& settings, cons
 
 std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
   constexpr double kOther = 4;  // times as far is another kind
-  if (source.channels.positions.empty() || source.channels[RawPlane::depth].size() != 1) return std::nullopt;
-  const Window &data = raw.window, &display = source.reading.display;
-  const View view = view_of(source.reading, data);
+  if (!has_positions_beside(source)) return std::nullopt;
   std::vector<double> planar, ray, inverse;
-  for (const auto& point : points_of(source, settings.sky, kFewBands)) {
-    const int x = int(point.x) + display.x - data.x, y = int(point.y) + display.y - data.y;
-    if (x < 0 || y < 0 || x >= data.width || y >= data.height) continue;
-    const double value = std::abs(raw.depth[std::size_t(y) * std::size_t(data.width) + std::size_t(x)]);
-    const double z = planar_of(point, source.reading.camera);
-    if (!(value > 0 && value < settings.sky && z > 0)) continue;
-    planar.push_back(value / z);
-    ray.push_back(value / (z * ray_length(view, x, y)));
-    inverse.push_back(value * z);
-  }
+  for_each_beside(source, points_of(source, settings.sky, kFewBands), raw,
+                  [&](double z, double signed_value, double to) {
+                    const double value = std::abs(signed_value);
+                    if (!(value > 0 && value < settings.sky)) return;
+                    planar.push_back(value / z);
+                    ray.push_back(value / (z * to));
+                    inverse.push_back(value * z);
+                  });
   if (planar.size() < kLeastPoints) return std::nullopt;
   const std::array spreads{std::pair{spread(planar), DepthKind::planar}, std::pair{spread(ray), DepthKind::ray},
                            std::pair{spread(inverse), DepthKind::inverse}};
