@@ -48,11 +48,12 @@ std::string reasons_of(const FrameSource& source, const RawPart& raw, const Evid
   });
   if (is_inverse && source.program.depth_kind != DepthKind::inverse && !source.reading.camera.orthographic)
     text = fmt::format("; the depth is taken as 1/z by its flat surfaces, and {}", kOrthographicHint);
-  // An offset of distances, which are not below 0, says nothing of a range that begins among the surfaces.
-  const bool has_signs = std::ranges::any_of(raw.depth, [](float d) { return d < 0; });
+  // Of a range that begins behind most surfaces, the offset of distances from 0 says nothing.
+  const auto below = std::ranges::count_if(raw.depth, [](float d) { return d < 0; });
+  const bool is_mostly_below = 2 * std::size_t(below) > raw.depth.size();
   try {
     for (const Note& note : detected(findings_of(source, raw, seen, false)))
-      if (!has_signs || note.code != NoteCode::depth_offset) text += "; " + note.text;
+      if (!is_mostly_below || note.code != NoteCode::depth_offset) text += "; " + note.text;
   } catch (const Error&) {  // the depth has no meaning yet
   }
   return text;
