@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -106,32 +108,36 @@ struct PointModel {
   double (*distance)(const std::array<double, N>& numbers, const SeenPoint& seen);  // in units of `seen`
 };
 
-/// Any linear map to the picture's plane, so that axes may be stretched and skewed.
-constexpr PointModel<12> kLinear{[](const SeenPoint& seen, std::vector<std::array<double, 12>>& equations) {
-                                   const auto& [x, y, z] = seen.position;
-                                   const double u = seen.x, v = seen.y;
-                                   equations.push_back({x, y, z, 1, 0, 0, 0, 0, -u * x, -u * y, -u * z, -u});
-                                   equations.push_back({0, 0, 0, 0, x, y, z, 1, -v * x, -v * y, -v * z, -v});
-                                 },
-                                 [](const std::array<double, 12>& m, const SeenPoint& seen) {
-                                   const double over = 1 / row_at(&m[8], seen.position);
-                                   return std::hypot(row_at(&m[0], seen.position) * over - seen.x,
-                                                     row_at(&m[4], seen.position) * over - seen.y);
-                                 }};
+void add_linear(const SeenPoint& seen, std::vector<std::array<double, 12>>& equations) {
+  const auto& [x, y, z] = seen.position;
+  const double u = seen.x, v = seen.y;
+  equations.push_back({x, y, z, 1, 0, 0, 0, 0, -u * x, -u * y, -u * z, -u});
+  equations.push_back({0, 0, 0, 0, x, y, z, 1, -v * x, -v * y, -v * z, -v});
+}
 
-/// Any lens that is round: Tsai's radial alignment (A versatile camera calibration technique, 1987). The distance is
-/// that across the direction from the middle.
-constexpr PointModel<8> kRound{[](const SeenPoint& seen, std::vector<std::array<double, 8>>& equations) {
-                                 const auto& [x, y, z] = seen.position;
-                                 const double u = seen.x, v = seen.y;
-                                 equations.push_back({v * x, v * y, v * z, v, -u * x, -u * y, -u * z, -u});
-                               },
-                               [](const std::array<double, 8>& m, const SeenPoint& seen) {
-                                 const double right = row_at(&m[0], seen.position), down = row_at(&m[4], seen.position);
-                                 const double across = length(Vector3{seen.x, seen.y, 0}) / std::hypot(right, down);
-                                 return std::hypot(std::abs(right) * across - std::abs(seen.x),
-                                                   std::abs(down) * across - std::abs(seen.y));
-                               }};
+double linear_distance(const std::array<double, 12>& m, const SeenPoint& seen) {
+  const double over = 1 / row_at(&m[8], seen.position);
+  return std::hypot(row_at(&m[0], seen.position) * over - seen.x, row_at(&m[4], seen.position) * over - seen.y);
+}
+
+/// Any linear map to the picture's plane, so that axes may be stretched and skewed.
+constexpr PointModel<12> kLinear{add_linear, linear_distance};
+
+void add_round(const SeenPoint& seen, std::vector<std::array<double, 8>>& equations) {
+  const auto& [x, y, z] = seen.position;
+  const double u = seen.x, v = seen.y;
+  equations.push_back({v * x, v * y, v * z, v, -u * x, -u * y, -u * z, -u});
+}
+
+/// The distance across the direction from the middle.
+double round_distance(const std::array<double, 8>& m, const SeenPoint& seen) {
+  const double right = row_at(&m[0], seen.position), down = row_at(&m[4], seen.position);
+  const double across = length(Vector3{seen.x, seen.y, 0}) / std::hypot(right, down);
+  return std::hypot(std::abs(right) * across - std::abs(seen.x), std::abs(down) * across - std::abs(seen.y));
+}
+
+/// Any lens that is round: Tsai's radial alignment (A versatile camera calibration technique, 1987).
+constexpr PointModel<8> kRound{add_round, round_distance};
 
 /// The share of the points that the projection which fits best sees within kSeenWithin of their pixels.
 template <std::size_t N>

@@ -176,13 +176,51 @@ int deep_part(const FrameSource& source) { return source.channels.deep->elements
 
 double percent(std::size_t part, std::size_t whole) { return 100.0 * double(part) / double(whole); }
 
+/// The first surface at a pixel.
+struct FirstSurface {
+  double z, ray;
+  double separation;  // of surfaces that are two
+
+  bool is_one(double a, double b) const { return std::abs(a - b) <= separation; }
+};
+
+/// Counts a surface of a plane.
+void add_surface(BehindCounts& plane, double z, bool along_ray, const FirstSurface& first) {
+  plane.before += z < first.z - first.separation;
+  plane.same += first.is_one(z, first.z);
+  plane.parts.push_back(float(z / first.z));
+  if (first.ray < kOblique) return;
+  const double other = along_ray ? z * first.ray : z / first.ray;
+  plane.oblique++;
+  plane.as_read += std::abs(z - first.z) < kEqual * first.z;
+  plane.otherwise += std::abs(other - first.z) < kEqual * first.z;
+}
+
+/// Counts the planes' depths at a pixel.
+void count(std::vector<BehindCounts>& planes, const Reading& reading, std::span<const double> depths,
+           std::span<const DepthMap> maps, const FirstSurface& first) {
+  for (std::size_t p = 0; p < depths.size(); p++) {
+    const BehindKind kind = reading.behind[p].kind;
+    if (!std::isfinite(depths[p])) continue;
+    planes[p].surfaces++;
+    if (kind == BehindKind::thickness) {
+      planes[p].as_deep += depths[p] >= first.z - first.separation;
+      continue;
+    }
+    bool is_known = first.is_one(depths[p], first.z);
+    for (std::size_t q = 0; q < p; q++)
+      is_known = is_known || (reading.behind[q].kind == kind && first.is_one(depths[p], depths[q]));
+    planes[p].known += is_known;
+    add_surface(planes[p], depths[p], maps[p].along_ray, first);
+  }
+}
+
 }  // namespace
 
 void BehindSample::add(const Reading& reading, std::span<const float> depth, std::span<const float> behind,
                        const Window& window, const Window& whole) {
   planes_.resize(reading.behind.size());
   if (planes_.empty()) return;
-  const std::size_t pixels = window.pixels();
   taken_.resize(whole.pixels() / sampling_step(whole, kSampled) + 1);
   const View view = view_of(reading.camera, window, reading.display);
   const DepthMap own = depth_map_of(reading);
@@ -192,35 +230,16 @@ void BehindSample::add(const Reading& reading, std::span<const float> depth, std
   for_each_sampled(view, depth, window, whole, kSampled, [&](const SampledPixel& pixel) {
     if (taken_[pixel.number]) return;
     taken_[pixel.number] = true;
-    const double first = planar_depth(own, pixel.values, pixel.ray);
-    const double width = std::abs(view.tangent_per_pixel.x) * (view.orthographic ? 1 : first);
-    const double separation = kSameSurface * precision.at_depth(first) + width;
-    for (std::size_t p = 0; p < planes_.size(); p++) {
-      BehindCounts& plane = planes_[p];
-      const double raw = behind[pixel.at + p * pixels];
-      if (raw < 0) plane.negative++;
-      const double z = planar_depth(maps[p], {raw, 0, 0}, pixel.ray);
-      if (!std::isfinite(first) || !std::isfinite(z)) continue;
-      plane.surfaces++;
-      if (reading.behind[p].kind == BehindKind::thickness) {
-        plane.as_deep += z >= first - separation ? 1 : 0;
-        continue;
-      }
-      const auto is_same = [&](double other) { return std::abs(z - other) <= separation; };
-      plane.before += z < first - separation ? 1 : 0;
-      plane.same += is_same(first) ? 1 : 0;
-      bool is_known = is_same(first);
-      for (std::size_t q = 0; q < p && !is_known; q++)
-        is_known = reading.behind[q].kind == reading.behind[p].kind &&
-                   is_same(planar_depth(maps[q], {behind[pixel.at + q * pixels], 0, 0}, pixel.ray));
-      plane.known += is_known ? 1 : 0;
-      plane.parts.push_back(float(z / first));
-      if (pixel.ray < kOblique) continue;
-      const double other = maps[p].along_ray ? z * pixel.ray : z / pixel.ray;
-      plane.oblique++;
-      plane.as_read += std::abs(z - first) < kEqual * first ? 1 : 0;
-      plane.otherwise += std::abs(other - first) < kEqual * first ? 1 : 0;
+    const double z = planar_depth(own, pixel.values, pixel.ray);
+    const double width = std::abs(view.tangent_per_pixel.x) * (view.orthographic ? 1 : z);
+    const FirstSurface first{z, pixel.ray, kSameSurface * precision.at_depth(z) + width};
+    std::vector<double> depths;
+    for (std::size_t p = 0; p < maps.size(); p++) {
+      const double raw = behind[pixel.at + p * window.pixels()];
+      planes_[p].negative += raw < 0;
+      depths.push_back(planar_depth(maps[p], {raw, 0, 0}, pixel.ray));
     }
+    if (std::isfinite(z)) count(planes_, reading, depths, maps, first);
   });
 }
 
