@@ -103,6 +103,32 @@ TEST_F(Inspect, adds_up_the_light_passes) {
   EXPECT_EQ(seen(other)["light"], nullptr) << "one part alone is no sum";
 }
 
+TEST_F(Inspect, knows_the_light_passes_of_each_renderer) {
+  for (const std::vector<std::string>& passes :
+       {std::vector<std::string>{"diffuse_direct", "diffuse_indirect", "specular"},
+        {"diffuse", "coat_direct", "coat_indirect", "sss"},
+        {"VRayLighting", "VRayGlobalIllumination", "VRayReflection", "VRaySelfIllumination"},
+        {"lighting", "GI", "reflect"},
+        {"directdiffuse", "indirectdiffuse", "combinedglossyreflection"},
+        {"combineddiffuse", "glossytransmission"}}) {
+    FrameFile file = wall_frame();
+    std::size_t seed = 1;
+    for (const std::string component : {"R", "G", "B"}) {
+      auto& beauty = file.planes[component] = std::vector<float>(file.data.pixels());
+      for (const auto& pass : passes)
+        for (float& sum : beauty) {
+          const float value = 0.1F + float(seed++ * 7919 % 101) / 101;
+          sum += value;
+          file.planes[pass + "." + component].push_back(value);
+        }
+    }
+    const json light = seen(file)["light"];
+    ASSERT_NE(light, nullptr) << passes[0];
+    EXPECT_EQ(light["sum"], fmt::format("{}", fmt::join(passes, " + ")));
+    EXPECT_EQ(light["adds_up"], true);
+  }
+}
+
 TEST_F(Inspect, says_which_light_is_missing) {
   const auto said = [&](const std::string& without) {
     FrameFile file = lit_frame();
