@@ -348,13 +348,13 @@ double focal_error(const Pinhole& camera, std::span<const SeenPoint> points) {
 }
 
 /// The map from the world to view space, in scene units.
-struct Placement {
+struct CameraPlace {
   Matrix3 view_from_world{};
   Vector3 offset{};
 };
 
-Placement placement_of(const Pinhole& solved, const Normalized& from) {
-  Placement placed;
+CameraPlace placement_of(const Pinhole& solved, const Normalized& from) {
+  CameraPlace placed;
   for (std::size_t row = 0; row < 3; row++) {
     const double sign = row == 0 ? 1 : -1;  // up, and backwards
     placed.view_from_world[row] = scaled(solved.axes[row], sign);
@@ -364,7 +364,7 @@ Placement placement_of(const Pinhole& solved, const Normalized& from) {
 }
 
 /// Whether the camera stands at the origin, turned or moved by very little, in radians and in what the scene measures.
-bool is_at_origin(const Placement& placed, bool orthographic, double size) {
+bool is_at_origin(const CameraPlace& placed, bool orthographic, double size) {
   constexpr double kLittle = 1e-3;
   const double ahead = placed.view_from_world[2][2] < 0 ? -1 : 1;
   double apart = 0;
@@ -405,7 +405,7 @@ Resection result_of(const Pinhole& solved, const Normalized& from, const Window&
   camera.fy = solved.fy * per_unit;
   camera.cx = solved.cx;
   camera.cy = solved.cy;
-  Placement placed = placement_of(solved, from);
+  CameraPlace placed = placement_of(solved, from);
   const auto [nearest, farthest] = extent_of(solved, from, placed.view_from_world[2]);
   if (is_at_origin(placed, solved.orthographic, from.size) && (!solved.orthographic || nearest > 0)) {
     camera.left_handed = placed.view_from_world[2][2] < 0;
