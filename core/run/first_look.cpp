@@ -339,9 +339,9 @@ std::string plan_text(FirstLook& look) {
   if (!plan.missing().empty())
     line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
   for (const auto& note : notes) line(level_of(note), line_of(note, ""));
+  refuse_overwriting(plan);
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
-  refuse_overwriting(plan);
   require_endings(first.output);
   for (const auto& row : file_rows()) {
     if (!row.is_of_frame) continue;

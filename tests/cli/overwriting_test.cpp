@@ -199,6 +199,19 @@ TEST_F(LostFiles, are_no_frames_that_others_take_from) {
   EXPECT_EQ(run({"--frames", "1", "-o", input(2)}).code, 0);
 }
 
+TEST_F(LostFiles, are_none_of_a_chunk_without_frames) {
+  const std::string preset = folder / "p.toml";
+  write_bytes(preset, "power = 1\n");
+  const Options chunk{"--chunk", "1/5"};  // chunks 2, 4 and 5 have the three frames
+  ASSERT_EQ(run(chunk).code, 0);
+  ASSERT_TRUE(names_in(out).empty());
+  for (const char* report : {"--stats", "--log-json"}) {
+    expect_safe(input(1), {report, "INPUT " + input(1)}, run_of(joined(chunk, {report, input(1)})));
+    expect_safe(preset, {report, "--preset " + preset}, run_of(joined(chunk, {"--preset", preset, report, preset})));
+  }
+  expect_safe(input(1), {"--stats", "INPUT " + input(1)}, run_of(joined(chunk, {"--dry-run", "--stats", input(1)})));
+}
+
 TEST_F(LostFiles, are_no_skies_presets_cameras_or_inspected_frames) {
   const std::string sky = folder / "sk.exr", preset = folder / "p.toml";
   write_bytes(sky, "sky");
