@@ -8,6 +8,7 @@
 #include "core/chain/geometry/matte.h"
 #include "core/chain/hidden/hidden.h"
 #include "core/chain/open_sky.h"
+#include "core/chain/quick/quick.h"
 #include "core/chain/results/confidence.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/reduce.h"
@@ -32,6 +33,7 @@ struct Seen {
   gpu::Buffer* error = nullptr;  // of the frame's pixels
   gpu::Buffer* count = nullptr;  // of a mean: a plane of how many frames each pixel's visibility is the mean
   DebugStages stages;
+  bool is_quick = false;  // by the quick search
 };
 
 /// All surfaces of the frame, with unit normals that face the eye.
@@ -44,6 +46,17 @@ Surfaces surfaces_of(gpu::Recorder& gpu, const FrameInputs& frame, const Estimat
   return {cut(gpu, frame, wide, prepared), wide};
 }
 
+/// The visibility by the quick search.
+Visibility quick_visibility(gpu::Recorder& gpu, const GBuffer& work, const FrameInputs& inputs,
+                            const EstimatorSettings& settings, Estimate& estimate) {
+  const Blocks blocks = block_sites(gpu, work, settings, inputs);
+  margin(gpu, work, blocks);
+  const gpu::Buffer& seen = quick_horizon(gpu, work, blocks, sampling_of(settings, inputs.frame));
+  const gpu::Buffer& fitted = fit_blocks(gpu, blocks, seen);
+  estimate.listed.site_counts = blocks.counts;
+  return {&spread_blocks(gpu, work, blocks, fitted)};
+}
+
 /// The frame's own estimate, smoothed.
 Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
                     const EstimatorSettings& settings, const Wanted& wanted) {
@@ -53,9 +66,16 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   const GBuffer counted = occluders(gpu, surfaces.wide, frame);
   const GBuffer blocks = downsample(gpu, counted, block_grid(inputs, int(settings.resolution)));
   const GBuffer work = needed(gpu, blocks, inputs, seen.matte, filter_reach_of(settings));
+  const uint order = moment_order(settings, wanted);
+  seen.is_quick = searches_quickly(settings, work, order);
+  if (seen.is_quick) {
+    seen.visibility = quick_visibility(gpu, work, inputs, settings, seen.estimate);
+    seen.stages = {.gbuffer = work, .denoised_ao = seen.visibility.ao};
+    return seen;
+  }
   const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn));
   const bool with_completed = wanted.completed && completes_anywhere(settings);
-  seen.estimate = estimate(gpu, work, chosen, inputs, settings, moment_order(settings, wanted), with_completed);
+  seen.estimate = estimate(gpu, work, chosen, inputs, settings, order, with_completed);
   seen.completion = completion(gpu, work, seen.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
   const Visibility noisy = combine(gpu, work, seen.estimate, wanted.needs_scales());
@@ -102,7 +122,8 @@ FrameOutputs counts_of(const Surfaces& surfaces, const Seen& seen) {
           .squares = seen.estimate.squares,
           .completion = seen.completion,
           .completed = seen.estimate.completed,
-          .count = seen.count};
+          .count = seen.count,
+          .is_quick = seen.is_quick};
 }
 
 /// The estimate that the frame hands to others.

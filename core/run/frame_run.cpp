@@ -48,6 +48,7 @@ void FrameTally::add_others(const PreparationCost& cost) {
 void FrameTally::add_estimate(const FrameReport& estimate, const Others& others) {
   report_.tiles = estimate.tiles;
   report_.estimates = estimate.estimates;
+  is_quick_ = is_quick_ || estimate.search == word_of(SliceSearch::quick);
   report_.occlusion = estimate.occlusion;
   if (!others.seen.empty()) return;  // the frame itself counts them
   report_.hidden = estimate.hidden;
@@ -84,6 +85,7 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
   counts_.repaired_beauty += counts.repaired_beauty;
   report_.pixels += computed.pixels();
   has_ao_ = outputs.ao;
+  is_quick_ = is_quick_ || outputs.is_quick;
 
   if (outputs.layer_counts) {
     const auto layers = outputs.layer_counts->as<LayerCounts>()[0];
@@ -124,6 +126,13 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
   }
 }
 
+/// The search along slices that made the estimate, which the settings may only ask for; empty: there is none.
+static std::string search_of(const EstimatorSettings& settings, bool is_quick) {
+  if (!searches_slices(settings)) return "";
+  if (settings.tolerance > 0 && settings.search != SliceSearch::every_pixel) return word_of(SliceSearch::exact);
+  return word_of(settings.search == SliceSearch::quick && !is_quick ? SliceSearch::steps : settings.search);
+}
+
 void FrameTally::finish(const FrameSource& source, const Settings& settings) {
   if (report_.pixels == 0) report_.pixels = source.reading.data.pixels();
   report_.rows_read = source.rows_read + rows_of_others_;
@@ -137,6 +146,7 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
   add_new(report_.notes, behind_.notes(source));
   add_new(report_.notes, deep_notes(source));
   if (has_ao_) {
+    report_.search = search_of(settings.estimator, is_quick_);
     const std::vector<double> radii = radii_of(settings.estimator);
     add_new(report_.notes,
             sample_.notes(radii.front(), radii.back(), source.reading.data.width, source.reading.data.height));
