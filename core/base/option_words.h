@@ -120,8 +120,10 @@ inline constexpr Word<Estimator> kWordsOf<Estimator>[] = {{"bitmask", Estimator:
                                                           {"gtao", Estimator::gtao},
                                                           {"hbao", Estimator::hbao}};
 template <>
-inline constexpr Word<SliceSearch> kWordsOf<SliceSearch>[] = {
-    {"every-pixel", SliceSearch::every_pixel}, {"exact", SliceSearch::exact}, {"quick", SliceSearch::quick}, {"steps", SliceSearch::steps}};
+inline constexpr Word<SliceSearch> kWordsOf<SliceSearch>[] = {{"every-pixel", SliceSearch::every_pixel},
+                                                              {"exact", SliceSearch::exact},
+                                                              {"quick", SliceSearch::quick},
+                                                              {"steps", SliceSearch::steps}};
 template <>
 inline constexpr Word<Elevation> kWordsOf<Elevation>[] = {{"surface", Elevation::surface}, {"view", Elevation::view}};
 template <>

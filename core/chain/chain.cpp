@@ -46,15 +46,21 @@ Surfaces surfaces_of(gpu::Recorder& gpu, const FrameInputs& frame, const Estimat
   return {cut(gpu, frame, wide, prepared), wide};
 }
 
-/// The visibility by the quick search.
-Visibility quick_visibility(gpu::Recorder& gpu, const GBuffer& work, const FrameInputs& inputs,
-                            const EstimatorSettings& settings, Estimate& estimate) {
+/// Estimates and smooths by the quick search.
+void see_quickly(gpu::Recorder& gpu, const GBuffer& work, const FrameInputs& inputs, const EstimatorSettings& settings,
+                 const Wanted& wanted, Seen& seen) {
+  seen.is_quick = true;
   const Blocks blocks = block_sites(gpu, work, settings, inputs);
   margin(gpu, work, blocks);
-  const gpu::Buffer& seen = quick_horizon(gpu, work, blocks, sampling_of(settings, inputs.frame));
-  const gpu::Buffer& fitted = fit_blocks(gpu, blocks, seen);
-  estimate.listed.site_counts = blocks.counts;
-  return {&spread_blocks(gpu, work, blocks, fitted)};
+  const gpu::Buffer& at_sites = quick_horizon(gpu, work, blocks, sampling_of(settings, inputs.frame));
+  const gpu::Buffer& fitted = fit_blocks(gpu, blocks, at_sites);
+  seen.visibility.ao = &spread_blocks(gpu, work, blocks, fitted);
+  seen.estimate.listed.site_counts = blocks.counts;
+  seen.stages = {.gbuffer = work, .denoised_ao = seen.visibility.ao};
+  if (wanted.debug_views.empty()) return;
+  const ShownBlocks shown = show_blocks(gpu, work, blocks, at_sites);
+  seen.stages.sites = shown.sites;
+  seen.stages.raw_ao = shown.ao;
 }
 
 /// The frame's own estimate, smoothed.
@@ -67,10 +73,8 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   const GBuffer blocks = downsample(gpu, counted, block_grid(inputs, int(settings.resolution)));
   const GBuffer work = needed(gpu, blocks, inputs, seen.matte, filter_reach_of(settings));
   const uint order = moment_order(settings, wanted);
-  seen.is_quick = searches_quickly(settings, work, order);
-  if (seen.is_quick) {
-    seen.visibility = quick_visibility(gpu, work, inputs, settings, seen.estimate);
-    seen.stages = {.gbuffer = work, .denoised_ao = seen.visibility.ao};
+  if (searches_quickly(settings, work, order)) {
+    see_quickly(gpu, work, inputs, settings, wanted, seen);
     return seen;
   }
   const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn));

@@ -22,9 +22,6 @@ readonly buffer Seen { float seen[]; };  // from quick_horizon
 // by the sites' numbers: what is blocked, and by how much that grows per pixel to the right and below
 writeonly buffer Fitted { vec4 fitted[]; };
 
-/// Of other blocks so many sites count. All of them would take half as long again, for .002 less error.
-const int kOtherSites = 2;
-
 const int kAround = 2;  // blocks to each side
 
 /// Pixels to the end of the weights, at most and at least.
@@ -39,7 +36,7 @@ const float kTiny = 1e-20;
 /// Weighted sums over sites.
 struct Sums {
   float weight, blocked;
-  vec2 px, rise;         // of the way to the site, and of that times what is blocked there
+  vec2 px, rise;  // of the way to the site, and of that times what is blocked there
   float xx, xy, yy;
 };
 
@@ -82,7 +79,7 @@ void main() {
       const ivec2 other = block + ivec2(x, y), there = clamp(other, ivec2(0), blocks - 1);
       const int o = there.y * blocks.x + there.x;
       const uint word = other == there ? words[o] : 0u;
-      const uint count = o == number ? sites_in(word) : min(sites_in(word), uint(kOtherSites));
+      const uint count = sites_in(word);
       uint j = 0u;
       if (count > 0u) do {
           const uint from = uint(o * kBlockSites) + j;

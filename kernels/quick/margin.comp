@@ -35,8 +35,8 @@ void main() {
   const ivec2 nearest = clamp(pixel, ivec2(0), most), mirrored = clamp(2 * nearest - pixel, ivec2(0), most);
   const int index = index_of(view, nearest);
   const vec3 n = octahedral_direction(unpackSnorm2x16(normal[index]));
-  const float z = depth_beyond(view, tangent_of(view, vec2(nearest) + 0.5), depth[index], n,
-                               tangent_of(view, vec2(mirrored) + 0.5), depth[index_of(view, mirrored)],
-                               tangent_of(view, vec2(pixel) + 0.5), kLeastFacingToGoOn);
+  const float z =
+      depth_beyond(view, tangent_of(view, vec2(nearest) + 0.5), depth[index], n, tangent_of(view, vec2(mirrored) + 0.5),
+                   depth[index_of(view, mirrored)], tangent_of(view, vec2(pixel) + 0.5), kLeastFacingToGoOn);
   wide[place.y * (view.size.x + 2 * kDepthMargin) + place.x] = z < kSkyDepth ? -z : kSkyDepth;
 }

@@ -120,4 +120,14 @@ gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const Blo
   return ao;
 }
 
+ShownBlocks show_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const Blocks& blocks, const gpu::Buffer& seen) {
+  const View& view = gbuffer.view;
+  const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
+  const gpu::Buffer& rows = gpu.buffer("rows of blocks", sizeof(uint) * kTile * tiles.x * tiles.y);
+  const gpu::Buffer& ao = gpu.buffer("ao", plane_bytes(view));
+  gpu.dispatch("show_blocks", blocks.params, {{"Blocks", blocks.words}, {"Seen", seen}, {"Rows", rows}, {"Ao", ao}},
+               {tiles.x, uint(view.size.y)});
+  return {{&rows, kBlock * kBlock, {}}, &ao};
+}
+
 }  // namespace alcove

@@ -35,7 +35,13 @@ const gpu::Buffer& quick_horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, con
 /// The same, smoothed among the sites.
 const gpu::Buffer& fit_blocks(gpu::Recorder& gpu, const Blocks& blocks, const gpu::Buffer& seen);
 /// The visibility of all pixels.
-gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const Blocks& blocks,
-                           const gpu::Buffer& fitted);
+gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const Blocks& blocks, const gpu::Buffer& fitted);
+
+/// The sites, and the visibility at them, as debug views take them.
+struct ShownBlocks {
+  Sites sites;
+  const gpu::Buffer* ao;  // a plane
+};
+ShownBlocks show_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const Blocks& blocks, const gpu::Buffer& seen);
 
 }  // namespace alcove
