@@ -46,6 +46,15 @@ Surfaces surfaces_of(gpu::Recorder& gpu, const FrameInputs& frame, const Estimat
   return {cut(gpu, frame, wide, prepared), wide};
 }
 
+/// What is to be estimated: all of the frame, or what its matte needs.
+GBuffer work_of(gpu::Recorder& gpu, const FrameInputs& frame, const FrameInputs& inputs, const Surfaces& surfaces,
+                const EstimatorSettings& settings, Matte& masked) {
+  masked = matte(gpu, frame);
+  const GBuffer counted = occluders(gpu, surfaces.wide, frame);
+  const GBuffer blocks = downsample(gpu, counted, block_grid(inputs, int(settings.resolution)));
+  return needed(gpu, blocks, inputs, masked, filter_reach_of(settings));
+}
+
 /// Estimates and smooths by the quick search.
 void see_quickly(gpu::Recorder& gpu, const GBuffer& work, const FrameInputs& inputs, const EstimatorSettings& settings,
                  const Wanted& wanted, Seen& seen) {
@@ -68,10 +77,7 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
                     const EstimatorSettings& settings, const Wanted& wanted) {
   const FrameInputs inputs = with_margin(frame);
   Seen seen;
-  seen.matte = matte(gpu, frame);
-  const GBuffer counted = occluders(gpu, surfaces.wide, frame);
-  const GBuffer blocks = downsample(gpu, counted, block_grid(inputs, int(settings.resolution)));
-  const GBuffer work = needed(gpu, blocks, inputs, seen.matte, filter_reach_of(settings));
+  const GBuffer work = work_of(gpu, frame, inputs, surfaces, settings, seen.matte);
   const uint order = moment_order(settings, wanted);
   if (searches_quickly(settings, work, order)) {
     see_quickly(gpu, work, inputs, settings, wanted, seen);

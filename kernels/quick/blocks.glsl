@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Blocks are counted from the display window's corner, so that a crop has those of the whole. The word of a block has,
-// from the lowest bits on, the number of its sites in 4 bits, and for each of them 4 bits with its place, row by row. A site has
-// the number of its block times kBlockSites, and its own in the block.
+// from the lowest bits on, the number of its sites in 4 bits, and for each of them 4 bits with its place, row by row.
+// A site has the number of its block times kBlockSites, and its own in the block.
 
 /// A pixel's plane, by the height of others above it, in pixels' widths.
 struct Plane {

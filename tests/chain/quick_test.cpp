@@ -128,7 +128,8 @@ TEST(BlockSites, of_a_crop_are_those_of_the_whole) {
 TEST(Margin, shows_a_plane_where_it_goes_on_and_nothing_of_sky) {
   for (const bool orthographic : {false, true}) {
     const Scene wall{{Plane{.point = {5, 0, 0}, .normal = unit({-1, 0.2, 0.3})}}};
-    Shot shot = orthographic ? Shot::orthographic({}, {1, 0, 0}, 1, 40, 30) : Shot::perspective({}, {1, 0, 0}, 12, 40, 30);
+    Shot shot =
+        orthographic ? Shot::orthographic({}, {1, 0, 0}, 1, 40, 30) : Shot::perspective({}, {1, 0, 0}, 12, 40, 30);
     const Chosen chosen(render(wall, shot).frame);
     shot.data = {-kDepthMargin, -kDepthMargin, 40 + 2 * kDepthMargin, 30 + 2 * kDepthMargin};
     const HostFrame around = render(wall, shot).frame;
@@ -137,7 +138,8 @@ TEST(Margin, shows_a_plane_where_it_goes_on_and_nothing_of_sky) {
     ASSERT_EQ(wide.size(), around.depth.size());
     std::size_t told = 0;
     for (std::size_t i = 0; i < wide.size(); i++) {
-      const int x = int(i) % (40 + 2 * kDepthMargin) - kDepthMargin, y = int(i) / (40 + 2 * kDepthMargin) - kDepthMargin;
+      const int x = int(i) % (40 + 2 * kDepthMargin) - kDepthMargin,
+                y = int(i) / (40 + 2 * kDepthMargin) - kDepthMargin;
       const bool is_inside = x >= 0 && y >= 0 && x < 40 && y < 30;
       if (wide[i] == kSkyDepth) continue;  // it would be more than twice as far, or half
       ASSERT_NEAR(wide[i], is_inside ? around.depth[i] : -around.depth[i], 2e-3 * around.depth[i]) << x << " " << y;
@@ -253,7 +255,8 @@ TEST(Quick, takes_a_bar_for_thicker_than_wide) {
 TEST(Quick, gives_a_crease_its_closed_form) {
   for (const bool orthographic : {false, true}) {
     const Vec3 eye{3, 3.4, 2.6}, target{0.4, 0.4, 0.2};
-    const Shot shot = orthographic ? Shot::orthographic(eye, target, 4, 240, 200) : Shot::perspective(eye, target, 55, 240, 200);
+    const Shot shot =
+        orthographic ? Shot::orthographic(eye, target, 4, 240, 200) : Shot::perspective(eye, target, 55, 240, 200);
     const Rendering seen = render({{kFloor, kWallX}}, shot);
     const Errors errors = errors_of(seen, ao_of(seen.frame, quick(0.5, 8, 48)), wall_truth(shot, 0.5), 2);
     ASSERT_GT(errors.pixels.size(), 3000);
@@ -286,13 +289,11 @@ TEST(Quick, leaves_what_it_does_not_know_to_the_general_search) {
   EXPECT_TRUE(is_quick(quick(0.5), "ao,normal,depth"));
   EXPECT_FALSE(is_quick(quick(0.5), "ao,bent-normal"));
   using Change = void (*)(EstimatorSettings&);
-  for (const Change change : std::initializer_list<Change>{[](auto& s) { s.further_radii = {0.2}; },
-                                                           [](auto& s) { s.falloff = Falloff::linear; },
-                                                           [](auto& s) { s.thickness = ThicknessKind::infinite; },
-                                                           [](auto& s) { s.complete = Completion::border; },
-                                                           [](auto& s) { s.density = Density::uniform; },
-                                                           [](auto& s) { s.denoise_radius = 5; },
-                                                           [](auto& s) { s.estimator = Estimator::bitmask; }}) {
+  for (const Change change : std::initializer_list<Change>{
+           [](auto& s) { s.further_radii = {0.2}; }, [](auto& s) { s.falloff = Falloff::linear; },
+           [](auto& s) { s.thickness = ThicknessKind::infinite; }, [](auto& s) { s.complete = Completion::border; },
+           [](auto& s) { s.density = Density::uniform; }, [](auto& s) { s.denoise_radius = 5; },
+           [](auto& s) { s.estimator = Estimator::bitmask; }}) {
     EstimatorSettings settings = quick(0.5);
     change(settings);
     EXPECT_FALSE(is_quick(settings)) << name_of(settings);

@@ -9,12 +9,6 @@
 namespace alcove {
 namespace {
 
-/// The settings of a usual estimate, but for the numbers of slices and steps, the radius and the bias.
-bool are_usual(const EstimatorSettings& settings) {
-  return settings.falloff == Falloff::none && settings.thickness == ThicknessKind::automatic &&
-         settings.complete == Completion::all && settings.resolution == Resolution::full && fits_sites(settings);
-}
-
 BlocksParams params_of(const GBuffer& gbuffer, const EstimatorSettings& settings, const FrameInputs& frame) {
   const View& view = gbuffer.view;
   const ivec2 shift = site_rule_of(settings, frame.turn).shift, origin = gbuffer.grid.origin;
@@ -40,9 +34,15 @@ std::size_t site_bytes(const BlocksParams& params, std::size_t value) {
 
 }  // namespace
 
+bool may_search_quickly(const EstimatorSettings& settings) {
+  const bool is_usual = settings.falloff == Falloff::none && settings.thickness == ThicknessKind::automatic &&
+                        settings.complete == Completion::all && settings.resolution == Resolution::full;
+  return settings.search == SliceSearch::quick && settings.estimator == Estimator::gtao && settings.tolerance == 0 &&
+         is_usual && settings.further_radii.empty() && fits_sites(settings);
+}
+
 bool searches_quickly(const EstimatorSettings& settings, const GBuffer& gbuffer, uint order) {
-  return settings.search == SliceSearch::quick && settings.estimator == Estimator::gtao && are_usual(settings) &&
-         settings.further_radii.empty() && order == 0 && gbuffer.surfaces == 1 && !gbuffer.occluder_depth;
+  return may_search_quickly(settings) && order == 0 && gbuffer.surfaces == 1 && !gbuffer.occluder_depth;
 }
 
 Blocks block_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings,

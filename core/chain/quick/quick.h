@@ -7,10 +7,10 @@
 
 namespace alcove {
 
-/// Whether a frame is searched quickly: where the settings ask for it, leave all else to the presets that do, and it
-/// has one surface per pixel. What else is asked for, the general search makes: order of moments > 0, several radii, a
-/// falloff, a given thickness, surfaces that are not completed everywhere, a smaller resolution, other densities and
-/// denoisers, and surfaces that are no occluders.
+/// Whether settings ask for the quick search, and for nothing that it cannot do: several radii, a falloff, a given
+/// thickness, surfaces that are not completed everywhere, a smaller resolution, other densities and denoisers.
+bool may_search_quickly(const EstimatorSettings& settings);
+/// Whether a frame is searched so. With moments, hidden surfaces, or surfaces that are no occluders it is not.
 bool searches_quickly(const EstimatorSettings& settings, const GBuffer& gbuffer, uint order);
 
 /// Blocks of pixels, and their sites.
