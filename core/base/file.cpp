@@ -135,9 +135,9 @@ void FileUses::add_output(const NamedFile& file, const std::string& whose) {
   if (const auto input = inputs_.find(identity); input != inputs_.end())
     fail(ErrorKind::usage, "{}: {}{} would overwrite an input: {} {}", path, option, whose, input->second.option,
          input->second.path);
-  const auto& [known, is_new] = outputs_.emplace(identity, file);
-  if (!is_new && known->second.option != option)
-    fail(ErrorKind::usage, "{}: {} and {} name the same file", path, known->second.option, option);
+  const auto& [known, is_new] = outputs_.emplace(identity, option + whose);
+  if (!is_new && known->second != option + whose)
+    fail(ErrorKind::usage, "{}: {} and {}{} name the same file", path, known->second, option, whose);
 }
 
 NewFile::NewFile(const std::string& path) : target_(path) {

@@ -124,6 +124,15 @@ const FramePlan::Pattern* FramePlan::first_input() const {
   return found == patterns_.end() ? nullptr : &*found;
 }
 
+std::vector<int> FramePlan::on_disk() const {
+  const Pattern* input = first_input();
+  try {
+    return input ? frames_on_disk(input->name, input->option().c_str()) : std::vector<int>();
+  } catch (const Error&) {  // a chunk without frames needs none
+    return {};
+  }
+}
+
 std::vector<int> FramePlan::all_frames() const {
   if (!settings_.frames.frames.empty()) return parse_frames(settings_.frames.frames);
   if (const Pattern* input = first_input()) return frames_on_disk(input->name, input->option().c_str());
