@@ -28,7 +28,7 @@ writeonly buffer List { uint list[]; };      // the sites' numbers, in no order
 buffer Counts { SiteCounts counts; };        // zeros before
 
 /// A pixel lies in a site's plane by this many pixels' widths. Error and time hardly change from .25 to .7.
-const float kCovered = 0.4;
+const float kCovered = 0.6;
 
 const int kPixels = kBlock * kBlock;
 
@@ -74,7 +74,8 @@ void main() {
   }
   if (kSelects != 0u) left = is_needed(view, first) ? left : 0u;
   uint word = 0u, count = 0u;
-  for (int s = 0; s < kBlockSites; s++) {
+  int s = 0;
+  do {
     const uint at = left != 0u ? uint(findLSB(left)) : uint(kPixels);
     Plane site = pixels[0];
     uint place = kOrder[0];
@@ -97,7 +98,7 @@ void main() {
     word |= exists ? place << (4 + 4 * s) : 0u;
     count += exists ? 1u : 0u;
     left &= ~covered;
-  }
+  } while (++s < kBlockSites && left != 0u);
   words[number] = word | count;
   list_sites(number, count);
 }

@@ -22,13 +22,16 @@ readonly buffer Seen { float seen[]; };  // from quick_horizon
 // by the sites' numbers: what is blocked, and by how much that grows per pixel to the right and below
 writeonly buffer Fitted { vec4 fitted[]; };
 
-const int kAround = 2;  // blocks to each side
+// Blocks to each side, and the pixels from which on the second one counts: between sites of two blocks that are not
+// neighbours lie at least 5.
+const int kAround = 2;
+const float kLeastToSecond = 5.0;
 
 /// Pixels to the end of the weights, at most and at least.
 const float kMostReach = 17.0, kLeastReach = 3.0;
 
 /// The slopes of the plane are held back by this, px^2.
-const float kLeastSpread = 4.0;
+const float kLeastSpread = 8.0;
 
 /// The least sum of weights, and determinant, that is divided by.
 const float kTiny = 1e-20;
@@ -72,9 +75,10 @@ void main() {
   const float reach = clamp(params.reach / (perspective ? here.z : 1.0), kLeastReach, kMostReach);
   const float narrow = 1.0 / (reach * reach);
   Sums sums = Sums(0.0, 0.0, vec2(0), vec2(0), 0.0, 0.0, 0.0);
-  int y = -kAround;
+  const int around = reach > kLeastToSecond ? kAround : 1;
+  int y = -around;
   do {
-    int x = -kAround;
+    int x = -around;
     do {
       const ivec2 other = block + ivec2(x, y), there = clamp(other, ivec2(0), blocks - 1);
       const int o = there.y * blocks.x + there.x;
@@ -88,7 +92,7 @@ void main() {
           const float alike = greater(1.0 - apart_sq(here, plane, px, perspective), 0.0);
           add(sums, greater(1.0 - narrow * dot(px, px), 0.0) * alike, 1.0 - seen[from], px);
         } while (++j < count);
-    } while (++x <= kAround);
-  } while (++y <= kAround);
+    } while (++x <= around);
+  } while (++y <= around);
   fitted[site] = vec4(fit(sums), 0.0);
 }

@@ -44,6 +44,7 @@ class Matte : public CommandLine {
     return file;
   }
   json tiles() const { return json::parse(read_bytes(stats))["frames"][0]["tiles"]; }
+  std::string search() const { return json::parse(read_bytes(stats))["frames"][0]["search"]; }
   double estimates() const { return json::parse(read_bytes(stats))["frames"][0]["estimates"]["total"]; }
 
   void expect_error(const FrameFile& file, const std::string& more, const Options& texts, int code = 3) const {
@@ -77,6 +78,7 @@ TEST_F(Matte, within_it_the_ao_is_that_of_the_whole_frame_and_elsewhere_what_is_
     }
     EXPECT_GT(occluded, 20) << "or else there is nothing to compare";
     if (is_quick) EXPECT_LT(estimates(), 0.6 * estimates_before);
+    if (std::string(more).starts_with("--preset draft")) EXPECT_EQ(search(), is_quick ? "quick" : "steps");
     const bool lists_tiles =
         !is_quick && !std::string(more).starts_with("--search") && !std::string(more).starts_with("--tol");
     const double most = std::string(more).starts_with("--resolution quarter") ? 0.65 : 0.5;  // of few tiles
