@@ -37,7 +37,8 @@ class SecondDriver : public WalkedShot {
   }
   ~SecondDriver() override { ::unsetenv("VK_ADD_DRIVER_FILES"); }
 
-  /// Whether it makes the kernels of the slowest search by samples in time; another process tries it, since no driver can be stopped.
+  /// Whether it makes the kernels of the search by samples in time; another process tries it, since no driver can be
+  /// stopped.
   static bool compiles_in_time() {
     static const bool compiles = [] {
       const TemporaryFolder out;
