@@ -145,8 +145,16 @@ TEST_F(Library, refuses_what_the_pixels_speak_against) {
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "'normal-encoding' unorm");
   EXPECT_OK(handle, alcove_set(handle.get(), "normal-encoding", "unorm"));
   EXPECT_OK(handle, alcove_run(handle.get(), 0));
-  EXPECT_OK(handle, alcove_plane(handle.get(), "normal", nullptr, nullptr));
   EXPECT_OK(handle, alcove_set(handle.get(), "normal-encoding", nullptr));
+  std::vector<float> mirrored = frame().depth, normals = frame().normal;
+  for (auto* plane : {&mirrored, &normals})
+    for (auto row = plane->begin(); row != plane->end(); row += width()) std::reverse(row, row + width());
+  const alcove_layout plain = packed(width(), height());
+  EXPECT_OK(handle, alcove_plane(handle.get(), "depth", mirrored.data(), &plain));
+  EXPECT_OK(handle, alcove_plane(handle.get(), "normal", normals.data(), &three));
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "mirror the picture, then");
+  EXPECT_OK(handle, alcove_plane(handle.get(), "normal", nullptr, nullptr));
+  EXPECT_OK(handle, alcove_plane(handle.get(), "depth", frame().depth.data(), &plain));
   EXPECT_OK(handle, alcove_set(handle.get(), "radius", "100"));
   EXPECT_OK(handle, alcove_run(handle.get(), 0));
   EXPECT_THAT(alcove_notes(handle.get()), HasSubstr("radius"));

@@ -24,6 +24,9 @@ inline constexpr double kLeastAgreement = 0.6;
 /// some 5 %. Measured: 12 frames of rendered scenes and games that were read rightly gave 87 % and more; 30 wrongly
 /// turned cameras gave 37 % at most, and 25 % but for one.
 inline constexpr double kRefuted = 0.1;
+/// If a smaller share of the normals agrees with depth, they are not used unless --set allow=normals-disagree says so:
+/// most of them would be wrong.
+inline constexpr double kUsable = 0.5;
 
 /// A way to read normals and how well the frame agrees with it.
 struct NormalScore {

@@ -18,9 +18,6 @@ namespace {
 
 /// From so many on the field of view is not doubted. With half or twice the right one it was 41 % at most.
 constexpr double kSurelyClose = 0.5;
-/// If a smaller share of the normals agrees with depth, they are not used unless --set allow=normals-disagree says so:
-/// most of them would be wrong.
-constexpr double kUsable = 0.5;
 
 class NormalDoubts : private NormalSettlement {
  public:
