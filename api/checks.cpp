@@ -62,10 +62,9 @@ void check_normals(const Reading& reading, const HostPlanes& planes, Notes& note
   if (!chosen || chosen->agreement >= kLeastAgreement) return;
   const std::string said =
       fmt::format("normal: {:.0f} % agree with depth, in {} space", 100 * chosen->agreement, word_of(chosen->space));
-  if (scores[0].agreement >= kLeastAgreement && scores[0].agreement > kClear * chosen->agreement)
-    fail(ErrorKind::input, "{}; better fits {}", said, text_of(scores[0]));
+  if (scores[0].clearly_beats(*chosen)) fail(ErrorKind::input, "{}; better fits {}", said, text_of(scores[0]));
   const auto turned = best_turned_camera({reading, normal, depth}, *chosen);
-  if (turned && turned->score.agreement >= kLeastAgreement && turned->score.agreement > kClear * chosen->agreement)
+  if (turned && turned->score.clearly_beats(*chosen))
     fail(ErrorKind::input, "{}; {}, then {:.0f} % agree", said, turned->what, 100 * turned->score.agreement);
   const std::string check = "check --normal-space, --normal-encoding and the camera";
   if (chosen->explained() < kUsable && !reading.depth_is_half)

@@ -125,7 +125,8 @@ void make_folder_of(const std::string& path, const char* option) {
 }
 
 void FileUses::add_input(const NamedFile& file) {
-  if (!file.path.empty()) inputs_.emplace(identity_of(file.path), file);
+  // Frames share most of their inputs, and an identity takes a look at the disk.
+  if (!file.path.empty() && input_paths_.insert(file.path).second) inputs_.emplace(identity_of(file.path), file);
 }
 
 void FileUses::add_output(const NamedFile& file, const std::string& whose) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 
@@ -47,6 +48,7 @@ class FileUses {
   void add_output(const NamedFile& file, const std::string& whose = "");
 
  private:
+  std::set<std::string> input_paths_;           // as they are spelled
   std::map<std::string, NamedFile> inputs_;     // by the file
   std::map<std::string, std::string> outputs_;  // by the file; option and owner
 };

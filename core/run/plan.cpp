@@ -69,7 +69,7 @@ void refuse_glob(const std::string& path, const std::string& option) {
        pattern.find_first_of("*?") == pattern.npos ? pattern : "shot.####.exr");
 }
 
-/// Fails where a name that is no file has a placeholder of another program.
+/// Fails where a name that is no file has a token of another program.
 void refuse_foreign_pattern(const std::string& path, const std::string& option) {
   if (const std::string why = foreign_pattern_in(path); !why.empty())
     fail(ErrorKind::usage, "{}: {} ({})", path, why, option);
@@ -321,7 +321,7 @@ std::string pattern_for(const std::string& path) {
   const FrameNumber found = frame_number_in(path);
   if (found.digits.empty()) return "";
   const std::size_t at = path.rfind(found.digits), digits = found.digits.size();
-  return path.substr(0, at) + (digits == 1 ? "%d" : std::string(digits, '#')) + path.substr(at + digits);
+  return path.substr(0, at) + frame_token(digits) + path.substr(at + digits);
 }
 
 int frame_number_of(const std::string& path) { return frame_number_in(path).number.value_or(0); }

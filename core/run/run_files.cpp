@@ -35,10 +35,10 @@ struct Output {
 std::vector<Output> outputs_of(const FramePlan& plan, const std::vector<int>& frames) {
   std::vector<Output> outputs;
   for (const int frame : frames)
-    for (const auto& file : files_of(plan.at(frame), FileRole::output))
-      if (!plan.has_contact_sheet() || file.option != "--preview")
-        outputs.push_back({file, plan.is_sequence() ? fmt::format(" of frame {}", frame) : ""});
-  if (plan.has_contact_sheet()) outputs.push_back({{"--preview", plan.settings().output.preview}, ""});
+    for (const auto& file : files_of(plan.at(frame), FileRole::output)) {
+      const bool is_of_all = !plan.is_sequence() || (plan.has_contact_sheet() && file.option == "--preview");
+      outputs.push_back({file, is_of_all ? "" : fmt::format(" of frame {}", frame)});
+    }
   for (const auto& file : files_of(plan.settings(), FileRole::report)) outputs.push_back({file, ""});
   return outputs;
 }

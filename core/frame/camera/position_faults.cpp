@@ -190,8 +190,7 @@ std::string why_stretched(std::span<const SeenPoint> points, const Window& displ
 std::string why_bent(std::span<const SeenPoint> points, const Window& display) {
   if (points.size() < kLeastPoints || share_on(kRound, points, display) < kNearlyAll) return "";
   return "each lies in the right direction from the picture's middle and at another distance: the lens is distorted, "
-         "or "
-         "a fish eye; render without its distortion, or give the camera without it (a fish eye cannot be read)";
+         "or a fish eye; render without its distortion, or give the camera without it (a fish eye cannot be read)";
 }
 
 }  // namespace alcove

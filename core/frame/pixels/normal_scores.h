@@ -42,6 +42,10 @@ struct NormalScore {
   /// The share of normals that are right once those of the other side are turned round.
   double explained() const { return agreement + opposite; }
   double turn_degrees() const;
+  /// Whether clearly more normals agree so, and enough of them.
+  bool clearly_beats(const NormalScore& other) const {
+    return agreement >= kLeastAgreement && agreement > kClear * other.agreement;
+  }
 };
 /// Whether one camera, or one way to take the components, fits so much better than another that it is no chance: so
 /// many times as many normals are close to those of depth, so large a share more, and a least share. Of the right

@@ -87,7 +87,7 @@ class NormalDoubts : private NormalSettlement {
     refuse_turned_camera(chosen, best.close);
     const std::string read =
         fmt::format("{}: its normals, read as {}, are not those of this depth and this camera", path_, text_of(chosen));
-    if (best.agreement >= kLeastAgreement && best.agreement > kClear * chosen.agreement)
+    if (best.clearly_beats(chosen))
       fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
     if (chosen.explained() >= kUsable || has_coarse_depth(reading_)) return;
