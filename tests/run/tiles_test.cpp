@@ -261,9 +261,16 @@ TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough
   const double told = std::strtod(refusal.c_str() + refusal.find("M (in ") + 6, nullptr);
   EXPECT_LE(parts.parts, told);
   EXPECT_GE(parts.parts, told / 2);
-  const Finished planned = run_program({"run", shot, "-o", ao, "--camera", shot_camera, "--radius", "0.2", "--type",
-                                        "float", "--stats", folder / "stats.json", "--dry-run"});
-  EXPECT_THAT(planned.out, HasSubstr(fmt::format("{}M computes a frame at once, {}M is the least", at_once, least)));
+  const auto planned = [&](const Options& more) {
+    return run_program(joined({"run", shot, "-o", ao, "--camera", shot_camera, "--radius", "0.2", "--type", "float",
+                               "--stats", folder / "stats.json", "--dry-run"},
+                              more));
+  };
+  EXPECT_THAT(planned({}).out,
+              HasSubstr(fmt::format("{}M computes a frame at once, {}M is the least", at_once, least)));
+  const Finished refused = planned({"--memory", fmt::format("{}M", least - 1)});
+  test::expect_refused(refused, 2, {shot});
+  EXPECT_EQ(memory_named_in(refused.err), least) << refused;
 }
 
 TEST_F(Tiles, that_cannot_be_are_refused) {
