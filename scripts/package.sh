@@ -1,19 +1,30 @@
 #!/usr/bin/env bash
-# Builds into build-package/ the Debian packages of the program, its module for pictures and its libraries, or the portable archive of the program.
-#   scripts/package.sh [archive] [CMAKE ARGUMENTS]
+# Builds into build-package/ the Debian packages of the program, its module for pictures and its libraries, or the portable archive of the program;
+# or into build-wheel/ the wheel of the Python package with libalcove.
+#   scripts/package.sh [archive|wheel] [CMAKE ARGUMENTS]
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 kind=packages
-if [ "${1:-}" = archive ]; then
-  kind=archive
+if [ "${1:-}" = archive ] || [ "${1:-}" = wheel ]; then
+  kind=$1
   shift
 fi
 scripts/setup.sh --only-packages run build pictures package
 # Debian's flags with all of its hardening, and without debug information, which would be stripped again.
 export DEB_BUILD_MAINT_OPTIONS=hardening=+all DEB_CXXFLAGS_MAINT_STRIP=-g
 linker_flags=$(dpkg-buildflags --get LDFLAGS)
+if [ "$kind" = wheel ]; then
+  cmake -S . -B build-wheel -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON -DALCOVE_LIBRARY_RPATH="\$ORIGIN" \
+    -DCMAKE_CXX_FLAGS="$(dpkg-buildflags --get CXXFLAGS) $(dpkg-buildflags --get CPPFLAGS) -include $PWD/scripts/old_glibc.h" \
+    -DCMAKE_SHARED_LINKER_FLAGS="$linker_flags" "$@"
+  cmake --build build-wheel --target alcove_library
+  cmake --install build-wheel --component library --strip --prefix build-wheel/installed >/dev/null
+  rm -f build-wheel/*.whl
+  scripts/wheel.py build-wheel/installed/lib/libalcove.so.0 build-wheel
+  exit
+fi
 cmake -S . -B build-package -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON \
   -DCMAKE_CXX_FLAGS="$(dpkg-buildflags --get CXXFLAGS) $(dpkg-buildflags --get CPPFLAGS)" \
   -DCMAKE_EXE_LINKER_FLAGS="$linker_flags" -DCMAKE_MODULE_LINKER_FLAGS="$linker_flags" "$@"

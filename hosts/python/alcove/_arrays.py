@@ -28,10 +28,13 @@ class _Layout(ctypes.Structure):
 
 
 def _paths() -> List[str]:
-    """The possible paths of the library: that of the variable ALCOVE_LIBRARY, beside the built or installed program, or the
-    system's."""
+    """The possible paths of the library: that of the variable ALCOVE_LIBRARY, that in the wheel, beside the built or installed
+    program, or the system's."""
     if os.environ.get("ALCOVE_LIBRARY"):
         return [os.environ["ALCOVE_LIBRARY"]]
+    here = os.path.join(os.path.dirname(os.path.abspath(__file__)), _NAME)
+    if os.path.exists(here):
+        return [here]
     try:
         folder = os.path.dirname(os.path.realpath(program()))
     except DeviceError:
