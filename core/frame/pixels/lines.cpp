@@ -37,7 +37,11 @@ void count_repeats(const Line& line, BorderCounts& counts) {
   for (std::size_t end = 1; end <= line.size(); end++) {
     surfaces = line.is_surface(end - 1) ? surfaces + 1 : 0;
     if (surfaces < 2 * kAround) continue;
-    const auto [least, most] = std::ranges::minmax(std::span(line.raw).subspan(end - 2 * kAround, 2 * kAround));
+    float least = line.raw[end - 1], most = least;
+    for (std::size_t i = end - 2 * kAround; i < end; i++) {
+      least = line.raw[i] < least ? line.raw[i] : least;
+      most = line.raw[i] > most ? line.raw[i] : most;
+    }
     if (least == most || most - least > kSlow * std::min(std::abs(least), std::abs(most))) continue;
     const std::size_t border = end - kAround;
     counts.places[border]++;

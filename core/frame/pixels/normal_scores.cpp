@@ -92,25 +92,34 @@ std::size_t for_each_normal(const NormalPlanes& planes, const Visit& visit) {
   return count;
 }
 
+/// The products of components whose sums, with the signs of flips, are the cosines to the normal of depth and to the
+/// eye: all flips of a space share them.
+struct Products {
+  Products(const Matrix3& normal_from_view, const SurfacePlace& surface, const Vector3& vector)
+      : by_depth(times(normal_from_view, surface.normal)), by_eye(times(normal_from_view, surface.eye)) {
+    for (std::size_t c = 0; c < 3; c++) by_depth[c] *= vector[c], by_eye[c] *= vector[c];
+  }
+  Vector3 by_depth, by_eye;
+};
+
 /// The sums of one reading of the normals.
 class NormalSum {
  public:
-  explicit NormalSum(NormalScore& score, const Camera& camera)
-      : score_(score), rotation_(view_from_normal(camera, score.space, score.flips)) {}
+  NormalSum(NormalScore& score, const Camera& camera)
+      : space(score.space),
+        normal_from_view(transposed(view_from_normal(camera, score.space, {}))),
+        score_(score),
+        rotation_(view_from_normal(camera, score.space, score.flips)),
+        signs_{score.flips.x ? -1.0 : 1, score.flips.y ? -1.0 : 1, score.flips.z ? -1.0 : 1} {}
 
-  void add(const SurfacePlace& surface, const Vector3& vector) {
-    Vector3 n = times(rotation_, vector);
-    double cosine = std::min(1.0, dot(n, surface.normal));
-    score_.facing += dot(n, surface.eye) > 0;
+  void add(const SurfacePlace& surface, const Vector3& vector, const Products& products) {
+    const double cosine = std::min(1.0, dot(signs_, products.by_depth)), size = std::abs(cosine);
+    score_.facing += dot(signs_, products.by_eye) > 0;
     score_.agreement += cosine > kAgreeing;
     score_.close += cosine > kClose;
-    if (cosine < -kAgreeing) {
-      score_.opposite++;
-      cosine = std::min(1.0, -cosine);
-      n = scaled(n, -1);
-    }
-    cosines_.push_back(cosine);
-    if (cosine > kAgreeing) add_turn(surface.normal, n);
+    score_.opposite += cosine < -kAgreeing;
+    cosines_.push_back(size > kAgreeing ? std::min(1.0, size) : cosine);
+    if (size > kAgreeing) add_turn(surface.normal, scaled(times(rotation_, vector), cosine < 0 ? -1 : 1));
   }
   void finish() {
     const auto count = double(cosines_.size());
@@ -128,6 +137,9 @@ class NormalSum {
     }
   }
 
+  const NormalSpace space;
+  const Matrix3 normal_from_view;  // without flips
+
  private:
   /// A small turn moves a unit vector g by turn x g, so that g x n is the part of the turn that is across g.
   void add_turn(const Vector3& g, const Vector3& n) {
@@ -140,16 +152,21 @@ class NormalSum {
 
   NormalScore& score_;
   Matrix3 rotation_, across_{};
-  Vector3 moved_{};
+  Vector3 signs_, moved_{};
   std::vector<double> cosines_;
 };
 
 /// Fills in how well the frame agrees with each of the readings. Gives false where too little of it is smooth.
 bool score(std::vector<NormalScore>& scores, const NormalPlanes& planes) {
   std::vector<NormalSum> sums;
+  sums.reserve(scores.size());
   for (auto& score : scores) sums.emplace_back(score, planes.camera);
   const std::size_t count = for_each_normal(planes, [&](const SurfacePlace& surface, const Vector3& n) {
-    for (auto& sum : sums) sum.add(surface, n);
+    std::optional<Products> products;
+    for (std::size_t i = 0; i < sums.size(); i++) {
+      if (i == 0 || sums[i].space != sums[i - 1].space) products.emplace(sums[i].normal_from_view, surface, n);
+      sums[i].add(surface, n, *products);
+    }
   });
   if (count < kLeastSamples) return false;
   for (auto& sum : sums) sum.finish();

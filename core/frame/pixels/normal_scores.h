@@ -24,6 +24,9 @@ inline constexpr double kLeastAgreement = 0.6;
 /// some 5 %. Measured: 12 frames of rendered scenes and games that were read rightly gave 87 % and more; 30 wrongly
 /// turned cameras gave 37 % at most, and 25 % but for one.
 inline constexpr double kRefuted = 0.1;
+/// A cause is named only where this share of the normals agrees with depth once it is undone. Of rooms, which have three
+/// directions, a camera of another scene that is turned in some way may bring 60 %.
+inline constexpr double kCause = 0.8;
 /// If a smaller share of the normals agrees with depth, they are not used unless --set allow=normals-disagree says so:
 /// most of them would be wrong.
 inline constexpr double kUsable = 0.5;

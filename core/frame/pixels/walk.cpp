@@ -222,7 +222,9 @@ std::optional<Plateau> plateau_of(const WalkedPlanes& planes, const LineSource& 
     }
   }
   plateau.frontal = double(frontal) / double(std::max<std::size_t>(1, plateau.places));
-  if (plateau.places) plateau.tilt = std::acos(std::clamp(sum[2] / length(sum), -1.0, 1.0)) * 180 / std::numbers::pi;
+  // Normals to all sides have no mean direction.
+  const double cosine = length(sum) > 0 ? sum[2] / length(sum) : 0;
+  if (plateau.places) plateau.tilt = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
   return plateau;
 }
 
@@ -248,7 +250,7 @@ void walk(const WalkedPlanes& planes, Findings& findings) {
   std::vector<PlacedRuns> placed;
   for (int i = 0; i < int(rows.empty.size()); i++)
     placed.push_back({source.place(false, i), std::move(rows.empty[std::size_t(i)])});
-  findings.rectangle = empty_rectangle(planes.depth, planes.reading.data, placed);
+  findings.rectangle = empty_rectangle(planes.depth, planes.reading.data, planes.frame, placed);
 }
 
 }  // namespace alcove

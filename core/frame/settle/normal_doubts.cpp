@@ -28,6 +28,7 @@ class NormalDoubts : private NormalSettlement {
     if (source_.open.camera) return;
     const NormalScore* chosen = score_of(scores, reading_.normal_space, reading_.flip_normal);
     if (!chosen) return;
+    refuse_flips(*chosen, scores);
     const NormalScore* straighter = straighter_than(*chosen, scores);
     if (straighter)
       return note(NoteCode::normals_disagree,
@@ -45,6 +46,11 @@ class NormalDoubts : private NormalSettlement {
                                                    100 * chosen->agreement, text_of(*chosen), kCheck));
     else if (const auto turned = turned_world(*chosen))
       note(NoteCode::normals_disagree, fmt::format("{} ({})", *turned, kSpaceOptions));
+    else if (const auto other = chosen->space == NormalSpace::world ? straightened(*chosen, kLeastTurn) : std::nullopt)
+      note(NoteCode::normals_disagree,
+           fmt::format("by the camera{} the normals as a whole are turned by {:.2g} degrees against depth: {:.0f} % of "
+                       "them agree to 3 degrees, turned back {:.0f} %: it may be the camera of another frame",
+                       from(), chosen->turn_degrees(), 100 * chosen->close, 100 * other->score.close));
     else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(reading_))
       note(NoteCode::normals_disagree,
            fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
@@ -55,9 +61,7 @@ class NormalDoubts : private NormalSettlement {
   /// do not. `sharpest` is the share that another reading of the normals brings close.
   void refuse_turned_camera(const NormalScore& chosen, double sharpest) const {
     const auto turned = best_turned_camera(planes(), chosen);
-    if (!turned || turned->score.agreement < kLeastAgreement || turned->score.close < sharpest ||
-        turned->score.agreement < kClear * chosen.agreement)
-      return;
+    if (!turned || turned->score.close < sharpest || turned->score.agreement < kClear * chosen.agreement) return;
     fail(ErrorKind::input,
          "{}: the camera{} does not fit: by it {:.0f} % of the normals in {} space agree with depth; {}, then {:.0f} % "
          "agree; {}",
@@ -83,7 +87,6 @@ class NormalDoubts : private NormalSettlement {
   /// agree, or where nothing is left that could be right.
   void refuse_normals(const NormalScore& chosen, const std::vector<NormalScore>& scores) const {
     const NormalScore& best = scores[0];
-    refuse_flips(chosen, scores);
     refuse_turned_camera(chosen, best.close);
     const std::string read =
         fmt::format("{}: its normals, read as {}, are not those of this depth and this camera", path_, text_of(chosen));
@@ -91,22 +94,26 @@ class NormalDoubts : private NormalSettlement {
       fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
     if (chosen.explained() >= kUsable || has_coarse_depth(reading_)) return;
-    const bool is_tangent = are_alike(raw_.normal, raw_.depth, depth_map_of(reading_));
+    const bool is_tangent = are_alike(raw_, depth_map_of(reading_));
     if (chosen.explained() >= kRefuted && is_allowed(NoteCode::normals_disagree)) return;
     fail(ErrorKind::input, "{}, nor in any other space{}: {}; {}{}", read,
          is_tangent ? ", but all look the same way, as those of tangent space" : "", kCheck, kWithout,
          chosen.explained() >= kRefuted ? "; --set allow=normals-disagree takes them as they are" : "");
   }
 
-  /// Refuses flips that are given where the normals agree with depth without them.
+  /// Refuses flips that are given where the normals agree with depth by others, or by none.
   void refuse_flips(const NormalScore& chosen, const std::vector<NormalScore>& scores) const {
-    const NormalScore* plain = score_of(scores, chosen.space, {});
-    if (to_string(settings_.flip_normal) == "none" || to_string(chosen.flips) == "none" || !plain) return;
-    if (plain->agreement < kLeastAgreement || plain->agreement < kClear * chosen.agreement) return;
+    if (to_string(settings_.flip_normal) == "none" || to_string(chosen.flips) == "none") return;
+    const NormalScore& best =
+        *std::ranges::find_if(scores, [&](const NormalScore& s) { return s.space == chosen.space; });
+    if (best.agreement < kLeastAgreement || chosen.agreement >= kAsGood * best.agreement) return;
+    if (explains_most(chosen, scores) && chosen.agreement >= kRefuted) return;  // things may be mirrored
+    const std::string flips = to_string(best.flips);
     fail(ErrorKind::input,
-         "{}: --flip-normal {} does not fit: with it {:.0f} % of the normals agree with depth, without "
-         "it {:.0f} %: leave it out",
-         path_, to_string(settings_.flip_normal), 100 * chosen.agreement, 100 * plain->agreement);
+         "{}: --flip-normal {} does not fit: with it {:.0f} % of the normals agree with depth, {} {:.0f} %: {}", path_,
+         to_string(settings_.flip_normal), 100 * chosen.agreement,
+         flips == "none" ? "without it" : "with --flip-normal " + flips, 100 * best.agreement,
+         flips == "none" ? "leave it out" : "give that");
   }
 
   /// Refuses a principal point that fits elsewhere, and says where no pixel can tell.
