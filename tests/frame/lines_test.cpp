@@ -178,9 +178,9 @@ TEST(Lines, a_rectangle_of_a_part_has_its_place_in_the_frame_and_ends_within_the
 TEST(Lines, one_of_many_windows_stands_on_the_grid_by_chance) {
   const auto windows = [](int height, int each) {
     return rectangle_in([=](int x, int y) {
-      const bool is_window = each && x % each >= 4 && x % each < 13 && (y < 60 ? y % 13 >= 5 : y % 13 > 8 && y < 60);
-      const bool is_on_grid = x >= 96 && y >= 16 && y < height;
-      return is_on_grid || (is_window && x < 94) ? 0 : 3;
+      const bool is_window = each && x < 94 && x % each >= 4 && x % each < 13 && y < 60 && y % 13 >= 5;
+      const bool is_on_grid = x >= 112 && y >= 16 && y < height;
+      return is_on_grid || is_window ? 0 : 3;
     });
   };
   EXPECT_TRUE(windows(32, 0));

@@ -192,6 +192,7 @@ TEST_F(NormalFiles, of_two_components_are_those_of_view_space_or_refused) {
     file.planes.erase("N.Z");
     file.write(settings.input);
   };
+  settings.normal_channels = "N.X,N.Y";
   write_two(true);
   EXPECT_EQ(settled().reading.normal_space, NormalSpace::view);
   EXPECT_THAT(noted(), Each(testing::Field(&Note::code, NoteCode::proven_reading)));

@@ -421,7 +421,8 @@ TEST_F(PositionPass, show_a_camera_of_another_frame) {
     write_bytes(folder / "moved.json", moved.dump());
     return run_by({"--camera", folder / "moved.json", "--normal", "none"}).err;
   };
-  EXPECT_THAT(said(0.2), AllOf(HasSubstr("turned by 0 degrees and moved by 0.2"), HasSubstr("[positions-disagree]")));
+  EXPECT_THAT(said(0.2),
+              AllOf(HasSubstr("turned by 0.00 degrees and moved by 0.2"), HasSubstr("[positions-disagree]")));
   EXPECT_THAT(said(0), Not(HasSubstr("[positions-disagree]")));
   EXPECT_THAT(said(1000), Not(HasSubstr("[positions-disagree]"))) << "a world of its own";
 }

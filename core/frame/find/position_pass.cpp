@@ -236,7 +236,7 @@ std::string why_elsewhere(const Camera& camera, const Camera& seen, std::span<co
   for (const SeenPoint& point : points) depths.push_back(planar_of(point, seen));
   if (degrees > kMostTurn || moved > median_of(std::move(depths))) return "";
   return fmt::format(
-      "they show the same lens turned by {:.2g} degrees and moved by {:.2g}: it may be the camera of "
+      "they show the same lens turned by {:.2f} degrees and moved by {:.2g}: it may be the camera of "
       "another frame",
       degrees, moved);
 }

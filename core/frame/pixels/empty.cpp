@@ -110,28 +110,29 @@ std::vector<Stack> stacks_of(std::span<const PlacedRuns> rows) {
   return found;
 }
 
-/// Two sides against the grid of tiles, which begins at one of the two borders.
-struct GridSides {
-  int free = 0;       // sides that are no border of the picture, where a tile's is always
-  double chance = 1;  // that any two sides stand so
-};
-GridSides on_grid(int first, int end, int size) {
-  constexpr int kLeastTile = 16, kMostTile = 128;
-  GridSides sides{(first > 0) + (end < size)};
-  const auto stand = [&](int tile, int origin) {
-    return (first == 0 || (first - origin) % tile == 0) && (end == size || (end - origin) % tile == 0);
-  };
-  for (int tile = kLeastTile; tile <= kMostTile; tile *= 2)
-    if (stand(tile, 0) || stand(tile, size)) sides.chance = (size % tile == 0 ? 1 : 2) * std::pow(tile, -sides.free);
-  return sides;
+/// Sides that are no border of the picture, where a tile's side is always.
+int free_sides(int first, int end, int size) { return (first > 0) + (end < size); }
+
+/// The chance that two opposite sides stand on a grid of tiles as these do; 1 where they stand on none. A grid begins
+/// at one of the borders.
+double grid_chance(int first, int end, int size) {
+  double chance = 1;
+  for (const int tile : {16, 32, 64, 128}) {
+    const auto stand = [&](int origin) {
+      return (first == 0 || (first - origin) % tile == 0) && (end == size || (end - origin) % tile == 0);
+    };
+    if (stand(0) || stand(size)) chance = (size % tile == 0 ? 1 : 2) * std::pow(tile, -free_sides(first, end, size));
+  }
+  return chance;
 }
 
 /// Whether sides stand where those of tiles do, and one of so many rectangles hardly does so by chance.
 bool is_on_grid(const EmptyRectangle& r, const Window& frame, std::size_t rectangles) {
   constexpr int kLeastSides = 3;
   constexpr double kMostChance = 0.005;
-  const GridSides x = on_grid(r.left, r.right, frame.width), y = on_grid(r.top, r.bottom, frame.height);
-  return x.free + y.free >= kLeastSides && double(rectangles) * x.chance * y.chance < kMostChance;
+  const double across = grid_chance(r.left, r.right, frame.width), down = grid_chance(r.top, r.bottom, frame.height);
+  const int sides = free_sides(r.left, r.right, frame.width) + free_sides(r.top, r.bottom, frame.height);
+  return sides >= kLeastSides && std::max(across, down) < 1 && double(rectangles) * across * down < kMostChance;
 }
 
 bool has_other_values(std::span<const PlacedRuns> rows, float value) {

@@ -24,9 +24,6 @@ inline constexpr double kLeastAgreement = 0.6;
 /// some 5 %. Measured: 12 frames of rendered scenes and games that were read rightly gave 87 % and more; 30 wrongly
 /// turned cameras gave 37 % at most, and 25 % but for one.
 inline constexpr double kRefuted = 0.1;
-/// A cause is named only where this share of the normals agrees with depth once it is undone. Of rooms, which have three
-/// directions, a camera of another scene that is turned in some way may bring 60 %.
-inline constexpr double kCause = 0.8;
 /// If a smaller share of the normals agrees with depth, they are not used unless --set allow=normals-disagree says so:
 /// most of them would be wrong.
 inline constexpr double kUsable = 0.5;
@@ -45,6 +42,9 @@ struct NormalScore {
   /// The share of normals that are right once those of the other side are turned round.
   double explained() const { return agreement + opposite; }
   double turn_degrees() const;
+  /// Whether the normals agree so as they do by the right camera and components: nearly all, and not turned as a whole.
+  /// In rooms, which have three directions, those of another scene may bring 60 %.
+  bool may_be_right() const { return agreement >= 0.8 && turn_degrees() < 3; }
   /// Whether clearly more normals agree so, and enough of them.
   bool clearly_beats(const NormalScore& other) const {
     return agreement >= kLeastAgreement && agreement > kClear * other.agreement;

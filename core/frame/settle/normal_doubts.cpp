@@ -46,11 +46,11 @@ class NormalDoubts : private NormalSettlement {
                                                    100 * chosen->agreement, text_of(*chosen), kCheck));
     else if (const auto turned = turned_world(*chosen))
       note(NoteCode::normals_disagree, fmt::format("{} ({})", *turned, kSpaceOptions));
-    else if (const auto other = chosen->space == NormalSpace::world ? straightened(*chosen, kLeastTurn) : std::nullopt)
+    else if (const auto other = turned_back(*chosen))
       note(NoteCode::normals_disagree,
            fmt::format("by the camera{} the normals as a whole are turned by {:.2g} degrees against depth: {:.0f} % of "
                        "them agree to 3 degrees, turned back {:.0f} %: it may be the camera of another frame",
-                       from(), chosen->turn_degrees(), 100 * chosen->close, 100 * other->score.close));
+                       from(), chosen->turn_degrees(), 100 * chosen->close, 100 * other->close));
     else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(reading_))
       note(NoteCode::normals_disagree,
            fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
@@ -99,6 +99,13 @@ class NormalDoubts : private NormalSettlement {
     fail(ErrorKind::input, "{}, nor in any other space{}: {}; {}{}", read,
          is_tangent ? ", but all look the same way, as those of tangent space" : "", kCheck, kWithout,
          chosen.explained() >= kRefuted ? "; --set allow=normals-disagree takes them as they are" : "");
+  }
+
+  /// How the normals of a world agree by the camera that is turned by a little, where that is surely the right one.
+  std::optional<NormalScore> turned_back(const NormalScore& chosen) const {
+    if (chosen.space != NormalSpace::world) return std::nullopt;
+    const auto other = straightened(chosen, kLeastTurn, 0);
+    return other && other->score.close >= kSurelyClose && other->score.may_be_right() ? std::optional(other->score) : std::nullopt;
   }
 
   /// Refuses flips that are given where the normals agree with depth by others, or by none.

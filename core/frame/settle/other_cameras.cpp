@@ -103,7 +103,7 @@ std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const 
   std::vector<Hypothesis> hypotheses = turned_pictures(planes);
   if (as.space == NormalSpace::world) std::ranges::move(turned_worlds(planes), std::back_inserter(hypotheses));
   const auto best = best_of(hypotheses, as);
-  return best && best->score.agreement >= kCause ? best : std::nullopt;
+  return best && best->score.may_be_right() ? best : std::nullopt;
 }
 
 std::optional<OtherCamera> slightly_turned_camera(NormalPlanes planes, const NormalScore& as) {

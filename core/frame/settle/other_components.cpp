@@ -26,7 +26,7 @@ std::optional<OtherComponents> tried(NormalPlanes planes, const Places& channels
   planes.unorm = unorm;
   std::optional<OtherComponents> best;
   for (const NormalScore& score : score_normals(planes)) {
-    if (score.agreement < kCause || (best && score.close <= best->score.close)) continue;
+    if (!score.may_be_right() || (best && score.close <= best->score.close)) continue;
     best = OtherComponents{channels, encoding, unorm, score};
   }
   return best;
