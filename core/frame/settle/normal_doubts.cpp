@@ -105,7 +105,8 @@ class NormalDoubts : private NormalSettlement {
   std::optional<NormalScore> turned_back(const NormalScore& chosen) const {
     if (chosen.space != NormalSpace::world) return std::nullopt;
     const auto other = straightened(chosen, kLeastTurn, 0);
-    return other && other->score.close >= kSurelyClose && other->score.may_be_right() ? std::optional(other->score) : std::nullopt;
+    return other && other->score.close >= kSurelyClose && other->score.may_be_right() ? std::optional(other->score)
+                                                                                      : std::nullopt;
   }
 
   /// Refuses flips that are given where the normals agree with depth by others, or by none.

@@ -28,9 +28,8 @@ class SpaceSettlement : private NormalSettlement {
       if (source_.open.normal_space) reading_.normal_space = has_usual ? usual : NormalSpace::view;
       return;
     }
-    refuse_world_without_sign();
     auto all_scores = score_normals(planes());
-    if (lacks_sign()) std::erase_if(all_scores, [](const NormalScore& s) { return s.space == NormalSpace::world; });
+    if (lacks_sign()) refuse_world(all_scores);
     if (settle_cut_normals(*this, all_scores, statistics)) return;
     if (!all_scores.empty()) refuse_other_components(*this, all_scores, statistics);
     if (!source_.open.normal_space) return doubt_normals(*this, all_scores);
@@ -65,8 +64,18 @@ class SpaceSettlement : private NormalSettlement {
            reading_.normal_encoding != NormalEncoding::spheremap;
   }
 
-  void refuse_world_without_sign() const {
-    if (!lacks_sign() || source_.open.normal_space || reading_.normal_space != NormalSpace::world) return;
+  /// Refuses two components of world space, and takes that reading away.
+  void refuse_world(std::vector<NormalScore>& scores) const {
+    const auto is_world = [](const NormalScore& s) { return s.space == NormalSpace::world; };
+    std::vector<NormalScore> world;
+    std::ranges::copy_if(scores, std::back_inserter(world), is_world);
+    std::erase_if(scores, is_world);
+    const auto closest = [](const std::vector<NormalScore>& all) {
+      return all.empty() ? NormalScore{} : *std::ranges::max_element(all, {}, &NormalScore::close);
+    };
+    const bool is_of_world = source_.open.normal_space ? is_sharper(closest(world), closest(scores))
+                                                       : reading_.normal_space == NormalSpace::world;
+    if (!is_of_world) return;
     fail(
         ErrorKind::input,
         "{}: its normals ({}) have two components, which do not tell the sign of z in world space: give three "

@@ -77,8 +77,9 @@ Overflow overflow_of(const Reading& reading, std::span<const float> depth) {
 
 /// Whether most values are below 0 and are not read as distances from it.
 bool begins_behind(const Reading& reading, std::span<const float> depth) {
-  return !reading.depth_range.negative &&
-         2 * std::size_t(std::ranges::count_if(depth, [](float d) { return d < 0; })) > depth.size();
+  std::size_t below = 0, all = 0;
+  for (std::size_t i = 0; i < depth.size(); i += kSparse) all++, below += depth[i] < 0;
+  return !reading.depth_range.negative && 2 * below > all;
 }
 
 }  // namespace
