@@ -17,7 +17,7 @@ namespace alcove {
 constexpr std::size_t kSparse = 31;
 
 /// Pixels that are enough for shares to a percent.
-constexpr std::size_t kNormalPixels = 1 << 14;
+constexpr std::size_t kNormalPixels = 1 << 13;
 
 /// Gives a step between pixels by which about `count` of them are taken, or a few more, and no column is favoured.
 inline std::size_t even_step(const Window& window, std::size_t count) {

@@ -294,12 +294,12 @@ struct Place {
 
 /// The values of a sample, in their order.
 std::vector<double> sorted_values(std::span<const float> raw, double sky) {
-  constexpr std::size_t kSampled = 1 << 15;
-  std::vector<double> values;
+  constexpr std::size_t kSampled = 1 << 14;
+  std::vector<float> values;
   for (std::size_t i = 0, step = raw.size() / kSampled + 1; i < raw.size(); i += step)
-    if (const double v = std::abs(double(raw[i])); v > 0 && v < sky && std::isfinite(v)) values.push_back(v);
+    if (const float v = std::abs(raw[i]); v > 0 && v < sky && std::isfinite(v)) values.push_back(v);
   std::ranges::sort(values);
-  return values;
+  return {values.begin(), values.end()};
 }
 
 /// The step at a part of the way through different values; 0: there is none. `counts` says how frequent each is.
@@ -378,7 +378,7 @@ std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map,
   constexpr double kMost = 0.4;            // more is relief
   constexpr double kSame = 1.3;            // surfaces of all slopes have the same noise, within this factor
   constexpr std::size_t kLeastCount = 40;  // blocks
-  const int side = side_of(view, 48);
+  const int side = side_of(view, 48), step = std::max(side, std::max(view.size.x, view.size.y) / 24);
   if (side < kLeastSide) return std::nullopt;
   const Basis basis(side);
   const double per_pixel = 1 / (0.5 * (side - 1));
@@ -391,11 +391,11 @@ std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map,
     if (raw.size() == 3 * plane) values = {raw[i], raw[i + plane], raw[i + 2 * plane]};
     return planar_depth(map, values, length);
   };
-  for_each_block(view, side, side, basis, depth_of, [&](const Samples& values, const Samples&) {
+  for_each_block(view, side, step, basis, depth_of, [&](const Samples& values, const Samples&) {
     const Fit f = fit(quotients(ones, values), basis);
-    const double slope = f.slope * per_pixel, step = relative_step(grain, values[kSamples / 2]);
-    if (f.residual < kSmoothNoise && slope > kLeastSlope && slope > 4 * step)
-      noises.push_back(f.residual < step ? 0 : f.residual / slope);
+    const double slope = f.slope * per_pixel, rounding = relative_step(grain, values[kSamples / 2]);
+    if (f.residual < kSmoothNoise && slope > kLeastSlope && slope > 4 * rounding)
+      noises.push_back(f.residual < rounding ? 0 : f.residual / slope);
   });
   if (noises.size() < kLeastCount) return std::nullopt;
   std::ranges::sort(noises);
