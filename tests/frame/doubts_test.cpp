@@ -311,7 +311,7 @@ TEST_F(Doubts, a_camera_of_the_frame_before_is_noted_by_the_turn_of_the_normals)
   };
   turned_by(0);
   expect(Reply::silent);
-  for (const double degrees : {1.5, 4.0}) {
+  for (const double degrees : {0.4, 1.5, 4.0}) {
     turned_by(degrees);
     expect(Reply::noted, {fmt::format("turned by {:.2g} degrees", degrees), "another frame", "[normals-disagree]"});
   }
