@@ -181,6 +181,13 @@ TEST_F(NormalFiles, do_not_blame_the_camera_for_a_flip_that_is_given_wrongly) {
   expect(Reply::refused, {"--flip-normal xy does not fit", "leave it out"});
   write([](Vec3 n, const test::Hit&) { return Vec3{-n.x, n.y, n.z}; });
   expect(Reply::refused, {"--flip-normal xy does not fit", "give that"});
+  // A floor and a wall along axes of the world, half of them then turned round.
+  settings.normal_space = NormalSpace::world;
+  settings.flip_normal = {true, false, false};
+  const Shot& shot = rendering.shot;
+  place({shot.right, shot.up, shot.back});
+  write([](Vec3, const test::Hit& hit) { return hit.primitive == kBall ? Vec3{} : hit.normal; });
+  expect(Reply::refused, {"--flip-normal x does not fit", "leave it out"});
 }
 
 TEST_F(NormalFiles, of_two_components_are_those_of_view_space_or_refused) {

@@ -83,8 +83,10 @@ class NormalDoubts : private NormalSettlement {
     if (other == scores.end() || chosen.agreement >= kAsMany * other->agreement) return;
     note(NoteCode::turned_normals,
          fmt::format("{:.0f} % of the normals are opposite to depth and are turned round, as for mirrored things; if "
-                     "an axis of all normals is flipped, as in DirectX, give --flip-normal {}",
-                     100 * chosen.opposite, to_string(other->flips)));
+                     "an axis of all normals is flipped, as in DirectX, {}",
+                     100 * chosen.opposite,
+                     to_string(other->flips) == "none" ? "leave --flip-normal out"
+                                                       : "give --flip-normal " + to_string(other->flips)));
   }
 
   /// Refuses normals that hardly agree with depth, where another reading or another camera has clearly more of them
@@ -119,7 +121,9 @@ class NormalDoubts : private NormalSettlement {
     const NormalScore& best =
         *std::ranges::find_if(scores, [&](const NormalScore& s) { return s.space == chosen.space; });
     if (best.agreement < kLeastAgreement || chosen.agreement >= kAsGood * best.agreement) return;
-    if (explains_most(chosen, scores) && chosen.agreement >= kRefuted) return;  // things may be mirrored
+    // Things may be mirrored, unless others explain all of them without that.
+    const bool may_be_mirrored = explains_most(chosen, scores) && chosen.agreement >= kRefuted;
+    if (may_be_mirrored && best.agreement < kAsMany * chosen.explained()) return;
     const std::string flips = to_string(best.flips);
     fail(ErrorKind::input,
          "{}: --flip-normal {} does not fit: with it {:.0f} % of the normals agree with depth, {} {:.0f} %: {}", path_,
