@@ -57,6 +57,11 @@ void check_normals(const Reading& reading, const HostPlanes& planes, Notes& note
   if (has_vectors && reading.normal_unorm && lengths.unit_share > kUnit && lengths.unorm_unit_share < kFew)
     fail(ErrorKind::input, "normal: n is of unit length on {:.0f} %, and 2 n - 1 is not: set --normal-encoding signed",
          100 * lengths.unit_share);
+  if (normal.size() == 2 * reading.data.pixels() && reading.normal_space == NormalSpace::world &&
+      reading.normal_encoding != NormalEncoding::octahedral && reading.normal_encoding != NormalEncoding::spheremap)
+    fail(ErrorKind::input,
+         "normal: two components do not tell the sign of z in world space: give three, or set --normal-space view, or "
+         "--normal-encoding octahedral or spheremap");
   const auto scores = score_normals({reading, normal, depth});
   const NormalScore* chosen = score_of(scores, reading.normal_space, reading.flip_normal);
   if (!chosen || chosen->agreement >= kLeastAgreement) return;
@@ -88,7 +93,6 @@ Notes check_planes(Reading& reading, const HostPlanes& planes, const InputSettin
   seen.grain = measure_rounding(reading, raw.window, depth, name);
   settle_depth({reading, notes, settings, raw, seen, name}, said);
   if (!normal.empty()) check_normals(reading, planes, notes);
-  add_new(notes, overflown_depth(reading, depth, name));
   add_new(notes, detected(findings_of(reading, raw, seen, name, true)));
   measure_levels(reading, depth);
   return notes;

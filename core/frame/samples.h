@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <numeric>
 #include <span>
 
 #include "core/base/image.h"
@@ -14,6 +15,16 @@ namespace alcove {
 
 /// The step, in pixels, that is fine enough for the statistics of a frame. It is a prime: no column is favoured.
 constexpr std::size_t kSparse = 31;
+
+/// Pixels that are enough for shares to a percent.
+constexpr std::size_t kNormalPixels = 1 << 13;
+
+/// Gives a step between pixels by which about `count` of them are taken, or a few more, and no column is favoured.
+inline std::size_t even_step(const Window& window, std::size_t count) {
+  std::size_t step = window.pixels() / count + 1;
+  while (std::gcd(step, std::size_t(window.width)) > 1) step++;
+  return step;
+}
 
 /// A pixel of the sample.
 struct SampledPixel {

@@ -199,6 +199,12 @@ struct Sums {
   std::size_t pixels = 0;
   double beauty = 0, sum = 0, apart = 0;
 
+  void add(const Sums& other) {
+    pixels += other.pixels;
+    beauty += other.beauty;
+    sum += other.sum;
+    apart += other.apart;
+  }
   void add(const Strip& strip, std::size_t pixel) {
     pixels++;
     for (std::size_t i = pixel; i < strip.sum.size(); i += strip.window.pixels()) {
@@ -215,6 +221,16 @@ struct Sums {
   }
 };
 
+/// Whether no sky is near a pixel: a pixel's filter reaches its neighbours, and mixes the light of a background into the
+/// beauty that no pass of light has.
+bool is_within_surfaces(std::span<const float> planar, const Window& data, int x, int y) {
+  constexpr int kReach = 2;  // px
+  for (int row = std::max(0, y - kReach); row <= std::min(data.height - 1, y + kReach); row++)
+    for (int column = std::max(0, x - kReach); column <= std::min(data.width - 1, x + kReach); column++)
+      if (std::isinf(planar[std::size_t(row) * std::size_t(data.width) + std::size_t(column)])) return false;
+  return true;
+}
+
 }  // namespace
 
 std::optional<InspectedLight> light_passes_of(FrameSource& source, std::span<const float> planar) {
@@ -224,7 +240,7 @@ std::optional<InspectedLight> light_passes_of(FrameSource& source, std::span<con
   if (data != source.reading.data || planar.size() != data.pixels()) return std::nullopt;
   auto light = find_light(source);
   if (!light) return std::nullopt;
-  Sums all;
+  Sums all, others;
   std::size_t blocks = 0, other = 0;
   const int rows = std::min(kRows, data.height), strips = std::min(kStrips, data.height / rows);
   for (int i = 0; i < strips; i++) {
@@ -233,14 +249,20 @@ std::optional<InspectedLight> light_passes_of(FrameSource& source, std::span<con
     std::array<Sums, kColumns> of{};
     for (std::size_t p = 0; p < strip.window.pixels(); p++) {
       const auto width = std::size_t(data.width), x = p % width;
-      if (std::isinf(planar[std::size_t(top) * width + p])) continue;
-      of[x * kColumns / width].add(strip, p);
-      all.add(strip, p);
+      if (is_within_surfaces(planar, data, int(x), top + int(p / width))) of[x * kColumns / width].add(strip, p);
     }
-    for (const Sums& block : of) blocks += block.pixels > 0, other += block.pixels > 0 && block.differ();
+    for (const Sums& block : of) {
+      all.add(block);
+      blocks += block.pixels > 0;
+      if (block.pixels == 0 || !block.differ()) continue;
+      other++;
+      others.add(block);
+    }
   }
   if (!(all.beauty > 0)) return std::nullopt;
   light->text.share = all.sum / all.beauty;
+  light->text.other_part = double(others.pixels) / double(all.pixels);
+  light->text.other_share = others.beauty > 0 ? others.sum / others.beauty : 1;
   light->text.adds_up = double(other) <= kMost * double(blocks);
   return light->text;
 }
@@ -249,8 +271,15 @@ std::string missing_light_text(const InspectedLight& light) {
   const std::string lacking =
       light.lacking.empty() ? ""
                             : fmt::format("; of {}'s passes the file lacks {}", light.renderer, list_of(light.lacking));
-  const std::string sum = fmt::format("{} is {:.3g} % of the beauty over the surfaces", light.sum, 100 * light.share);
-  if (light.share > 1)
+  constexpr double kOneSided = 0.03;
+  const std::string where = fmt::format("on {:.2g} % of the surfaces", 100 * light.other_part);
+  if (std::abs(light.other_share - 1) < kOneSided)
+    return fmt::format(
+        "{} is not the beauty {}, brighter in places and darker in others: they are of different renderings, or the "
+        "beauty is no linear light, such as one with a view transform",
+        light.sum, where);
+  const std::string sum = fmt::format("{} is {:.3g} % of the beauty {}", light.sum, 100 * light.other_share, where);
+  if (light.other_share > 1)
     return fmt::format("{}: the beauty lacks light, or is no linear light, such as one with a view transform", sum);
   return fmt::format(
       "{}: light is missing, and a composite of these passes is too dark{}; the beauty itself may also be no "

@@ -16,6 +16,8 @@ struct InspectedLight {
   std::string sum;                   // such as "(DiffDir + DiffInd) x DiffCol + Emit"
   std::vector<std::string> lacking;  // passes of that renderer that the file does not hold
   double share = 0;                  // of the beauty that the sum is, over the surfaces
+  double other_part = 0;             // of the surfaces, where the sum is another light than the beauty
+  double other_share = 1;            // of the beauty there that the sum is
   bool adds_up = false;              // the sum is the beauty all over the surfaces, up to noise
 };
 

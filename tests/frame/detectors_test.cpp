@@ -98,6 +98,10 @@ TEST(Detectors, each_fault_is_told_by_its_numbers_and_by_nothing_else) {
        [](Findings& f) {
          f.plateau = Plateau{6, 0.3, 300, 12, 0.2};
        }},
+      {"overflown-depth",
+       [](Findings& f) {
+         f.overflow = {0.4, true};
+       }},
       {"wrapped-depth",
        [](Findings& f) {
          f.wrapping = {60, 55, 65536, 65530};
@@ -130,6 +134,39 @@ TEST(Detectors, one_field_is_told_as_holes_and_not_as_bars_of_one_row) {
   f.holes[1] = {7500, 7000, 0, 50, 48};
   f.borders = Borders{BorderRows{1, 1}, BorderRows{1, 1}, BorderRows{}, BorderRows{}};
   EXPECT_EQ(spoken(f), Codes{"holes-in-depth"});
+}
+
+TEST(Detectors, an_offset_is_mended_by_what_the_depth_is_read_by) {
+  const auto said = [](double offset, DepthKind kind, double said_offset) {
+    Findings f = sound();
+    f.depth_kind = kind;
+    f.curve.offset = offset / 2;
+    f.said_offset = said_offset;
+    const Notes notes = detected(f);
+    return notes.size() == 1 ? notes[0].text : "";
+  };
+  EXPECT_THAT(said(-1, DepthKind::planar, 0), HasSubstr("something was added to the depth, an offset of 1"));
+  EXPECT_THAT(said(-7, DepthKind::planar, 0),
+              AllOf(HasSubstr("--depth-kind normalized --reversed-z --near N --far F"), HasSubstr("F / (F - N) = 7")));
+  EXPECT_THAT(said(-7, DepthKind::normalized, -5),
+              AllOf(HasSubstr("(depth - 5)"), HasSubstr("--near or --far does not fit"), Not(HasSubstr("subtract"))));
+  EXPECT_THAT(said(2, DepthKind::normalized, -5), HasSubstr("without --reversed-z"));
+  EXPECT_THAT(said(2, DepthKind::normalized, 1), AllOf(HasSubstr("--near does not fit"), Not(HasSubstr("reversed"))));
+}
+
+TEST(Detectors, of_a_range_that_begins_behind_most_surfaces_no_offset_tells) {
+  Findings f = sound();
+  f.curve.offset = 0.75;
+  f.begins_behind = true;
+  EXPECT_EQ(spoken(f), Codes{});
+}
+
+TEST(Detectors, half_floats_that_do_not_reach_their_end_have_a_sky) {
+  Findings f = sound();
+  f.overflow = {0.4, false};
+  EXPECT_EQ(spoken(f), Codes{});
+  f.overflow = {0, true};
+  EXPECT_EQ(spoken(f), Codes{});
 }
 
 TEST(Detectors, few_planes_or_values_of_one_size_speak_for_no_offset) {

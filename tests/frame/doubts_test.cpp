@@ -90,6 +90,33 @@ TEST_F(Doubts, a_wall_that_faces_the_camera_far_behind_all_others_is_not_called_
   }
 }
 
+TEST_F(Doubts, depth_that_was_rounded_to_whole_units_is_called_rounded) {
+  give();
+  for (const double unit : {1.0, 0.25}) {
+    write_depth([=](double z) { return unit * std::round(z / unit); }, 1e12f);
+    EXPECT_THAT(texts_of(settled().suspicious), Contains(HasSubstr("was rounded: at its median"))) << unit;
+  }
+  write_depth(itself, 1e12f);
+  EXPECT_THAT(settled().suspicious, IsEmpty());
+}
+
+TEST_F(Doubts, depth_is_clamped_where_many_pixels_have_its_largest_value_and_not_where_halves_are_coarse) {
+  give();
+  settings.depth_kind = DepthKind::planar;
+  const auto codes_with = [&](const std::function<double(double)>& depth) {
+    planes = file_of(
+                 rendering(), 1e12f, [&](const test::Hit& hit) { return depth(hit.distance); }, world_normal)
+                 .planes;
+    write(settings.input);
+    std::vector<NoteCode> codes;
+    for (const Note& note : settled().suspicious) codes.push_back(note.code);
+    return codes;
+  };
+  EXPECT_THAT(codes_with(half), ElementsAre(NoteCode::half_depth));
+  EXPECT_THAT(codes_with([](double z) { return std::min(half(z), 5.0); }), Contains(NoteCode::clamped_depth));
+  EXPECT_THAT(codes_with([](double z) { return std::min(z, 5.0); }), Contains(NoteCode::clamped_depth));
+}
+
 // Depth within 0 to 1.
 
 TEST_F(Doubts, what_depth_may_be_is_told_by_its_values_its_program_and_its_camera_file) {
@@ -268,6 +295,26 @@ TEST_F(Doubts, a_camera_that_the_pixels_refute_is_refused_or_noted_with_the_righ
   write_depth(itself, 1e12f);
   settings.view = "left";
   expect(Reply::noted, {"--view left chooses nothing"});
+}
+
+TEST_F(Doubts, a_camera_of_the_frame_before_is_noted_by_the_turn_of_the_normals) {
+  write_frame();
+  const auto turned_by = [&](double degrees) {
+    Rows rows = world_to_camera(1);
+    const double s = std::sin(degrees * std::numbers::pi / 180), c = std::cos(degrees * std::numbers::pi / 180);
+    for (std::size_t column = 0; column < 4; column++) {
+      const double x = rows[0][column], z = rows[2][column];
+      rows[0][column] = c * x + s * z;
+      rows[2][column] = c * z - s * x;
+    }
+    give({{"world_to_camera", rows}, {"normal_space", "world"}});
+  };
+  turned_by(0);
+  expect(Reply::silent);
+  for (const double degrees : {0.4, 1.5, 4.0}) {
+    turned_by(degrees);
+    expect(Reply::noted, {fmt::format("turned by {:.2g} degrees", degrees), "another frame", "[normals-disagree]"});
+  }
 }
 
 TEST_F(Doubts, an_order_of_rotation_that_fits_is_named) {

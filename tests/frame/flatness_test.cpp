@@ -102,6 +102,32 @@ TEST(Flatness, of_what_is_curved_or_rough_or_too_coarse_speaks_for_no_kind) {
   }
 }
 
+TEST(Flatness, of_a_small_picture_counts_each_block_once) {
+  View view = view_of_tests();
+  view.size = {64, 36};
+  std::vector<float> plane;
+  for (int y = 0; y < 36; y++)
+    for (int x = 0; x < 64; x++) plane.push_back(float(1 / (0.1 + 0.002 * x + 0.001 * y)));
+  constexpr std::size_t kSide = 9, kStep = kSide / 4;
+  const std::size_t planes = shape_of(plane, view, kSky, {}).curve.planes;
+  EXPECT_GT(planes, 20);
+  EXPECT_LE(planes, ((64 - kSide) / kStep + 1) * ((36 - kSide) / kStep + 1));
+}
+
+TEST(Grain, of_a_few_values_is_told_where_they_are_no_walls) {
+  const auto grain = [](const ValueAt& value, bool orthographic = false) {
+    return grain_of(plane_of(value), kSky, orthographic);
+  };
+  for (const double per_unit : {1.0, 2.0, 5.0}) {
+    const auto rounded = [=](double x, double y) { return std::round(per_unit * room(x, y)) / per_unit; };
+    EXPECT_NEAR(grain(rounded).step, 1 / per_unit, 1e-5);
+    EXPECT_TRUE(grain(rounded).is_coarse && grain(rounded).is_fixed);
+    EXPECT_EQ(grain(rounded, true).step, 0) << "stairs from above";
+  }
+  EXPECT_EQ(grain([](double x, double) { return 2.17 + 0.3 * std::floor(x / 25); }).step, 0) << "shelves";
+  EXPECT_EQ(grain([](double x, double) { return 10 * std::floor(1 + x / 90); }).step, 0) << "a few cards";
+}
+
 TEST(Grain, is_the_step_of_the_values_and_not_of_their_type) {
   const auto grain = [](const std::function<double(double)>& stored) {
     return grain_of(plane_of([&](double x, double y) { return stored(room(x, y)); }), kSky);

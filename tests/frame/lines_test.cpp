@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/frame/pixels/empty.h"
+#include "core/frame/pixels/walk.h"
 #include "tests/support/program.h"
 
 namespace alcove::lines_test {
@@ -129,7 +130,8 @@ TEST(Lines, normals_change_where_depth_does_or_beside_it) {
 
 constexpr Window kPicture{0, 0, 128, 96};
 
-std::optional<EmptyRectangle> rectangle_in(const std::function<double(int, int)>& depth) {
+std::optional<EmptyRectangle> rectangle_in(const std::function<double(int, int)>& depth,
+                                           const Window& frame = kPicture) {
   std::vector<float> plane;
   std::vector<PlacedRuns> rows;
   for (int y = 0; y < kPicture.height; y++) {
@@ -137,7 +139,7 @@ std::optional<EmptyRectangle> rectangle_in(const std::function<double(int, int)>
     plane.insert(plane.end(), line.raw.begin(), line.raw.end());
     if (y % 2) rows.push_back({y, empty_runs(line)});
   }
-  return empty_rectangle(plane, kPicture, rows);
+  return empty_rectangle(plane, kPicture, frame, rows);
 }
 
 TEST(Lines, a_rectangle_of_0_is_no_sky_if_the_sky_has_another_value) {
@@ -157,6 +159,61 @@ TEST(Lines, a_window_is_no_tile_unless_its_sides_stand_on_the_grid) {
   EXPECT_FALSE(room(32, 33, 64, 62));
   ASSERT_TRUE(room(32, 16, 64, 48));
   EXPECT_TRUE(room(32, 16, 64, 48)->is_on_grid);
+}
+
+TEST(Lines, a_rectangle_of_a_part_has_its_place_in_the_frame_and_ends_within_the_part) {
+  const Window frame{0, -40, 128, 200};
+  const auto tile = [&](int top, int bottom) {
+    return rectangle_in(
+        [=](int x, int y) { return x >= 32 && x < 64 && y >= top && y < bottom ? 0
+                                   : y < 4 && x > 100                          ? INFINITY
+                                                                               : 3; },
+        frame);
+  };
+  ASSERT_TRUE(tile(30, 60));
+  EXPECT_EQ((std::array{tile(30, 60)->top, tile(30, 60)->bottom}), (std::array{70, 100}));
+  EXPECT_FALSE(tile(30, 96)) << "it may go on below";
+}
+
+TEST(Lines, one_of_many_windows_stands_on_the_grid_by_chance) {
+  const auto windows = [](int height, int each) {
+    return rectangle_in([=](int x, int y) {
+      const bool is_window = each && x < 94 && x % each >= 4 && x % each < 13 && y < 60 && y % 13 >= 5;
+      const bool is_on_grid = x >= 112 && y >= 16 && y < height;
+      return is_on_grid || is_window ? 0 : 3;
+    });
+  };
+  EXPECT_TRUE(windows(32, 0));
+  EXPECT_FALSE(windows(32, 16)) << "beside so many others";
+}
+
+/// What a walk over a wall of depth 9 beside a slant shows, by normals of the wall's places.
+Findings walked(const std::function<Vector3(int, int)>& normal) {
+  Reading reading;
+  reading.data = reading.display = kPicture;
+  reading.camera.width = kPicture.width, reading.camera.height = kPicture.height;
+  reading.camera.fx = reading.camera.fy = 100;
+  reading.camera.cx = 64, reading.camera.cy = 48;
+  std::vector<float> depth, normals(3 * kPicture.pixels());
+  for (int y = 0; y < kPicture.height; y++)
+    for (int x = 0; x < kPicture.width; x++) {
+      const Vector3 n = normal(x, y);
+      for (std::size_t c = 0; c < 3; c++) normals[c * kPicture.pixels() + depth.size()] = float(n[c]);
+      depth.push_back(x < 64 ? float(slanted(x)) : 9);
+    }
+  Findings found;
+  walk({reading, kPicture, depth, normals, true}, found);
+  return found;
+}
+
+TEST(Walk, the_tilt_of_a_plateau_is_that_of_its_mean_normal) {
+  const auto tilt = [](const std::function<Vector3(int, int)>& normal) {
+    const auto plateau = walked(normal).plateau;
+    return plateau ? plateau->tilt : -1;
+  };
+  EXPECT_NEAR(tilt([](int, int) { return Vector3{0, 0, 1}; }), 0, 1e-6);
+  EXPECT_NEAR(tilt([](int, int) { return Vector3{0.6, 0, 0.8}; }), 36.87, 0.01);
+  EXPECT_EQ(tilt([](int, int y) { return Vector3{y % 2 ? 1.0 : -1.0, 0, 0}; }), 90) << "of no direction";
 }
 
 }  // namespace

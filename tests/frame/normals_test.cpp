@@ -177,6 +177,37 @@ TEST_F(NormalFiles, do_not_blame_the_camera_for_a_flip_that_is_given_wrongly) {
   write([](Vec3 n, const test::Hit&) { return n; });
   settings.flip_normal.y = true;
   expect(Reply::refused, {"--flip-normal y does not fit", "leave it out"});
+  settings.flip_normal.x = true;
+  expect(Reply::refused, {"--flip-normal xy does not fit", "leave it out"});
+  write([](Vec3 n, const test::Hit&) { return Vec3{-n.x, n.y, n.z}; });
+  expect(Reply::refused, {"--flip-normal xy does not fit", "give that"});
+  // A floor and a wall along axes of the world, half of them then turned round.
+  settings.normal_space = NormalSpace::world;
+  settings.flip_normal = {true, false, false};
+  const Shot& shot = rendering.shot;
+  place({shot.right, shot.up, shot.back});
+  write([](Vec3, const test::Hit& hit) { return hit.primitive == kBall ? Vec3{} : hit.normal; });
+  expect(Reply::refused, {"--flip-normal x does not fit", "leave it out"});
+}
+
+TEST_F(NormalFiles, of_two_components_are_those_of_view_space_or_refused) {
+  const auto write_two = [&](bool in_view) {
+    FrameFile file = file_of(rendering, 1e10f, planar, [&](const test::Hit& hit) {
+      const Vec3 n = rendering.shot.view_from_world(hit.normal);
+      return in_view ? n : world(n);
+    });
+    file.planes.erase("N.Z");
+    file.write(settings.input);
+  };
+  settings.normal_channels = "N.X,N.Y";
+  write_two(true);
+  EXPECT_EQ(settled().reading.normal_space, NormalSpace::view);
+  EXPECT_THAT(noted(), Each(testing::Field(&Note::code, NoteCode::proven_reading)));
+  settings.normal_space = NormalSpace::world;
+  write_two(false);
+  expect(Reply::refused, {"N.X, N.Y", "sign of z in world space", "--normal-space view"});
+  settings.normal_space = NormalSpace::automatic;
+  expect(Reply::refused, {"--normal none"});
 }
 
 TEST_F(NormalFiles, show_square_pixels_beside_a_stale_pixel_aspect) {

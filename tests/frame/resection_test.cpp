@@ -302,7 +302,8 @@ TEST(PositionFaults, that_components_were_cut_is_told) {
   // A floor at 0 below all else, through a bent lens, is none.
   auto bent = points;
   for (std::size_t i = 0; i < bent.size(); i++) {
-    bent[i].position[1] = i % 3 ? std::abs(bent[i].position[1]) + 0.1 : 0;
+    for (double& x : bent[i].position) x = std::abs(x) + 0.1;
+    if (i % 3 == 0) bent[i].position[1] = 0;
     bent[i].x += 20 * std::sin(double(i));
   }
   EXPECT_EQ(why_cut(bent, kPicture), "");
@@ -320,6 +321,8 @@ TEST(PositionFaults, that_axes_were_stretched_is_told) {
     p = {(p[0] + 3.2) / 12.4, (p[1] + 5.5) / 7, (p[2] + 5.1) / 8.2};
   });
   EXPECT_THAT(stretched_by(boxed), HasSubstr("a bounding box is normalized"));
+  const auto flat = seen_by(made_camera(), 4);
+  EXPECT_EQ(stretched_by(flat) + why_bent(flat, kPicture), "") << "one wall is seen alike by many cameras";
   const auto wide = changed(seen_by(level), [](Vector3& p) { p[0] *= 2; });
   EXPECT_EQ(stretched_by(wide), "") << "it may be anamorphic";
 }
@@ -408,6 +411,20 @@ TEST_F(PositionPass, refutes_a_lens_by_pixels) {
               AllOf(HasSubstr("by --fov 90"), refutes, HasSubstr(fmt::format("--fov {:.5g}", degrees))));
   EXPECT_THAT(warned({"--ortho-width", "5"}), AllOf(HasSubstr("by --ortho-width"), refutes));
   EXPECT_THAT(warned({"--camera", camera}), Not(refutes));
+}
+
+TEST_F(PositionPass, show_a_camera_of_another_frame) {
+  write_positions("ViewLayer.Position");
+  const auto said = [&](double shift) {
+    json moved = json::parse(read_bytes(camera));
+    moved["world_to_camera"][0][3] = moved["world_to_camera"][0][3].get<double>() + shift;
+    write_bytes(folder / "moved.json", moved.dump());
+    return run_by({"--camera", folder / "moved.json", "--normal", "none"}).err;
+  };
+  EXPECT_THAT(said(0.2),
+              AllOf(HasSubstr("turned by 0.00 degrees and moved by 0.2"), HasSubstr("[positions-disagree]")));
+  EXPECT_THAT(said(0), Not(HasSubstr("[positions-disagree]")));
+  EXPECT_THAT(said(1000), Not(HasSubstr("[positions-disagree]"))) << "a world of its own";
 }
 
 TEST_F(PositionPass, that_no_camera_fits_is_told_beside_a_lens) {

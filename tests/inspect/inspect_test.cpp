@@ -153,6 +153,35 @@ TEST_F(Inspect, a_beauty_that_was_denoised_or_shows_more_sky_has_its_light_passe
   EXPECT_EQ(seen(noisy)["light"]["adds_up"], true);
 }
 
+TEST_F(Inspect, light_of_a_background_at_outlines_is_not_missing) {
+  FrameFile file = lit_frame();
+  auto& depth = file.planes["ViewLayer.Depth.Z"];
+  const auto is_sky = [](std::size_t i) { return i % 64 >= 20 && i % 64 < 40; };
+  for (std::size_t i = 0; i < depth.size(); i++)
+    if (is_sky(i)) depth[i] = 1e10F;
+  for (const char* component : {"R", "G", "B"}) {
+    auto& beauty = file.planes["ViewLayer.Combined." + std::string(component)];
+    for (std::size_t i = 1; i + 1 < beauty.size(); i++)
+      if (is_sky(i - 1) || is_sky(i) || is_sky(i + 1)) beauty[i] += is_sky(i) ? 20 : 10;
+  }
+  EXPECT_EQ(seen(file)["light"]["adds_up"], true);
+}
+
+TEST_F(Inspect, light_that_is_missing_in_places_is_told_by_its_part_there) {
+  FrameFile file = lit_frame();
+  const auto change = [&](std::size_t first, std::size_t end, float by) {
+    for (const char* component : {"R", "G", "B"})
+      for (std::size_t i = first; i < end; i++) file.planes["ViewLayer.Combined." + std::string(component)][i] *= by;
+  };
+  const auto said = [&] { return seen(file)["suspicious"].dump(); };
+  change(0, 512, 1.5F);
+  EXPECT_THAT(said(), AllOf(HasSubstr("is 66.7 % of the beauty on 25 % of the surfaces"), HasSubstr("too dark")));
+  change(512, 1088, 0.5F);
+  EXPECT_THAT(said(), AllOf(HasSubstr("brighter in places and darker in others"), Not(HasSubstr("too dark"))));
+  change(0, 2304, 0.5F);
+  EXPECT_THAT(said(), HasSubstr("the beauty lacks light"));
+}
+
 TEST_F(Inspect, the_command_it_gives_runs_and_guesses_nothing) {
   json fields = wall_camera();
   fields.erase("depth");

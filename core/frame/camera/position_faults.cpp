@@ -162,6 +162,21 @@ double share_on(const PointModel<N>& model, std::span<const SeenPoint> points, c
   return double(near) / double(all.size());
 }
 
+/// Whether the points lie in one plane, or nearly so: then many projections see them alike.
+bool are_in_plane(std::span<const SeenPoint> points) {
+  constexpr double kFlat = 1e-6;  // of the squared extents
+  Square<3> sums{};
+  Vector3 mean{};
+  const std::vector<SeenPoint> all = normalized(points).points;
+  for (const auto& seen : all)
+    for (std::size_t i = 0; i < 3; i++) mean[i] += seen.position[i] / double(all.size());
+  for (const auto& seen : all)
+    for (std::size_t i = 0; i < 3; i++)
+      for (std::size_t j = 0; j < 3; j++) sums[i][j] += (seen.position[i] - mean[i]) * (seen.position[j] - mean[j]);
+  const auto values = eigen_of(sums).first;
+  return std::ranges::min(values) <= kFlat * std::ranges::max(values);
+}
+
 }  // namespace
 
 std::string why_cut(std::span<const SeenPoint> points, const Window& display) {
@@ -178,7 +193,7 @@ std::string why_cut(std::span<const SeenPoint> points, const Window& display) {
 std::string why_stretched(std::span<const SeenPoint> points, const Window& display, const Resection* camera,
                           double pixel_aspect) {
   constexpr double kSame = 0.02;
-  if (points.size() < kLeastPoints) return "";
+  if (points.size() < kLeastPoints || are_in_plane(points)) return "";
   const double aspect = camera ? camera->camera.fy / camera->camera.fx : 0;
   if (camera ? std::abs(aspect / pixel_aspect - 1) < kSame : share_on(kLinear, points, display) < kNearlyAll) return "";
   const std::string box = box_of(points);
@@ -188,7 +203,7 @@ std::string why_stretched(std::span<const SeenPoint> points, const Window& displ
 }
 
 std::string why_bent(std::span<const SeenPoint> points, const Window& display) {
-  if (points.size() < kLeastPoints || share_on(kRound, points, display) < kNearlyAll) return "";
+  if (points.size() < kLeastPoints || are_in_plane(points) || share_on(kRound, points, display) < kNearlyAll) return "";
   return "each lies in the right direction from the picture's middle and at another distance: the lens is distorted, "
          "or a fish eye; render without its distortion, or give the camera without it (a fish eye cannot be read)";
 }

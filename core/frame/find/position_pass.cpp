@@ -212,14 +212,49 @@ double spread(std::vector<double> numbers) {
   return median_of(std::move(numbers));
 }
 
+/// Whether the frame has positions beside a depth of its own.
+bool has_positions_beside(const FrameSource& source) {
+  return !source.channels.positions.empty() && source.channels[RawPlane::depth].size() == 1;
+}
+
+/// Whether the camera is no reading of the positions themselves.
+bool has_own_camera(const FrameSource& source) { return !source.open.camera && source.camera_from != kByPositions; }
+
+/// Says that the positions show the camera's lens a little apart from it, as that of a frame before has it; "" if they
+/// do not, or so far away that they are of another world or in other units.
+std::string why_elsewhere(const Camera& camera, const Camera& seen, std::span<const SeenPoint> points) {
+  constexpr double kMostTurn = 30;  // degrees
+  if (!camera.view_from_world || !seen.view_from_world || seen.orthographic) return "";
+  const Matrix3 &from = *camera.view_from_world, &to = *seen.view_from_world;
+  const Matrix3 turn = product(to, transposed(from));
+  const double cosine = 0.5 * (turn[0][0] + turn[1][1] + turn[2][2] - 1);
+  const double degrees = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
+  const Vector3 eye = times(transposed(from), camera.view_from_world_offset),
+                other = times(transposed(to), seen.view_from_world_offset);
+  const double moved = length(difference(eye, other));
+  std::vector<double> depths;
+  for (const SeenPoint& point : points) depths.push_back(planar_of(point, seen));
+  if (degrees > kMostTurn || moved > median_of(std::move(depths))) return "";
+  return fmt::format(
+      "they show the same lens turned by {:.2f} degrees and moved by {:.2g}: it may be the camera of "
+      "another frame",
+      degrees, moved);
+}
+
 }  // namespace
 
-std::string settle_camera(FrameSource& source, const InputSettings& settings) {
-  if (source.channels.positions.empty() || source.open.camera || source.camera_from == kByPositions) return "";
+std::vector<SeenPoint> points_to_check(FrameSource& source, double sky) {
+  const bool is_needed = has_positions_beside(source) || has_own_camera(source);
+  if (source.channels.positions.empty() || !is_needed) return {};
+  return points_of(source, sky, kFewBands);
+}
+
+std::string settle_camera(FrameSource& source, const InputSettings& settings, std::span<const SeenPoint> points) {
+  if (points.empty() || !has_own_camera(source)) return "";
   ExrFile& file = source.file_of(source.channels.positions.front());
-  const auto points = points_of(source, settings.sky, kFewBands);
   const double limit = std::max(kLeastBeside, kLeastPart * source.reading.display.width);
-  if (points.empty() || beside(source.reading.camera, source.reading.camera, points) <= limit) return "";
+  const double by_camera = beside(source.reading.camera, source.reading.camera, points);
+  if (by_camera <= limit) return "";
   const auto found = resection_of(points, source.reading.display);
   const auto* seen = std::get_if<Resection>(&found);
   const std::string& held = file.path();
@@ -236,7 +271,14 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings) {
         held, std::get<NoResection>(found).median, name_of_lens(source, settings));
   } else {
     const double px = beside(source.reading.camera, seen->camera, points);
-    if (px <= limit) return "";
+    if (px <= limit) {
+      const std::string elsewhere = why_elsewhere(source.reading.camera, seen->camera, points);
+      if (elsewhere.empty()) return "";
+      text = fmt::format("by {} most positions of {} lie up to {:.3g} px from the pixels that hold them; {}",
+                         name_of_lens(source, settings), held, by_camera, elsewhere);
+      source.notes.push_back({NoteCode::positions_disagree, text});
+      return text;
+    }
     text = fmt::format("by {} most positions of {} lie up to {:.3g} px from the pixels that hold them; they show {}{}",
                        name_of_lens(source, settings), held, px, text_of(seen->camera, source.reading.pixel_aspect),
                        source.camera_from.empty() ? ": give that, or leave the option out" : "");
@@ -248,11 +290,6 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings) {
 namespace {
 
 constexpr double kSame = 0.005;  // of depth that is that of the positions, in whatever unit
-
-/// Whether the frame has positions beside a depth of its own.
-bool has_positions_beside(const FrameSource& source) {
-  return !source.channels.positions.empty() && source.channels[RawPlane::depth].size() == 1;
-}
 
 /// Calls `take` with the planar depth of each point in front of the camera, with the raw value beside it, and with the
 /// length of its ray.
@@ -301,10 +338,10 @@ std::string difference_of(const std::vector<double>& depths, const std::vector<d
 
 }  // namespace
 
-void check_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
+void check_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw,
+                        std::span<const SeenPoint> points) {
   const Camera& camera = source.reading.camera;
   if (!has_positions_beside(source) || source.open.camera || camera.orthographic) return;
-  const auto points = points_of(source, settings.sky, kFewBands);
   const double limit = std::max(kLeastBeside, kLeastPart * source.reading.display.width);
   if (points.empty() || beside(camera, camera, points) > limit) return;
   const DepthMap map = depth_map_of(source.reading);
@@ -324,18 +361,18 @@ void check_by_positions(FrameSource& source, const InputSettings& settings, cons
                                         why)});
 }
 
-std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
+std::optional<DepthKind> kind_by_positions(const FrameSource& source, const InputSettings& settings, const RawPart& raw,
+                                           std::span<const SeenPoint> points) {
   constexpr double kOther = 4;  // times as far is another kind
   if (!has_positions_beside(source)) return std::nullopt;
   std::vector<double> planar, ray, inverse;
-  for_each_beside(source, points_of(source, settings.sky, kFewBands), raw,
-                  [&](double z, double signed_value, double to) {
-                    const double value = std::abs(signed_value);
-                    if (!(value > 0 && value < settings.sky)) return;
-                    planar.push_back(value / z);
-                    ray.push_back(value / (z * to));
-                    inverse.push_back(value * z);
-                  });
+  for_each_beside(source, points, raw, [&](double z, double signed_value, double to) {
+    const double value = std::abs(signed_value);
+    if (!(value > 0 && value < settings.sky)) return;
+    planar.push_back(value / z);
+    ray.push_back(value / (z * to));
+    inverse.push_back(value * z);
+  });
   if (planar.size() < kLeastPoints) return std::nullopt;
   const std::array spreads{std::pair{spread(planar), DepthKind::planar}, std::pair{spread(ray), DepthKind::ray},
                            std::pair{spread(inverse), DepthKind::inverse}};

@@ -31,16 +31,21 @@ std::vector<SeenPoint> points_of(FrameSource& source, double sky, int bands);
 std::string fault_of_positions(std::span<const SeenPoint> points, const ExrFile& file,
                                const std::variant<Resection, NoResection>& found);
 
-/// Compares the camera with the positions that the depth's file may have. Notes a lens that they refute by pixels, and
-/// gives the note's text; "" if they do not. Refuses panoramas.
-std::string settle_camera(FrameSource& source, const InputSettings& settings);
+/// Points of a few bands, if the camera or the depth can be held against them; none if not.
+std::vector<SeenPoint> points_to_check(FrameSource& source, double sky);
+
+/// Compares the camera with these points of the positions. Notes a lens or a place that they refute by pixels, and gives
+/// the note's text; "" if they do not. Refuses panoramas.
+std::string settle_camera(FrameSource& source, const InputSettings& settings, std::span<const SeenPoint> points);
 
 /// Gives the kind by which the depth is that of the positions beside it: planar, ray or inverse. Gives none if there
 /// are no positions, or if more than one kind fits.
-std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw);
+std::optional<DepthKind> kind_by_positions(const FrameSource& source, const InputSettings& settings, const RawPart& raw,
+                                           std::span<const SeenPoint> points);
 
 /// Notes depth, as it is read, that is not that of the positions beside it: in another unit, from another plane, or
 /// neither. Says nothing where the camera does not see the positions where they are.
-void check_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw);
+void check_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw,
+                        std::span<const SeenPoint> points);
 
 }  // namespace alcove

@@ -211,6 +211,15 @@ bool tells(const Curve& c) {
   return c.planes >= kLeastPlanes && c.spread < kMostSpread && c.is_wide;
 }
 
+/// Half floats whose sky may be surfaces: those beyond the largest number became infinite.
+Sentence overflown_depth(const Findings& f) {
+  if (!f.overflow.is_reached || f.overflow.beyond == 0) return std::nullopt;
+  return fmt::format(
+      "{:.0f} % of {} is infinite or 65504, the largest half float, and surfaces reach up to it: what lies "
+      "beyond counts as sky; write depth as float, or in larger units",
+      100 * f.overflow.beyond, f.depth_channel);
+}
+
 constexpr double kSameSlope = 0.04;  // of distances, 1/2
 
 bool is_in_proportion(const Findings& f) { return is_distance(f.depth_kind) || f.depth_kind == DepthKind::normalized; }
@@ -219,24 +228,33 @@ Sentence depth_offset(const Findings& f) {
   constexpr double kSame = 0.05;  // of the median value
   const Curve& c = f.curve;
   if (!is_in_proportion(f) || !tells(c) || std::abs(c.slope - 0.5) > kSameSlope) return std::nullopt;
+  if (f.begins_behind) return std::nullopt;
   const double offset = 2 * c.offset;
   if (std::abs(offset - f.said_offset) < kSame * (c.median + std::abs(offset))) return std::nullopt;
-  const bool is_normalized = f.depth_kind == DepthKind::normalized;
-  const std::string seen =
-      fmt::format("surfaces are flat by 1 / (depth {} {:.4g}), not by 1 / {}", offset < 0 ? "-" : "+", std::abs(offset),
-                  f.said_offset == 0 ? "depth" : fmt::format("(depth + {:.4g})", f.said_offset));
+  const bool is_normalized = f.depth_kind == DepthKind::normalized, falls = offset < -c.median;
+  const std::string seen = fmt::format(
+      "surfaces are flat by 1 / (depth {} {:.4g}), not by 1 / {}", offset < 0 ? "-" : "+", std::abs(offset),
+      f.said_offset == 0 ? "depth"
+                         : fmt::format("(depth {} {:.4g})", f.said_offset < 0 ? "-" : "+", std::abs(f.said_offset)));
+  const char* const unreversed = f.said_offset < 0 ? ", without --reversed-z" : "";
   if (std::abs(offset) < kSame * c.median)
     return fmt::format(
         "{}: the depth starts at 0 at the eye, so --near does not fit: give --depth-kind normalized "
-        "--near 0",
-        seen);
+        "--near 0{}",
+        seen, unreversed);
+  if (falls)
+    return fmt::format(
+        "{}: the depth falls with the distance: {} --near N --far F with F / (F - N) = {:.4g}, as {:.4g} and {:.4g} "
+        "times the scene units per unit of depth",
+        seen, f.said_offset < 0 ? "--near or --far does not fit; give" : "give --depth-kind normalized --reversed-z",
+        -offset, -offset - 1, -offset);
   if (offset < 0)
     return fmt::format("{}: something was added to the depth, an offset of {:.4g}; subtract it", seen, -offset);
   return fmt::format(
       "{}: the depth counts from a near plane, not from the eye, with an offset of {:.4g}: {} --near N "
-      "--far F with N / (F - N) = {:.4g}, as {:.4g} and {:.4g} times the scene units per unit of depth",
+      "--far F with N / (F - N) = {:.4g}, as {:.4g} and {:.4g} times the scene units per unit of depth{}",
       seen, offset, is_normalized ? "--near does not fit; give" : "give --depth-kind normalized", offset, offset,
-      offset + 1);
+      offset + 1, unreversed);
 }
 
 Sentence depth_curve(const Findings& f) {
@@ -290,8 +308,8 @@ Sentence displaced_normals(const Findings& f) {
   if (f.normals.count < kLeast || double(f.normals.aligned) > kAligned * double(f.normals.count)) return std::nullopt;
   if (f.normals.beside == 0) return std::nullopt;
   return fmt::format(
-      "along {:.0f} % of the outlines the normals change {:.2g} px and more beside the depth: they are of "
-      "another frame, or were displaced; --normal none reconstructs them from depth",
+      "along {:.0f} % of the outlines the normals change beside the depth, by {:.2g} px in the median of all: they are "
+      "of another frame, or were displaced; --normal none reconstructs them from depth",
       100 - percent(double(f.normals.aligned), double(f.normals.count)), f.normals.beside);
 }
 
@@ -329,6 +347,8 @@ constexpr std::array kTable{
              "depth without the curve", depth_curve},
     Detector{NoteCode::clamped_depth, "the largest value, and normals", "many have it, and look in other directions",
              "depth without a limit; --sky", clamped_depth},
+    Detector{NoteCode::overflown_depth, "values at the end of half floats",
+             "some are infinite or 65504, and others reach up to it", "float, or larger units", overflown_depth},
     Detector{NoteCode::wrapped_depth, "drops of depth within smooth surfaces", "most are by the whole range",
              "float, or larger units", wrapped_depth},
     Detector{NoteCode::displaced_normals, "outlines between planes", "most normals change beside the depth",

@@ -110,18 +110,29 @@ std::vector<Stack> stacks_of(std::span<const PlacedRuns> rows) {
   return found;
 }
 
-/// Whether sides stand where those of tiles do. A side stands so by chance once in so many pixels, a border always.
-bool is_on_grid(const EmptyRectangle& r, const Window& window) {
-  constexpr int kTile = 16;
-  constexpr int kLeastSides = 3;  // of one in so many thousand windows
-  int sides = 0;
-  const auto check = [&](int at, int size) {
-    const bool is_border = at == 0 || at == size;
-    sides += !is_border;
-    return is_border || at % kTile == 0 || (size - at) % kTile == 0;
-  };
-  return check(r.left, window.width) && check(r.right, window.width) && check(r.top, window.height) &&
-         check(r.bottom, window.height) && sides >= kLeastSides;
+/// Sides that are no border of the picture, where a tile's side is always.
+int free_sides(int first, int end, int size) { return (first > 0) + (end < size); }
+
+/// The chance that two opposite sides stand on a grid of tiles as these do; 1 where they stand on none. A grid begins
+/// at one of the borders.
+double grid_chance(int first, int end, int size) {
+  double chance = 1;
+  for (const int tile : {16, 32, 64, 128}) {
+    const auto stand = [&](int origin) {
+      return (first == 0 || (first - origin) % tile == 0) && (end == size || (end - origin) % tile == 0);
+    };
+    if (stand(0) || stand(size)) chance = (size % tile == 0 ? 1 : 2) * std::pow(tile, -free_sides(first, end, size));
+  }
+  return chance;
+}
+
+/// Whether sides stand where those of tiles do, and one of so many rectangles hardly does so by chance.
+bool is_on_grid(const EmptyRectangle& r, const Window& frame, std::size_t rectangles) {
+  constexpr int kLeastSides = 3;
+  constexpr double kMostChance = 0.005;
+  const double across = grid_chance(r.left, r.right, frame.width), down = grid_chance(r.top, r.bottom, frame.height);
+  const int sides = free_sides(r.left, r.right, frame.width) + free_sides(r.top, r.bottom, frame.height);
+  return sides >= kLeastSides && std::max(across, down) < 1 && double(rectangles) * across * down < kMostChance;
 }
 
 bool has_other_values(std::span<const PlacedRuns> rows, float value) {
@@ -137,12 +148,14 @@ bool has_other_values(std::span<const PlacedRuns> rows, float value) {
 
 }  // namespace
 
-std::optional<EmptyRectangle> empty_rectangle(std::span<const float> depth, const Window& window,
+std::optional<EmptyRectangle> empty_rectangle(std::span<const float> depth, const Window& window, const Window& frame,
                                               std::span<const PlacedRuns> rows) {
   if (depth.size() != window.pixels()) return std::nullopt;
   std::optional<EmptyRectangle> best;
   double area = 0;
-  for (const Stack& stack : stacks_of(rows)) {
+  const int above = window.y - frame.y, below = frame.height - window.height - above;
+  const std::vector<Stack> stacks = stacks_of(rows);
+  for (const Stack& stack : stacks) {
     const bool is_whole_row = stack.run.first == 0 && stack.run.end == std::size_t(window.width);
     if (is_whole_row || stack.area() <= area) continue;
     const auto is_row = [&](int row) {
@@ -153,9 +166,12 @@ std::optional<EmptyRectangle> empty_rectangle(std::span<const float> depth, cons
     EmptyRectangle r{int(stack.run.first), stack.first_row, int(stack.run.end), stack.last_row + 1, stack.run.value};
     while (r.top > 0 && is_row(r.top - 1)) r.top--;
     while (r.bottom < window.height && is_row(r.bottom)) r.bottom++;
+    if ((r.top == 0 && above > 0) || (r.bottom == window.height && below > 0)) continue;
+    r.top += above;
+    r.bottom += above;
     const bool is_nothing = stack.run.value == 0 || std::isnan(stack.run.value);
     r.is_unlike_sky = is_nothing && has_other_values(rows, stack.run.value);
-    r.is_on_grid = is_on_grid(r, window);
+    r.is_on_grid = is_on_grid(r, frame, stacks.size());
     if (!r.is_unlike_sky && !r.is_on_grid) continue;
     best = r;
     area = stack.area();

@@ -22,8 +22,8 @@ struct PlacedRuns {
 };
 
 /// The largest rectangle without surfaces that has one value and does not reach from border to border. `rows` are some
-/// of the frame's.
-std::optional<EmptyRectangle> empty_rectangle(std::span<const float> depth, const Window& window,
+/// of the window's, which may be a part of the frame's: a rectangle that goes on beyond a part tells nothing.
+std::optional<EmptyRectangle> empty_rectangle(std::span<const float> depth, const Window& window, const Window& frame,
                                               std::span<const PlacedRuns> rows);
 
 }  // namespace alcove

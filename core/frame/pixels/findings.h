@@ -52,6 +52,12 @@ struct Wrapping {
   double most = 0;        // the largest value
 };
 
+/// Distances in half floats against the largest of these.
+struct Overflow {
+  double beyond = 0;        // share of all pixels that are infinite or it
+  bool is_reached = false;  // finite ones come near it
+};
+
 /// Normals beside outlines.
 struct NormalOutlines {
   std::size_t count = 0;    // outlines between two planes of different normals
@@ -59,7 +65,7 @@ struct NormalOutlines {
   double beside = 0;        // px, the median distance of their change from that of depth
 };
 
-/// A rectangle without surfaces, in pixels of the data window.
+/// A rectangle without surfaces, in pixels of the frame's data window.
 struct EmptyRectangle {
   int left = 0, top = 0, right = 0, bottom = 0;  // right and bottom: one further
   double value = 0;                              // of all its pixels
@@ -93,7 +99,8 @@ struct Findings {
 
   Grain grain{};
   Curve curve{};
-  double said_offset = 0;  // in the file's units: by the options depth is in proportion to the value and this
+  bool begins_behind = false;  // values count from a plane behind most surfaces, and are below 0 before it
+  double said_offset = 0;      // in the file's units: by the options depth is in proportion to the value and this
 
   std::size_t pixels = 0, surfaces = 0;  // that were looked at
   std::array<Repeats, 2> repeats{};      // of columns, of rows
@@ -101,6 +108,7 @@ struct Findings {
   std::array<Holes, 2> holes{};          // in rows, in columns
   Unevenness unevenness{};
   Wrapping wrapping{};
+  Overflow overflow{};
   std::optional<double> jitter{};
   std::optional<Borders> borders{};  // none: of a part of a frame
   std::optional<EmptyRectangle> rectangle{};

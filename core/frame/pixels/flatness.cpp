@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "core/base/error.h"
@@ -265,8 +266,8 @@ BlockScores scores_by(std::span<const float> raw, const View& view, double sky, 
   if (side < kLeastSide) return {};
   const Basis basis(side);
   std::size_t count = 0;
-  // Large blocks overlap by more, so that there are enough of them.
-  const int step = std::max(1, std::min(side / 2, std::max(view.size.x, view.size.y) / 48));
+  // Large blocks overlap by more, so that there are enough of them; those of a small picture by no more than that.
+  const int step = std::max(side / 4, std::min(side / 2, std::max(view.size.x, view.size.y) / 48));
   const auto value_of = [&](std::size_t i, double) {
     const double value = std::abs(double(raw[i]));
     return value > 0 && value < sky ? value : kInfinity;
@@ -284,6 +285,7 @@ BlockScores scores_by(std::span<const float> raw, const View& view, double sky, 
 }
 
 constexpr std::size_t kAbout = 32;  // neighbours whose differences are looked at
+constexpr std::size_t kFewest = 8;  // values; fewer may be as many walls that face the camera
 
 /// A value, and the step from it to the next.
 struct Place {
@@ -292,36 +294,53 @@ struct Place {
 
 /// The values of a sample, in their order.
 std::vector<double> sorted_values(std::span<const float> raw, double sky) {
-  constexpr std::size_t kSampled = 1 << 15;
-  std::vector<double> values;
+  constexpr std::size_t kSampled = 1 << 14;
+  std::vector<float> values;
   for (std::size_t i = 0, step = raw.size() / kSampled + 1; i < raw.size(); i += step)
-    if (const double v = std::abs(double(raw[i])); v > 0 && v < sky && std::isfinite(v)) values.push_back(v);
+    if (const float v = std::abs(raw[i]); v > 0 && v < sky && std::isfinite(v)) values.push_back(v);
   std::ranges::sort(values);
-  return values;
+  return {values.begin(), values.end()};
 }
 
 /// The step at a part of the way through different values; 0: there is none. `counts` says how frequent each is.
 Place place_at(double part, std::span<const double> values, std::span<const std::size_t> counts) {
-  const std::size_t first = std::size_t(part * double(values.size() - kAbout));
-  const double value = values[first + kAbout / 2], step = common_step(values.subspan(first, kAbout), value);
+  const std::size_t about = std::min(kAbout, values.size());
+  const std::size_t first = std::size_t(part * double(values.size() - about));
+  const double value = values[first + about / 2], step = common_step(values.subspan(first, about), value);
   // A plane whose depth changes by as much from row to row has one step too, and each of its values is as frequent.
-  const auto [least, most] = std::ranges::minmax(counts.subspan(first, kAbout));
-  const bool is_ramp = most - least <= 1 && values[first + kAbout - 1] - values[first] < 1.001 * (kAbout - 1) * step;
+  const auto [least, most] = std::ranges::minmax(counts.subspan(first, about));
+  const bool is_ramp =
+      most - least <= 1 && values[first + about - 1] - values[first] < 1.001 * double(about - 1) * step;
   return {value, is_ramp ? 0 : step};
+}
+
+/// Whether all of a few values, which may be those of walls, are multiples of a step.
+bool are_multiples(std::span<const double> values, double step) {
+  constexpr double kExact = 0.01;
+  return std::ranges::all_of(values, [&](double v) { return std::abs(v / step - std::round(v / step)) < kExact; });
+}
+
+/// Whether these are all whole numbers of a range: hardly any walls stand so.
+bool are_whole_numbers(std::span<const double> values) {
+  constexpr std::size_t kLeast = 4;
+  return values.size() >= kLeast && values.back() - values.front() == double(values.size() - 1) &&
+         std::ranges::all_of(values, [](double v) { return v == std::round(v); });
 }
 
 }  // namespace
 
-Grain grain_of(std::span<const float> raw, double sky) {
+Grain grain_of(std::span<const float> raw, double sky, bool orthographic) {
   constexpr double kCoarse = 0x1p-14;  // of the value: finer steps do no harm
   std::vector<double> values = sorted_values(raw, sky);
   if (values.empty()) return {};
   Grain grain{values[values.size() / 2]};
   const std::vector<std::size_t> counts = counts_of_equal(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
-  if (values.size() < 2 * kAbout) return grain;
+  const bool are_few = values.size() < 2 * kAbout;
+  if ((values.size() < kFewest && !are_whole_numbers(values)) || (are_few && orthographic)) return grain;
   const std::array places{place_at(0.1, values, counts), place_at(0.5, values, counts), place_at(0.9, values, counts)};
   grain.step = places[1].step;
+  if (are_few && grain.step > 0 && !are_multiples(values, grain.step)) grain.step = 0;
   if (grain.step == 0) return grain;
   grain.median = places[1].value;
   grain.is_coarse = grain.step >= kCoarse * grain.median;
@@ -340,7 +359,10 @@ Grain grain_of(std::span<const float> raw, double sky) {
 DepthShape shape_of(std::span<const float> raw, const View& view, double sky, const Grain& grain) {
   std::vector<DepthScore> best;
   std::vector<CurvePoint> points;
+  std::set<int> tried;
   for (const int per_picture : kSidesPerPicture) {
+    // In a small picture several parts are of the least size, and the same block counts once.
+    if (!tried.insert(side_of(view, per_picture)).second) continue;
     auto [scores, curve] = scores_by(raw, view, sky, side_of(view, per_picture), grain);
     std::ranges::move(curve, std::back_inserter(points));
     if (!scores.empty() && (best.empty() || scores[0].straight > best[0].straight)) best = std::move(scores);
@@ -356,7 +378,7 @@ std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map,
   constexpr double kMost = 0.4;            // more is relief
   constexpr double kSame = 1.3;            // surfaces of all slopes have the same noise, within this factor
   constexpr std::size_t kLeastCount = 40;  // blocks
-  const int side = side_of(view, 48);
+  const int side = side_of(view, 48), step = std::max(side, std::max(view.size.x, view.size.y) / 24);
   if (side < kLeastSide) return std::nullopt;
   const Basis basis(side);
   const double per_pixel = 1 / (0.5 * (side - 1));
@@ -369,11 +391,11 @@ std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map,
     if (raw.size() == 3 * plane) values = {raw[i], raw[i + plane], raw[i + 2 * plane]};
     return planar_depth(map, values, length);
   };
-  for_each_block(view, side, side, basis, depth_of, [&](const Samples& values, const Samples&) {
+  for_each_block(view, side, step, basis, depth_of, [&](const Samples& values, const Samples&) {
     const Fit f = fit(quotients(ones, values), basis);
-    const double slope = f.slope * per_pixel, step = relative_step(grain, values[kSamples / 2]);
-    if (f.residual < kSmoothNoise && slope > kLeastSlope && slope > 4 * step)
-      noises.push_back(f.residual < step ? 0 : f.residual / slope);
+    const double slope = f.slope * per_pixel, rounding = relative_step(grain, values[kSamples / 2]);
+    if (f.residual < kSmoothNoise && slope > kLeastSlope && slope > 4 * rounding)
+      noises.push_back(f.residual < rounding ? 0 : f.residual / slope);
   });
   if (noises.size() < kLeastCount) return std::nullopt;
   std::ranges::sort(noises);

@@ -13,8 +13,9 @@
 namespace alcove {
 
 /// Finds the common divisor of the differences between neighbouring values, at three places of their distribution.
-/// Values of some 17 bits or fewer have a step; `sky`: values at or beyond it count for none.
-Grain grain_of(std::span<const float> raw, double sky);
+/// Values of some 17 bits or fewer have a step; `sky`: values at or beyond it count for none. A few values alone tell
+/// nothing of an orthographic view, where they may be stairs from above.
+Grain grain_of(std::span<const float> raw, double sky, bool orthographic = false);
 
 /// Scores planar, ray and inverse depth, the best first. Inverse stands for all that is affine in 1/z, as device depth
 /// is. In an orthographic view planar stands for ray and device depth too, and inverse for itself. Gives nothing where

@@ -33,12 +33,19 @@ void count_repeats(const Line& line, BorderCounts& counts) {
   constexpr float kSlow = 0.05f;      // relative change within one surface
   counts.places.resize(line.size());
   counts.equal.resize(line.size());
+  // The least and the largest of a value and those before it, of so many each time.
+  std::vector<float> least = line.raw, most = line.raw;
+  for (std::size_t span = 1; span < 2 * kAround; span *= 2)
+    for (std::size_t i = line.size(); i-- > span;) {
+      least[i] = std::min(least[i], least[i - span]);
+      most[i] = std::max(most[i], most[i - span]);
+    }
   std::size_t surfaces = 0;  // up to the end of the window
   for (std::size_t end = 1; end <= line.size(); end++) {
     surfaces = line.is_surface(end - 1) ? surfaces + 1 : 0;
     if (surfaces < 2 * kAround) continue;
-    const auto [least, most] = std::ranges::minmax(std::span(line.raw).subspan(end - 2 * kAround, 2 * kAround));
-    if (least == most || most - least > kSlow * std::min(std::abs(least), std::abs(most))) continue;
+    const float low = least[end - 1], high = most[end - 1];
+    if (low == high || high - low > kSlow * std::min(std::abs(low), std::abs(high))) continue;
     const std::size_t border = end - kAround;
     counts.places[border]++;
     counts.equal[border] += line.raw[border] == line.raw[border - 1];

@@ -92,67 +92,98 @@ std::size_t for_each_normal(const NormalPlanes& planes, const Visit& visit) {
   return count;
 }
 
-/// The sums of one reading of the normals.
-class NormalSum {
- public:
-  explicit NormalSum(NormalScore& score, const Camera& camera)
-      : score_(score), rotation_(view_from_normal(camera, score.space, score.flips)) {}
-
-  void add(const SurfacePlace& surface, const Vector3& vector) {
-    Vector3 n = times(rotation_, vector);
-    double cosine = std::min(1.0, dot(n, surface.normal));
-    score_.facing += dot(n, surface.eye) > 0;
-    score_.agreement += cosine > kAgreeing;
-    score_.close += cosine > kClose;
-    if (cosine < -kAgreeing) {
-      score_.opposite++;
-      cosine = std::min(1.0, -cosine);
-      n = scaled(n, -1);
-    }
-    cosines_.push_back(cosine);
-    if (cosine > kAgreeing) add_turn(surface.normal, n);
-  }
-  void finish() {
-    const auto count = double(cosines_.size());
-    for (double* share : {&score_.facing, &score_.agreement, &score_.opposite, &score_.close}) *share /= count;
-    score_.angle =
-        std::acos(std::max(-1.0, value_at_rank(cosines_, std::size_t(0.75 * double(cosines_.size()))))) / kRadians;
-    // A turn about the surfaces' own normals does not show.
-    constexpr double kUnseen = 1e-4;
-    for (std::size_t i = 0; i < 3; i++) across_[i][i] += kUnseen * count;
-    const double whole = determinant(across_);
-    for (std::size_t i = 0; i < 3; i++) {
-      Matrix3 replaced = across_;  // symmetrical: its rows are its columns
-      replaced[i] = moved_;
-      score_.turn[i] = determinant(replaced) / whole;
-    }
-  }
-
- private:
-  /// A small turn moves a unit vector g by turn x g, so that g x n is the part of the turn that is across g.
-  void add_turn(const Vector3& g, const Vector3& n) {
-    const Vector3 moved = cross(g, n);
-    for (std::size_t i = 0; i < 3; i++) {
-      moved_[i] += moved[i];
-      for (std::size_t j = 0; j < 3; j++) across_[i][j] += double(i == j) - g[i] * g[j];
-    }
-  }
-
-  NormalScore& score_;
-  Matrix3 rotation_, across_{};
-  Vector3 moved_{};
-  std::vector<double> cosines_;
+/// A place of a smooth surface with the unit normal of the file there, in its own space.
+struct ReadPlace {
+  SurfacePlace surface;
+  Vector3 normal;
 };
 
-/// Fills in how well the frame agrees with each of the readings. Gives false where too little of it is smooth.
+/// The products of components whose sums, with the signs of flips, are the cosines of a normal to that of depth and to
+/// the eye: all flips of a space share them.
+struct Products {
+  Vector3 by_depth, by_eye;
+};
+
+std::vector<Products> products_of(const std::vector<ReadPlace>& places, const Camera& camera, NormalSpace space) {
+  const Matrix3 normal_from_view = transposed(view_from_normal(camera, space, {}));
+  std::vector<Products> all;
+  all.reserve(places.size());
+  for (const auto& [surface, normal] : places) {
+    Products p{times(normal_from_view, surface.normal), times(normal_from_view, surface.eye)};
+    for (std::size_t c = 0; c < 3; c++) p.by_depth[c] *= normal[c], p.by_eye[c] *= normal[c];
+    all.push_back(p);
+  }
+  return all;
+}
+
+/// Fills in the shares.
+void count_agreeing(NormalScore& score, const Vector3& signs, const std::vector<Products>& products) {
+  for (const Products& p : products) {
+    const double cosine = dot(signs, p.by_depth);
+    score.facing += dot(signs, p.by_eye) > 0;
+    score.agreement += cosine > kAgreeing;
+    score.close += cosine > kClose;
+    score.opposite += cosine < -kAgreeing;
+  }
+  for (double* share : {&score.facing, &score.agreement, &score.opposite, &score.close})
+    *share /= double(products.size());
+}
+
+/// Fills in the angle.
+void measure_angle(NormalScore& score, const Vector3& signs, const std::vector<Products>& products) {
+  std::vector<double> cosines;
+  cosines.reserve(products.size());
+  for (const Products& p : products) {
+    const double cosine = dot(signs, p.by_depth);
+    cosines.push_back(std::min(1.0, cosine < -kAgreeing ? -cosine : cosine));
+  }
+  score.angle =
+      std::acos(std::max(-1.0, value_at_rank(cosines, std::size_t(0.75 * double(cosines.size()))))) / kRadians;
+}
+
+/// Fills in the turn: a small one moves a unit vector g by turn x g, so that g x n is the part of it that is across g.
+void measure_turn(NormalScore& score, const std::vector<ReadPlace>& places, const Camera& camera) {
+  constexpr double kUnseen = 1e-4;  // a turn about the surfaces' own normals does not show
+  const Matrix3 rotation = view_from_normal(camera, score.space, score.flips);
+  Matrix3 across{};
+  Vector3 moved{};
+  for (const auto& [surface, normal] : places) {
+    const Vector3& g = surface.normal;
+    const Vector3 n = times(rotation, normal);
+    const double cosine = dot(g, n);
+    if (std::abs(cosine) <= kAgreeing) continue;
+    const Vector3 beside = cross(g, n);
+    for (std::size_t i = 0; i < 3; i++) {
+      moved[i] += cosine < 0 ? -beside[i] : beside[i];
+      for (std::size_t j = 0; j < 3; j++) across[i][j] += double(i == j) - g[i] * g[j];
+    }
+  }
+  for (std::size_t i = 0; i < 3; i++) across[i][i] += kUnseen * double(places.size());
+  const double whole = determinant(across);
+  for (std::size_t i = 0; i < 3; i++) {
+    Matrix3 replaced = across;  // symmetrical: its rows are its columns
+    replaced[i] = moved;
+    score.turn[i] = determinant(replaced) / whole;
+  }
+}
+
+/// Fills in how well the frame agrees with each of the readings; angle and turn of those by which half of the normals
+/// agree. Gives false where too little of it is smooth.
 bool score(std::vector<NormalScore>& scores, const NormalPlanes& planes) {
-  std::vector<NormalSum> sums;
-  for (auto& score : scores) sums.emplace_back(score, planes.camera);
-  const std::size_t count = for_each_normal(planes, [&](const SurfacePlace& surface, const Vector3& n) {
-    for (auto& sum : sums) sum.add(surface, n);
-  });
-  if (count < kLeastSamples) return false;
-  for (auto& sum : sums) sum.finish();
+  std::vector<ReadPlace> places;
+  for_each_normal(planes, [&](const SurfacePlace& surface, const Vector3& n) { places.push_back({surface, n}); });
+  if (places.size() < kLeastSamples) return false;
+  std::vector<Products> products;
+  for (std::size_t i = 0; i < scores.size(); i++) {
+    NormalScore& score = scores[i];
+    if (i == 0 || score.space != scores[i - 1].space) products = products_of(places, planes.camera, score.space);
+    const NormalFlips& flips = score.flips;
+    const Vector3 signs{flips.x ? -1.0 : 1, flips.y ? -1.0 : 1, flips.z ? -1.0 : 1};
+    count_agreeing(score, signs, products);
+    if (score.explained() < kUsable) continue;
+    measure_angle(score, signs, products);
+    measure_turn(score, places, planes.camera);
+  }
   return true;
 }
 

@@ -36,12 +36,16 @@ struct NormalScore {
   double agreement = 0;  // share within 20 degrees of the normal that depth gives
   double opposite = 0;   // share within 20 degrees of its opposite, which prepare.comp turns round
   double close = 0;      // share within 3 degrees of it, which only the right camera gives
-  double angle = 0;      // degrees to either, of the best quarter at most
-  Vector3 turn{};        // radians about an axis of view space, by which those within 20 degrees are turned as a whole
+  // Of readings by which at least kUsable agree.
+  double angle = 180;  // degrees to either, of the best quarter at most
+  Vector3 turn{};      // radians about an axis of view space, by which those within 20 degrees are turned as a whole
 
   /// The share of normals that are right once those of the other side are turned round.
   double explained() const { return agreement + opposite; }
   double turn_degrees() const;
+  /// Whether the normals agree so as they do by the right camera and components: nearly all, and not turned as a whole.
+  /// In rooms, which have three directions, those of another scene may bring 60 %.
+  bool may_be_right() const { return agreement >= 0.8 && turn_degrees() < 3; }
   /// Whether clearly more normals agree so, and enough of them.
   bool clearly_beats(const NormalScore& other) const {
     return agreement >= kLeastAgreement && agreement > kClear * other.agreement;

@@ -19,7 +19,9 @@
 namespace alcove {
 namespace {
 
-constexpr int kLines = 96;           // of each direction: enough for shares to a percent
+// Of each direction: enough for shares to a percent, and of large pictures fewer, which have as many pixels.
+constexpr int kMostLines = 96, kLeastLines = 48;
+constexpr int kLinePixels = 100'000;
 constexpr int kMostThreads = 8;      // more take longer to start than they save
 constexpr int kLinesPerThread = 16;  // the same of fewer
 
@@ -32,7 +34,10 @@ class LineSource {
         view_(view_of(planes.reading, planes.reading.data)),
         pixels_(planes.reading.data.pixels()) {}
 
-  int count(bool is_column) const { return std::min(kLines, is_column ? view_.size.x : view_.size.y); }
+  int count(bool is_column) const {
+    const int size = is_column ? view_.size.y : view_.size.x, all = is_column ? view_.size.x : view_.size.y;
+    return std::min(all, std::clamp(kLinePixels / size, kLeastLines, kMostLines));
+  }
   int place(bool is_column, int number) const {
     const int all = is_column ? view_.size.x : view_.size.y, count = this->count(is_column);
     return int((std::int64_t(2 * number + 1) * all) / (2 * count));
@@ -54,8 +59,7 @@ class LineSource {
  private:
   void take(Line& line, std::size_t i, int x, int y) const {
     const std::size_t at = index_of(view_, x, y);
-    const Vector3 value = value_at(planes_.depth, pixels_, at);
-    const double z = planar_depth(map_, value, map_.along_ray ? ray_length(view_, x, y) : 1);
+    const double z = planar_depth_at(map_, planes_.depth, view_, x, y);
     line.raw[i] = map_.form == kDepthPosition ? float(z) : planes_.depth[at];
     line.inverse[i] = std::isinf(z) ? 0 : 1 / z;
   }
@@ -222,7 +226,9 @@ std::optional<Plateau> plateau_of(const WalkedPlanes& planes, const LineSource& 
     }
   }
   plateau.frontal = double(frontal) / double(std::max<std::size_t>(1, plateau.places));
-  if (plateau.places) plateau.tilt = std::acos(std::clamp(sum[2] / length(sum), -1.0, 1.0)) * 180 / std::numbers::pi;
+  // Normals to all sides have no mean direction.
+  const double cosine = length(sum) > 0 ? sum[2] / length(sum) : 0;
+  if (plateau.places) plateau.tilt = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
   return plateau;
 }
 
@@ -248,7 +254,7 @@ void walk(const WalkedPlanes& planes, Findings& findings) {
   std::vector<PlacedRuns> placed;
   for (int i = 0; i < int(rows.empty.size()); i++)
     placed.push_back({source.place(false, i), std::move(rows.empty[std::size_t(i)])});
-  findings.rectangle = empty_rectangle(planes.depth, planes.reading.data, placed);
+  findings.rectangle = empty_rectangle(planes.depth, planes.reading.data, planes.frame, placed);
 }
 
 }  // namespace alcove

@@ -12,6 +12,7 @@ namespace alcove {
 /// The planes that are walked over, as in the file, over a window, and how they are read.
 struct WalkedPlanes {
   const Reading& reading;  // over that window
+  Window frame;            // all pixels that the files hold
   std::span<const float> depth, normal;
   bool has_read_normals = false;  // the reading of the normals is settled, too
 };

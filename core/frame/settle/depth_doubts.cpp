@@ -81,7 +81,7 @@ class DepthDoubts : private DepthSettlement {
   /// The scores of the distances that the depth gives if it is read as is said.
   std::vector<DepthScore> scores_as_said() const {
     const auto planar = planar_depths(raw_.depth, depth_map_of(reading_), view_);
-    return shape_of(planar, view_, settings_.sky, grain_of(planar, settings_.sky)).scores;
+    return shape_of(planar, view_, settings_.sky, grain_of(planar, settings_.sky, view_.orthographic != 0)).scores;
   }
 
   /// Notes a z-buffer that uses only half of its range, or that leaves it.

@@ -27,13 +27,14 @@ class DepthEnds : private DepthSettlement {
   void settle_sign() {
     if (!is_distance(reading_.depth_kind) && reading_.depth_kind != DepthKind::inverse) return;
     const bool are_errors =
-        double(values_.below_0.count) <= kFewErrors * double(values_.below_0.count + values_.above_0.count);
-    if (!values_.below_0.varies() || are_errors || !values_.above_0.is_mostly_one()) return;
+        double(values_.below_0.count) <= kFewErrors * double(values_.below_0.count + values_.above_0.size());
+    if (!values_.below_0.varies() || are_errors) return;
+    const Side above = values_.side_above(0);
+    if (!above.is_mostly_one()) return;
     reading_.depth_range.negative = true;
     note(NoteCode::negative_depth,
-         values_.above_0.count
-             ? fmt::format("depth is negative, and its distance from 0 is taken; {} is the sky", values_.above_0.usual)
-             : "all depth values are negative: their distance from 0 is the depth");
+         above.count ? fmt::format("depth is negative, and its distance from 0 is taken; {} is the sky", above.usual)
+                     : "all depth values are negative: their distance from 0 is the depth");
   }
 
   /// Settles depth at the ends of a range and beyond them: normalized depth may go on, and the sky is at the far end.
@@ -41,7 +42,7 @@ class DepthEnds : private DepthSettlement {
     auto& range = reading_.depth_range;
     if (reading_.depth_kind == DepthKind::normalized) {
       const bool below = goes_on(values_.below_0, values_.all.zero, 0),
-                 above = goes_on(values_.above_1, values_.all.one, 1);
+                 above = goes_on(values_.side_above(1), values_.all.one, 1);
       range.goes_before_near = range.reversed ? above : below;
       range.goes_beyond_far = range.reversed ? below : above;
       if (below || above)

@@ -145,12 +145,12 @@ class DepthKindSettlement : private DepthSettlement {
 
   /// Fails with values on both sides of 0, which are no distances.
   void refuse_signs() const {
-    const std::size_t fewer = std::min(values_.below_0.count, values_.above_0.count),
-                      all = values_.below_0.count + values_.above_0.count;
+    const std::size_t fewer = std::min(values_.below_0.count, values_.above_0.size()),
+                      all = values_.below_0.count + values_.above_0.size();
     const bool is_error =
         double(fewer) <= kFewErrors * double(all) || std::min(-values_.all.least, values_.surfaces.most) <=
                                                          kRounded * std::max(-values_.all.least, values_.surfaces.most);
-    if (!values_.below_0.varies() || values_.above_0.is_mostly_one() || is_error) return;
+    if (!values_.below_0.varies() || is_error || values_.side_above(0).is_mostly_one()) return;
     fail(ErrorKind::input,
          "{}: depth goes from {:.3g} to {:.3g}, {:.0f} % of it below 0, so these are no distances: if it is normalized "
          "and goes on beyond its planes, as V-Ray writes it without clamp, give --depth-kind normalized --near N --far "

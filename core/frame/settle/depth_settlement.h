@@ -27,11 +27,14 @@ struct Side {
 struct DepthValues {
   DepthValues(std::span<const float> depth, double sky);
 
-  std::size_t step;                // from one pixel that is looked at to the next
-  Side below_0, above_0, above_1;  // finite, and nearer than the sky
-  ValueStatistics all;             // of all pixels
-  ValueStatistics surfaces;        // above 0 and before the sky: of distances, all that are surfaces
-  bool has_any = false;            // that may be a surface
+  std::size_t step;  // from one pixel that is looked at to the next
+  Side below_0;      // finite, and nearer than the sky, as the next ones are
+  std::vector<float> above_0;
+  ValueStatistics all;       // of all pixels
+  ValueStatistics surfaces;  // above 0 and before the sky: of distances, all that are surfaces
+  bool has_any = false;      // that may be a surface
+
+  Side side_above(float limit) const;
 };
 
 /// If a smaller part of the smooth places is straight, the frame has no flat surfaces that could tell.

@@ -5,20 +5,19 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/formats/exr.h"
 #include "core/frame/pixels/statistics.h"
+#include "core/frame/samples.h"
 
 namespace alcove {
 namespace {
 
-constexpr double kMostShortened = 0.02;         // of the normals
-constexpr double kMostOfOtherLength = 0.1;      // of normals that were all scaled alike; edges are shorter
-constexpr std::size_t kNormalPixels = 1 << 14;  // enough for shares to a percent
+constexpr double kMostShortened = 0.02;     // of the normals
+constexpr double kMostOfOtherLength = 0.1;  // of normals that were all scaled alike; edges are shorter
 
 bool is_lossy(const FrameSource& source, const ChannelRef& ref) {
   return source.part_of(ref).dwa && is_lossy_in_dwa(ref.channel);
@@ -48,9 +47,8 @@ Notes cut_parts(ExrFile& file, const std::set<int>& needed) {
 Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
   // Normals that lost components are short for that reason.
   if (!has_lengths(source) || std::ranges::count(source.notes, NoteCode::cut_normals, &Note::code) > 0) return {};
-  std::size_t step = raw.window.pixels() / kNormalPixels + 1;
-  while (std::gcd(step, std::size_t(raw.window.width)) > 1) step++;  // so that no column is favoured
-  const NormalStatistics s = normal_statistics(raw.normal, raw.depth, depth_map_of(source.reading), step);
+  const NormalStatistics s =
+      normal_statistics(raw.normal, raw.depth, depth_map_of(source.reading), even_step(raw.window, kNormalPixels));
   const double unit = source.reading.normal_unorm ? s.unorm_unit_share : s.unit_share;
   if (!s.count || unit >= 1 - kMostShortened) return {};
   const bool is_scaled = s.usual_share > 1 - kMostOfOtherLength && std::abs(s.usual_length - 1) > kUnitTolerance;

@@ -19,6 +19,10 @@ namespace {
 /// From so many on the field of view is not doubted. With half or twice the right one it was 41 % at most.
 constexpr double kSurelyClose = 0.5;
 
+/// Degrees. By their own cameras the normals of 14 frames are turned as a whole by 0.2 at most, or do not fit better once
+/// they are turned back.
+constexpr double kOtherFrame = 0.3;
+
 class NormalDoubts : private NormalSettlement {
  public:
   explicit NormalDoubts(const NormalSettlement& normals) : NormalSettlement(normals) {}
@@ -28,6 +32,7 @@ class NormalDoubts : private NormalSettlement {
     if (source_.open.camera) return;
     const NormalScore* chosen = score_of(scores, reading_.normal_space, reading_.flip_normal);
     if (!chosen) return;
+    refuse_flips(*chosen, scores);
     const NormalScore* straighter = straighter_than(*chosen, scores);
     if (straighter)
       return note(NoteCode::normals_disagree,
@@ -45,6 +50,11 @@ class NormalDoubts : private NormalSettlement {
                                                    100 * chosen->agreement, text_of(*chosen), kCheck));
     else if (const auto turned = turned_world(*chosen))
       note(NoteCode::normals_disagree, fmt::format("{} ({})", *turned, kSpaceOptions));
+    else if (const auto other = turned_back(*chosen))
+      note(NoteCode::normals_disagree,
+           fmt::format("by the camera{} the normals as a whole are turned by {:.2g} degrees against depth: the best "
+                       "quarter is up to {:.2g} degrees off, turned back {:.2g}: it may be the camera of another frame",
+                       from(), chosen->turn_degrees(), chosen->angle, other->angle));
     else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(reading_))
       note(NoteCode::normals_disagree,
            fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
@@ -55,9 +65,7 @@ class NormalDoubts : private NormalSettlement {
   /// do not. `sharpest` is the share that another reading of the normals brings close.
   void refuse_turned_camera(const NormalScore& chosen, double sharpest) const {
     const auto turned = best_turned_camera(planes(), chosen);
-    if (!turned || turned->score.agreement < kLeastAgreement || turned->score.close < sharpest ||
-        turned->score.agreement < kClear * chosen.agreement)
-      return;
+    if (!turned || turned->score.close < sharpest || turned->score.agreement < kClear * chosen.agreement) return;
     fail(ErrorKind::input,
          "{}: the camera{} does not fit: by it {:.0f} % of the normals in {} space agree with depth; {}, then {:.0f} % "
          "agree; {}",
@@ -75,15 +83,16 @@ class NormalDoubts : private NormalSettlement {
     if (other == scores.end() || chosen.agreement >= kAsMany * other->agreement) return;
     note(NoteCode::turned_normals,
          fmt::format("{:.0f} % of the normals are opposite to depth and are turned round, as for mirrored things; if "
-                     "an axis of all normals is flipped, as in DirectX, give --flip-normal {}",
-                     100 * chosen.opposite, to_string(other->flips)));
+                     "an axis of all normals is flipped, as in DirectX, {}",
+                     100 * chosen.opposite,
+                     to_string(other->flips) == "none" ? "leave --flip-normal out"
+                                                       : "give --flip-normal " + to_string(other->flips)));
   }
 
   /// Refuses normals that hardly agree with depth, where another reading or another camera has clearly more of them
   /// agree, or where nothing is left that could be right.
   void refuse_normals(const NormalScore& chosen, const std::vector<NormalScore>& scores) const {
     const NormalScore& best = scores[0];
-    refuse_flips(chosen, scores);
     refuse_turned_camera(chosen, best.close);
     const std::string read =
         fmt::format("{}: its normals, read as {}, are not those of this depth and this camera", path_, text_of(chosen));
@@ -91,22 +100,36 @@ class NormalDoubts : private NormalSettlement {
       fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
     if (chosen.explained() >= kUsable || has_coarse_depth(reading_)) return;
-    const bool is_tangent = are_alike(raw_.normal, raw_.depth, depth_map_of(reading_));
+    const bool is_tangent = are_alike(raw_, depth_map_of(reading_));
     if (chosen.explained() >= kRefuted && is_allowed(NoteCode::normals_disagree)) return;
     fail(ErrorKind::input, "{}, nor in any other space{}: {}; {}{}", read,
          is_tangent ? ", but all look the same way, as those of tangent space" : "", kCheck, kWithout,
          chosen.explained() >= kRefuted ? "; --set allow=normals-disagree takes them as they are" : "");
   }
 
-  /// Refuses flips that are given where the normals agree with depth without them.
+  /// How the normals of a world agree by the camera that is turned by a little, where that is surely the right one.
+  std::optional<NormalScore> turned_back(const NormalScore& chosen) const {
+    if (chosen.space != NormalSpace::world) return std::nullopt;
+    const auto other = straightened(chosen, kOtherFrame, 0);
+    return other && other->score.close >= kSurelyClose && other->score.may_be_right() ? std::optional(other->score)
+                                                                                      : std::nullopt;
+  }
+
+  /// Refuses flips that are given where the normals agree with depth by others, or by none.
   void refuse_flips(const NormalScore& chosen, const std::vector<NormalScore>& scores) const {
-    const NormalScore* plain = score_of(scores, chosen.space, {});
-    if (to_string(settings_.flip_normal) == "none" || to_string(chosen.flips) == "none" || !plain) return;
-    if (plain->agreement < kLeastAgreement || plain->agreement < kClear * chosen.agreement) return;
+    if (to_string(settings_.flip_normal) == "none" || to_string(chosen.flips) == "none") return;
+    const NormalScore& best =
+        *std::ranges::find_if(scores, [&](const NormalScore& s) { return s.space == chosen.space; });
+    if (best.agreement < kLeastAgreement || chosen.agreement >= kAsGood * best.agreement) return;
+    // Things may be mirrored, unless others explain all of them without that.
+    const bool may_be_mirrored = explains_most(chosen, scores) && chosen.agreement >= kRefuted;
+    if (may_be_mirrored && best.agreement < kAsMany * chosen.explained()) return;
+    const std::string flips = to_string(best.flips);
     fail(ErrorKind::input,
-         "{}: --flip-normal {} does not fit: with it {:.0f} % of the normals agree with depth, without "
-         "it {:.0f} %: leave it out",
-         path_, to_string(settings_.flip_normal), 100 * chosen.agreement, 100 * plain->agreement);
+         "{}: --flip-normal {} does not fit: with it {:.0f} % of the normals agree with depth, {} {:.0f} %: {}", path_,
+         to_string(settings_.flip_normal), 100 * chosen.agreement,
+         flips == "none" ? "without it" : "with --flip-normal " + flips, 100 * best.agreement,
+         flips == "none" ? "leave it out" : "give that");
   }
 
   /// Refuses a principal point that fits elsewhere, and says where no pixel can tell.

@@ -24,7 +24,8 @@ class EncodingSettlement : private NormalSettlement {
 
   NormalStatistics run() {
     const bool is_open = source_.open.normal_encoding;
-    NormalStatistics n = normal_statistics(raw_.normal, raw_.depth, depth_map_of(reading_), kSparse);
+    NormalStatistics n =
+        normal_statistics(raw_.normal, raw_.depth, depth_map_of(reading_), even_step(raw_.window, kNormalPixels));
     if (n.count == 0) n = normal_statistics(raw_.normal, raw_.depth, depth_map_of(reading_));
     if (!is_open) doubt_encoding(n);
     const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
@@ -70,7 +71,7 @@ class EncodingSettlement : private NormalSettlement {
   void refuse_missing(const NormalStatistics& n) const {
     constexpr double kMostBare = 0.02;  // of the surfaces
     constexpr double kUnitAxes = 0.97;  // from there on only normals along the third axis can be missing, and are 0
-    const auto missing = constant_component(raw_.normal, raw_.depth, depth_map_of(reading_));
+    const auto missing = constant_component(raw_, depth_map_of(reading_));
     if (!missing) return;
     const double unit = std::max(n.unit_share, n.unorm_unit_share);
     if (unit > kUnitAxes || (unit > kNotUnit && missing->bare < kMostBare)) return;

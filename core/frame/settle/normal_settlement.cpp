@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/base/option_words.h"
-#include "core/frame/settle/other_cameras.h"
 
 namespace alcove {
 namespace {
@@ -53,21 +52,27 @@ std::string NormalSettlement::turn_of(const NormalScore& chosen, const NormalSco
       word_of(other.space), other.turn_degrees(), word_of(chosen.space), chosen.turn_degrees());
 }
 
-std::optional<std::string> NormalSettlement::turned_world(const NormalScore& score) const {
-  const double least = !has_coarse_depth(reading_) ? kClearTurn : kLeastTurnOfHalf;
-  if (reading_.camera.view_from_world || score.space != NormalSpace::view || score.turn_degrees() < least)
-    return std::nullopt;
+std::optional<OtherCamera> NormalSettlement::straightened(const NormalScore& score, double least_turn,
+                                                          double fitting) const {
+  const double least = !has_coarse_depth(reading_) ? least_turn : kLeastTurnOfHalf;
+  if (score.turn_degrees() < least) return std::nullopt;
   const auto turned = slightly_turned_camera(planes(), score);
   if (!turned) return std::nullopt;
   const NormalScore& then = turned->score;
-  if (then.close <= kSharper * score.close && (score.angle <= kLargestAngle || kClear * then.angle >= score.angle))
+  if (then.close <= kSharper * score.close && (score.angle <= fitting || kClear * then.angle >= score.angle))
     return std::nullopt;
   const auto width = best_other_width(planes(), score);
-  if (width && width->score.close >= then.close) return std::nullopt;
+  return width && width->score.close >= then.close ? std::nullopt : turned;
+}
+
+std::optional<std::string> NormalSettlement::turned_world(const NormalScore& score) const {
+  if (reading_.camera.view_from_world || score.space != NormalSpace::view) return std::nullopt;
+  const auto turned = straightened(score, kClearTurn, kLargestAngle);
+  if (!turned) return std::nullopt;
   return fmt::format(
       "its normals look like those of world space by {}: {:.0f} % of them agree with depth to 3 degrees then, {:.0f} "
       "% in view space",
-      turned->what, 100 * then.close, 100 * score.close);
+      turned->what, 100 * turned->score.close, 100 * score.close);
 }
 
 std::string NormalSettlement::text_of(const NormalScore& s) {

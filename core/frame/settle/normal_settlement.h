@@ -8,6 +8,7 @@
 
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/other_cameras.h"
 #include "core/frame/settle/settlement.h"
 
 namespace alcove {
@@ -46,6 +47,10 @@ class NormalSettlement : protected Settlement {
   /// The same reading in the other space, where it is straighter.
   const NormalScore* straighter_than(const NormalScore& score, const std::vector<NormalScore>& scores) const;
   static std::string turn_of(const NormalScore& chosen, const NormalScore& other);
+  /// The camera turned back by the turn that the normals as a whole have by it, where that is at least so many degrees,
+  /// and they then fit better, also than by another field of view. An angle of the best quarter below `fitting` is
+  /// none that could be better.
+  std::optional<OtherCamera> straightened(const NormalScore& score, double least_turn, double fitting) const;
   /// Tells whether normals that are read in view space are those of a world in which the camera is turned by little, if
   /// no matrix places it.
   std::optional<std::string> turned_world(const NormalScore& score) const;

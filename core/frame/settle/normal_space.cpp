@@ -21,28 +21,27 @@ class SpaceSettlement : private NormalSettlement {
   void run(const NormalStatistics& statistics) {
     const bool has_world = reading_.camera.view_from_world.has_value();
     // The usual reading, and that of view space where the camera knows no world.
-    const bool has_usual = has_world || source_.program.normal_space == NormalSpace::view;
+    const NormalSpace usual = lacks_sign() ? NormalSpace::view : source_.program.normal_space;
+    const bool has_usual = has_world || usual == NormalSpace::view;
     if (statistics.count == 0) {
       seen_.tells = false;
-      if (source_.open.normal_space)
-        reading_.normal_space = has_usual ? source_.program.normal_space : NormalSpace::view;
+      if (source_.open.normal_space) reading_.normal_space = has_usual ? usual : NormalSpace::view;
       return;
     }
-    if (!source_.open.normal_space && is_plainly_right()) return;
-    const auto all_scores = score_normals(planes());
+    auto all_scores = score_normals(planes());
+    if (lacks_sign()) refuse_world(all_scores);
     if (settle_cut_normals(*this, all_scores, statistics)) return;
     if (!all_scores.empty()) refuse_other_components(*this, all_scores, statistics);
     if (!source_.open.normal_space) return doubt_normals(*this, all_scores);
     const std::string given = to_string(settings_.flip_normal);
     auto scores = all_scores;
     if (given != "none") std::erase_if(scores, [&](const auto& s) { return to_string(s.flips) != given; });
-    const NormalScore* plain =
-        score_of(scores, has_usual ? source_.program.normal_space : NormalSpace::view, settings_.flip_normal);
+    const NormalScore* plain = score_of(scores, has_usual ? usual : NormalSpace::view, settings_.flip_normal);
     const bool tells = plain && best_of(scores).explained() >= kLeastAgreement;
     if (!tells) {
       seen_.tells = false;
       if (!has_usual) refuse_without_matrix(scores);
-      reading_.normal_space = source_.program.normal_space;
+      reading_.normal_space = usual;
       guess("normal space", word_of(reading_.normal_space), "the frame does not tell", "--normal-space", false);
       return doubt_normals(*this, all_scores);
     }
@@ -58,12 +57,31 @@ class SpaceSettlement : private NormalSettlement {
   }
 
  private:
-  /// Whether the reading that is said fits so well that no other one need be tried.
-  bool is_plainly_right() const {
-    constexpr double kAgreement = 0.95, kClose = 0.8;
-    if (source_.open.camera || is_off_centre(reading_.camera) || !reading_.camera.view_from_world) return false;
-    const auto score = score_normals_as(reading_.normal_space, reading_.flip_normal, planes());
-    return score && score->agreement >= kAgreement && score->close >= kClose && score->turn_degrees() < kLeastTurn;
+  /// Whether two components are those of vectors: nothing in them tells whether z is above or below 0, and only in view
+  /// space is it above, since all that is seen faces the camera.
+  bool lacks_sign() const {
+    return source_.channels[RawPlane::normal].size() == 2 && reading_.normal_encoding != NormalEncoding::octahedral &&
+           reading_.normal_encoding != NormalEncoding::spheremap;
+  }
+
+  /// Refuses two components of world space, and takes that reading away.
+  void refuse_world(std::vector<NormalScore>& scores) const {
+    const auto is_world = [](const NormalScore& s) { return s.space == NormalSpace::world; };
+    std::vector<NormalScore> world;
+    std::ranges::copy_if(scores, std::back_inserter(world), is_world);
+    std::erase_if(scores, is_world);
+    const auto closest = [](const std::vector<NormalScore>& all) {
+      return all.empty() ? NormalScore{} : *std::ranges::max_element(all, {}, &NormalScore::close);
+    };
+    const bool is_of_world = source_.open.normal_space ? is_sharper(closest(world), closest(scores))
+                                                       : reading_.normal_space == NormalSpace::world;
+    if (!is_of_world) return;
+    fail(
+        ErrorKind::input,
+        "{}: its normals ({}) have two components, which do not tell the sign of z in world space: give three "
+        "channels (--normal-channels), or say --normal-space view, or --normal-encoding octahedral or spheremap, where "
+        "they are such; {}",
+        path_, channels(), kWithout);
   }
 
   /// Takes a reading, and says so where it is not the usual one, or where no matrix would turn normals of the world.

@@ -102,12 +102,14 @@ bool is_off_centre(const Camera& camera) { return is_off(camera.cx, camera.width
 std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const NormalScore& as) {
   std::vector<Hypothesis> hypotheses = turned_pictures(planes);
   if (as.space == NormalSpace::world) std::ranges::move(turned_worlds(planes), std::back_inserter(hypotheses));
-  return best_of(hypotheses, as);
+  const auto best = best_of(hypotheses, as);
+  return best && best->score.may_be_right() ? best : std::nullopt;
 }
 
 std::optional<OtherCamera> slightly_turned_camera(NormalPlanes planes, const NormalScore& as) {
   NormalScore turned = as;
-  planes.camera.view_from_world = view_from_normal(planes.camera, NormalSpace::view, {});
+  if (as.space == NormalSpace::view)
+    planes.camera.view_from_world = view_from_normal(planes.camera, NormalSpace::view, {});
   // The turn is that of small ones: a second step leaves less than a hundredth of it.
   for (int step = 0; step < 2; step++) {
     planes.camera.view_from_world = product(turned_back(turned.turn), *planes.camera.view_from_world);

@@ -17,11 +17,12 @@ struct OtherCamera {
 
 /// Gives the best of the usual mistakes by which a camera turns the world or the picture: the inverse of its matrix,
 /// axes of another convention, another axis up, angles in another order, a picture that is upside down. None where too
-/// little of the frame is smooth. `as` is the reading of the normals that is tried.
+/// little of the frame is smooth, or where hardly all normals agree then. `as` is the reading of the normals that is
+/// tried.
 std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const NormalScore& as);
 
-/// Gives the camera that is turned by a small angle within a world, whose normals then look like those of view space.
-/// `as` is how they agree in view space. None where too little of the frame is smooth.
+/// Gives the camera that is turned by a small angle within the normals' world: that by which they agree as a whole. In
+/// view space that world is the camera's own, as it is given. None where too little of the frame is smooth.
 std::optional<OtherCamera> slightly_turned_camera(NormalPlanes planes, const NormalScore& as);
 
 /// Gives the best of the orders in which the angles of a .chan file may turn the camera; none for other cameras, and

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/frame/pixels/places.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/samples.h"
 #include "core/frame/settle/normal_settlement.h"
@@ -25,7 +26,7 @@ std::optional<OtherComponents> tried(NormalPlanes planes, const Places& channels
   planes.unorm = unorm;
   std::optional<OtherComponents> best;
   for (const NormalScore& score : score_normals(planes)) {
-    if (score.agreement < kLeastAgreement || (best && score.close <= best->score.close)) continue;
+    if (!score.may_be_right() || (best && score.close <= best->score.close)) continue;
     best = OtherComponents{channels, encoding, unorm, score};
   }
   return best;
@@ -49,18 +50,16 @@ std::optional<OtherComponents> best_other_components(const NormalPlanes& planes,
   return best;
 }
 
-std::optional<ConstantComponent> constant_component(std::span<const float> normal, std::span<const float> depth,
-                                                    const DepthMap& map) {
+std::optional<ConstantComponent> constant_component(const RawPart& raw, const DepthMap& map) {
   constexpr float kSame = 1e-3f;
-  const std::size_t pixels = normal.size() / 3;
+  const auto normal = raw.normal;
+  const std::size_t pixels = raw.window.pixels(), step = even_step(raw.window, kNormalPixels);
   std::array<float, 3> least{}, most{};
   std::size_t surfaces = 0, bare = 0;
   least.fill(INFINITY);
   most.fill(-INFINITY);
-  for (std::size_t i = 0; i < pixels; i += kSparse) {
-    const Vector3 raw =
-        depth.size() == pixels ? Vector3{depth[i], 0, 0} : Vector3{depth[i], depth[i + pixels], depth[i + 2 * pixels]};
-    if (std::isinf(planar_depth(map, raw, 1))) continue;
+  for (std::size_t i = 0; i < pixels; i += step) {
+    if (std::isinf(planar_depth(map, value_at(raw.depth, pixels, i), 1))) continue;
     const std::array n{normal[i], normal[i + pixels], normal[i + 2 * pixels]};
     surfaces++;
     bare += std::ranges::all_of(n, [](float v) { return v == 0 || !std::isfinite(v); });
@@ -74,16 +73,16 @@ std::optional<ConstantComponent> constant_component(std::span<const float> norma
   return std::nullopt;
 }
 
-bool are_alike(std::span<const float> normal, std::span<const float> depth, const DepthMap& map) {
+bool are_alike(const RawPart& raw, const DepthMap& map) {
   constexpr double kAlike = 0.98;  // length of the mean of the unit vectors
-  const std::size_t pixels = normal.size() / 3;
+  const std::size_t pixels = raw.window.pixels(), step = even_step(raw.window, kNormalPixels);
   std::array<Vector3, 2> sums{};
   std::size_t count = 0;
-  for (std::size_t i = 0; i < pixels; i += kSparse) {
-    if (depth.size() == pixels && std::isinf(planar_depth(map, {depth[i], 0, 0}, 1))) continue;
+  for (std::size_t i = 0; i < pixels; i += step) {
+    if (std::isinf(planar_depth(map, value_at(raw.depth, pixels, i), 1))) continue;
     std::size_t unorm = 0;
     for (Vector3& sum : sums) {
-      const Vector3 n = decoded_normal(normal, pixels, i, NormalEncoding::signed_float, unorm++ > 0);
+      const Vector3 n = decoded_normal(raw.normal, pixels, i, NormalEncoding::signed_float, unorm++ > 0);
       const double size = length(n);
       for (std::size_t c = 0; c < 3 && size > 0; c++) sum[c] += n[c] / size;
     }

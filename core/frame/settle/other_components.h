@@ -3,9 +3,9 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 
+#include "core/frame/find/frame_source.h"
 #include "core/frame/pixels/normal_scores.h"
 
 namespace alcove {
@@ -30,10 +30,9 @@ struct ConstantComponent {
   float value;
   double bare;  // the share of surfaces without a normal
 };
-std::optional<ConstantComponent> constant_component(std::span<const float> normal, std::span<const float> depth,
-                                                    const DepthMap& map);
+std::optional<ConstantComponent> constant_component(const RawPart& raw, const DepthMap& map);
 
 /// Whether nearly all normals look the same way, as those of tangent space do.
-bool are_alike(std::span<const float> normal, std::span<const float> depth, const DepthMap& map);
+bool are_alike(const RawPart& raw, const DepthMap& map);
 
 }  // namespace alcove

@@ -51,7 +51,7 @@ Grain measure_rounding(Reading& reading, const Window& window, std::span<const f
   Grain grain;
   if (depth.size() == window.pixels()) {
     refuse_8_bits(depth, name);
-    grain = grain_of(depth, reading.sky);
+    grain = grain_of(depth, reading.sky, reading.camera.orthographic);
   }
   take_down(reading, grain, depth);
   return grain;
@@ -61,21 +61,28 @@ void measure_levels(Reading& reading, std::span<const float> depth) {
   if (is_between_planes(reading.depth_kind)) reading.depth_step = std::max(reading.depth_step, step_of(depth));
 }
 
-Notes overflown_depth(const Reading& reading, std::span<const float> depth, const std::string& name) {
+namespace {
+
+Overflow overflow_of(const Reading& reading, std::span<const float> depth) {
   constexpr float kNear = 0.9f * float(kLargestHalf);
   if (!is_distance(reading.depth_kind) || !(reading.depth_is_half || reading.found_sky == kLargestHalf)) return {};
-  std::size_t beyond = 0, near = 0;
+  std::size_t beyond = 0;
+  bool is_reached = false;
   for (const float d : depth) {
     beyond += std::abs(d) >= kLargestHalf;
-    near += std::abs(d) >= kNear && std::abs(d) < kLargestHalf;
+    is_reached |= std::abs(d) >= kNear && std::abs(d) < kLargestHalf;
   }
-  if (!beyond || !near) return {};
-  return {{NoteCode::overflown_depth,
-           fmt::format(
-               "{:.0f} % of {} is infinite or 65504, the largest half float, and surfaces reach up to it: what lies "
-               "beyond counts as sky; write depth as float, or in larger units",
-               100 * double(beyond) / double(depth.size()), name)}};
+  return {double(beyond) / double(depth.size()), is_reached};
 }
+
+/// Whether most values are below 0 and are not read as distances from it.
+bool begins_behind(const Reading& reading, std::span<const float> depth) {
+  std::size_t below = 0, all = 0;
+  for (std::size_t i = 0; i < depth.size(); i += kSparse) all++, below += depth[i] < 0;
+  return !reading.depth_range.negative && 2 * below > all;
+}
+
+}  // namespace
 
 Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& seen, const std::string& name,
                      bool has_read_normals) {
@@ -85,11 +92,13 @@ Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& s
                  .has_half_type = reading.depth_is_half,
                  .grain = seen.grain,
                  .curve = seen.curve,
-                 .said_offset = said_offset(reading)};
+                 .begins_behind = begins_behind(reading, raw.depth),
+                 .said_offset = said_offset(reading),
+                 .overflow = overflow_of(reading, raw.depth)};
   found.jitter = jitter_of(raw.depth, depth_map_of(reading), view_of(reading, raw.window), seen.grain);
   if (raw.window == frame.data && raw.depth.size() == raw.window.pixels())
     found.borders = borders_of(raw.depth, raw.window, depth_map_of(reading));
-  walk({reading, raw.depth, raw.normal, has_read_normals}, found);
+  walk({reading, frame.data, raw.depth, raw.normal, has_read_normals}, found);
   return found;
 }
 

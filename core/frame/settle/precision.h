@@ -22,9 +22,6 @@ Grain measure_rounding(Reading& reading, const Window& window, std::span<const f
 /// Takes down the step of depth between planes that was stored as integers. The kind of the depth must be settled.
 void measure_levels(Reading& reading, std::span<const float> depth);
 
-/// Notes half floats, called `name`, whose sky may be surfaces: those beyond the largest number became infinite.
-Notes overflown_depth(const Reading& reading, std::span<const float> depth, const std::string& name);
-
 /// What a walk over the pixels shows, for the detectors. The depth, called `name`, is settled; `has_read_normals` says
 /// that the normals are.
 Findings findings_of(const Reading& reading, const RawPart& raw, const Evidence& seen, const std::string& name,

@@ -48,21 +48,19 @@ std::string reasons_of(const FrameSource& source, const RawPart& raw, const Evid
   });
   if (is_inverse && source.program.depth_kind != DepthKind::inverse && !source.reading.camera.orthographic)
     text = fmt::format("; the depth is taken as 1/z by its flat surfaces, and {}", kOrthographicHint);
-  // Of a range that begins behind most surfaces, the offset of distances from 0 says nothing.
-  const auto below = std::ranges::count_if(raw.depth, [](float d) { return d < 0; });
-  const bool is_mostly_below = 2 * std::size_t(below) > raw.depth.size();
   try {
-    for (const Note& note : detected(findings_of(source, raw, seen, false)))
-      if (!is_mostly_below || note.code != NoteCode::depth_offset) text += "; " + note.text;
+    for (const Note& note : detected(findings_of(source, raw, seen, false))) text += "; " + note.text;
   } catch (const Error&) {  // the depth has no meaning yet
   }
   return text;
 }
 
 /// Settles depth and normals by the camera as it is.
-void settle_meaning(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
-  settle_depth({source.reading, source.notes, settings, raw, seen, source.depth_path()},
-               {source.program, source.open.depth_kind, [&] { return kind_by_positions(source, settings, raw); }});
+void settle_meaning(FrameSource& source, const InputSettings& settings, const RawPart& raw,
+                    std::span<const SeenPoint> points, Evidence& seen) {
+  settle_depth(
+      {source.reading, source.notes, settings, raw, seen, source.depth_path()},
+      {source.program, source.open.depth_kind, [&] { return kind_by_positions(source, settings, raw, points); }});
   settle_deep(source, raw);
   if (source.channels[RawPlane::normal].empty())
     note_centre(source);
@@ -86,9 +84,10 @@ Window middle_rows(const FrameSource& source, std::uint64_t most_bytes) {
 void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {
   seen.grain =
       measure_rounding(source.reading, raw.window, raw.depth, source.depth_path() + ": " + depth_channel(source));
-  const std::string refutation = settle_camera(source, settings);
+  const std::vector<SeenPoint> points = points_to_check(source, settings.sky);
+  const std::string refutation = settle_camera(source, settings, points);
   try {
-    settle_meaning(source, settings, raw, seen);
+    settle_meaning(source, settings, raw, points, seen);
   } catch (const NoWorldToCamera&) {
     throw;
   } catch (const Error& error) {
@@ -97,8 +96,7 @@ void settle(FrameSource& source, const InputSettings& settings, const RawPart& r
     if (why.empty()) throw;
     fail(error.kind(), "{}{}", error.what(), why);
   }
-  check_by_positions(source, settings, raw);
-  add_new(source.suspicious, overflown_depth(source.reading, raw.depth, depth_channel(source)));
+  check_by_positions(source, settings, raw, points);
   note_findings(source, raw, seen);
   measure_levels(source.reading, raw.depth);
   seen.median_depth = median_depth(over(source.reading, raw.window), raw.depth);

@@ -16,8 +16,7 @@ namespace {
 /// All pixels of a picture are looked at if it has fewer than these.
 constexpr std::size_t kFewPixels = 100'000;
 
-/// Sorts the values.
-Side side_of(std::vector<float>& values) {
+Side side_of(std::vector<float> values) {
   Side side{values.size(), values.size()};
   std::ranges::sort(values);
   for (auto first = values.begin(); first != values.end();) {
@@ -47,16 +46,19 @@ void settle_plane(const DepthSettlement& depth, bool is_kind_open) {
 
 DepthValues::DepthValues(std::span<const float> depth, double sky)
     : step(depth.size() < kFewPixels ? 1 : kSparse), all(statistics_of(depth, step)) {
-  std::vector<float> below, above;
+  std::vector<float> below;
   for (std::size_t i = 0; i < depth.size(); i += step)
     if (std::isfinite(depth[i]) && depth[i] != 0 && std::abs(depth[i]) < sky)
-      (depth[i] < 0 ? below : above).push_back(depth[i]);
-  has_any = !below.empty() || !above.empty();
-  surfaces = statistics_of(above);
-  below_0 = side_of(below);
-  above_0 = side_of(above);
-  above.erase(above.begin(), std::ranges::upper_bound(above, 1.0f));
-  above_1 = side_of(above);
+      (depth[i] < 0 ? below : above_0).push_back(depth[i]);
+  has_any = !below.empty() || !above_0.empty();
+  surfaces = statistics_of(above_0);
+  below_0 = side_of(std::move(below));
+}
+
+Side DepthValues::side_above(float limit) const {
+  std::vector<float> above;
+  std::ranges::copy_if(above_0, std::back_inserter(above), [&](float d) { return d > limit; });
+  return side_of(std::move(above));
 }
 
 std::string DepthSettlement::text_of_range() const {
