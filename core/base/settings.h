@@ -154,6 +154,7 @@ struct EstimatorSettings {
   double intensity = 1;  // factor on the occlusion, 0 to 100
   double power = 1;      // exponent of the visibility, above 0 to 100
   // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other
+  double least = 0;      // the lowest AO after all shaping, 0 to 1; a matte's outside may be lower
   std::optional<double> fade_start, fade_end;
   // roughness of all surfaces for specular occlusion, 0 to 1; perceptual, half way by default, as engines' own default
   // materials

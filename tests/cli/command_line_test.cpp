@@ -144,6 +144,8 @@ TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
       {"steps", {"0", "4097"}},
       {"falloff-start", {"1", "-0.1"}},
       {"power", {"0", "101"}},
+      {"least", {"-0.1", "1.1"}},
+      {"vertical-fov", {"0", "180"}},
       {"denoise-radius", {"0", "9", "1.5"}},
       {"denoise-kernel", {"1", "1,-1", "0,1", "1,,2", "1,x", "1,inf", "1,1,1,1,1,1,1,1,1,1"}},
       {"denoise-depth-sigma", {"-1", "101"}},
