@@ -91,6 +91,7 @@ struct InputSettings {
   std::string camera;                     // a camera file: JSON, or .chan
   std::string chan_rotation = "zxy";      // of a .chan file: the axes in the order of their turns
   std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive
+  std::optional<double> vertical_fov;     // the same over the height
   std::optional<double> focal, aperture;  // mm, > 0: focal length and width of the film back
   std::optional<double> ortho_width;      // scene units across the display window, > 0
   std::vector<std::string> from_presets;  // options that presets set, long names; without effect, they are ignored

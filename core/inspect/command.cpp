@@ -102,6 +102,7 @@ void add_camera(Command& command, const InputSettings& settings, bool has_camera
   command.add("--camera", settings.camera);
   if (is_chan_file(settings.camera)) command.add("--chan-rotation", settings.chan_rotation);
   command.add("--fov", settings.fov);
+  command.add("--vertical-fov", settings.vertical_fov);
   command.add("--focal", settings.focal);
   command.add("--aperture", settings.aperture);
   command.add("--ortho-width", settings.ortho_width);

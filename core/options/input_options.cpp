@@ -268,7 +268,9 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
       .others_idle(
           [](const Settings& all) { return unless_given(is_chan_file(all.input.camera), "--camera FILE.chan"); });
   OptionGroup pixels(rows, "Input", Effect::pixels, &Settings::input, true);
-  pixels.number("--fov", &S::fov, "degrees", strictly_between(0, 180), "horizontal field of view").is_common = true;
+  pixels.number("--fov", &S::fov, "degrees", strictly_between(0, 180), "field of view over the width").is_common = true;
+  pixels.number("--vertical-fov", &S::vertical_fov, "degrees", strictly_between(0, 180),
+                "over the height, as Unity, Godot and glTF have it");
   pixels.number("--focal", &S::focal, "mm", above(0), "focal length").idle([](const Settings& all) {
     return unless_given(all.input.aperture.has_value(), "--aperture: add it, the film back's width in mm");
   });
