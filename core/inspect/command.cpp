@@ -79,8 +79,8 @@ void add_depth(Command& command, const FrameSource& source, const InputSettings&
     command.add("--set position-space", word_of(source.reading.position_space));
   const InputSettings defaults;
   const bool is_device = source.reading.depth_kind == DepthKind::device;
-  if (is_device && settings.depth_range.device == DeviceRange::minus_one_to_one)
-    command.add("--set device-range=-1..1");
+  if (is_device && settings.depth_range.device != DeviceRange::automatic)
+    command.add("--set device-range=" + std::string(word_of(settings.depth_range.device)));
   const bool is_log = source.reading.depth_kind == DepthKind::log;
   if (is_log && settings.depth_range.log_constant != defaults.depth_range.log_constant)
     command.add("--set log-constant", std::optional(settings.depth_range.log_constant));

@@ -143,6 +143,20 @@ TEST_F(Composites, composite_without_parts_is_a_multiply_and_says_so) {
   EXPECT_THAT(how(), StartsWith("multiply"));
 }
 
+TEST_F(Composites, the_whole_beauty_that_is_asked_for_is_no_warning) {
+  input.erase(".Diff");
+  const Composite plain = compute();
+  const Options words{"--composite", composite, "--set", "composite-layers=rgba"};
+  EXPECT_THAT(done(words).err, HasSubstr("[no-indirect-light]"));
+  Options asked = words;
+  asked.insert(asked.end(), {"--set", "ambient=beauty"});
+  EXPECT_THAT(done(asked).err, Not(HasSubstr("[no-indirect-light]")));
+  EXPECT_THAT(how(), StartsWith("multiply"));
+  EXPECT_EQ(read_exr_image(composite).pixels, plain.result.pixels);
+  EXPECT_THAT(run({"--composite", composite, "--set", "ambient=R,G,B"}).err,
+              AllOf(HasSubstr("--set ambient takes a layer"), Not(HasSubstr("channel names"))));
+}
+
 TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {
   FrameFile beauty{kWallWindow, kWallWindow, 1, {}, {}, {{"grade", "none"}}};
   for (const std::string c : {"R", "G", "B", "A"}) beauty.planes[c] = input.planes.at("ViewLayer.Combined." + c);
