@@ -40,8 +40,6 @@ ListedFrame frame_of(const TomlTable& table, const fs::path& folder) {
   known.insert({"name", "input", "camera", "radius", "truth", "reference", "cpu-reference"});
   table.require_keys(known);
   ListedFrame frame{table.text("name"), (folder / table.text("input")).string()};
-  if (frame.name.find('/') != frame.name.npos || frame.name.starts_with('.'))
-    table.refuse("name", "must be one that a file may have, without / and no dot before it");
   frame.camera = file_of(table, "camera", folder);
   if (table.values.contains("radius")) frame.radius = table.positive("radius");
   frame.truth = files_of(table, "truth", folder);
@@ -66,7 +64,12 @@ std::vector<ListedFrame> frames_in(const toml::table& root, const std::string& p
 }
 
 std::vector<ListedFrame> read_frame_list(const std::string& path, const char* option) {
-  return frames_in(read_toml(path, "list of frames", option), path, fs::path(path).parent_path().string());
+  const auto frames = frames_in(read_toml(path, "list of frames", option), path, fs::path(path).parent_path().string());
+  for (const auto& frame : frames)
+    if (frame.name.find('/') != frame.name.npos || frame.name.starts_with('.'))
+      fail(ErrorKind::input, "{}: the name {} of the list must be one that a file may have, without / and no dot first",
+           path, frame.name);
+  return frames;
 }
 
 std::string with_name(std::string text, const std::string& name) {

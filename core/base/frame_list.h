@@ -12,7 +12,7 @@
 namespace alcove {
 
 struct ListedFrame {
-  std::string name;                    // one that a file may have
+  std::string name;                         // in a list for run and compare one that a file may have
   std::string input, camera = {};           // files; camera: empty where the input tells it
   std::optional<double> radius = {};        // scene units, > 0
   std::vector<std::string> truth = {};      // ray-traced AO: none, one picture, or two with independent noise
