@@ -160,12 +160,12 @@ Camera Session::camera_by(const Settings& settings, const Window& window, int fr
   const bool is_given = camera_json_ || !pinhole_.empty();
   if (is_given && names_a_camera(settings.input))
     fail(ErrorKind::usage,
-         "there is a camera, and --fov, --focal or --ortho-width gives another: give only one of them");
+         "there is a camera, and --fov, --vertical-fov, --focal or --ortho-width gives another: give only one of them");
   if (camera_json_) return camera_of(*camera_json_, name, window, frame);
   if (pinhole_.empty() && !names_a_camera(settings.input))
     fail(ErrorKind::usage,
-         "there is no camera: give one, or set --fov (degrees), --focal with --aperture (mm), or --ortho-width (scene "
-         "units)");
+         "there is no camera: give one, or set --fov or --vertical-fov (degrees), --focal with --aperture (mm), or "
+         "--ortho-width (scene units)");
   if (pinhole_.empty()) return camera_for(settings.input, window, 1, frame);
   const auto& p = pinhole_;
   std::string text = fmt::format(R"({{"resolution": [{}, {}], "fx": {}, "fy": {}, "cx": {}, "cy": {})", window.width,

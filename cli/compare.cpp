@@ -12,6 +12,7 @@
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/frame_list.h"
 #include "core/base/text.h"
 #include "core/options/files.h"
 
@@ -20,8 +21,7 @@ namespace {
 
 struct CompareArguments {
   CompareSettings settings;
-  CompareLimits limits;
-  std::string report;
+  std::string report, junit;
   bool json = false, quiet = false;
 };
 
@@ -37,7 +37,9 @@ CommandOf<CompareArguments> compare_syntax() {
   pictures.text("RESULT", &S::result, "", "an EXR or any other picture; a pattern such as ao.%04d.exr for a sequence")
       .names(FileRole::input)
       .is_required = true;
-  pictures.text("REFERENCE", &S::reference, "", "what it should be; a pattern too, or one picture for all frames")
+  pictures
+      .text("REFERENCE", &S::reference, "",
+            "what it should be; a pattern too, one picture for all frames, or a list of frames in TOML")
       .names(FileRole::input)
       .is_required = true;
   OptionGroup options(command.rows, "Options", Effect::none, &CompareArguments::settings);
@@ -70,10 +72,14 @@ CommandOf<CompareArguments> compare_syntax() {
   reports
       .text("--report", &CompareArguments::report, "FILE.html", "write a self-contained page with table and pictures")
       .names(FileRole::report);
+  reports
+      .text("--junit", &CompareArguments::junit, "FILE.xml",
+            "write a test case for each frame, and beside it FILE.NAME.error.png for each that fails")
+      .names(FileRole::report);
   reports.flag("-q,--quiet", &CompareArguments::quiet,
                "print no table and no warnings: the exit code says whether limits hold");
   OptionGroup limits(command.rows, "Limits, for every frame; one that is broken ends with exit code 6", Effect::none,
-                     &CompareArguments::limits);
+                     within(&CompareArguments::settings, &CompareSettings::limits));
   limits.number("--max-rmse", &CompareLimits::max_rmse, "", at_least(0), "the largest rmse");
   limits.number("--max-p99", &CompareLimits::max_p99, "", at_least(0),
                 "the largest 99th percentile of the error's size");
@@ -101,23 +107,33 @@ void check_files(const CompareSettings& s) {
 
 /// Refuses to write over a picture of any frame.
 void check_report(const CompareArguments& arguments, const std::vector<RowOf<CompareArguments>>& rows) {
-  if (arguments.report.empty()) return;
+  if (arguments.report.empty() && arguments.junit.empty()) return;
   FileUses uses;
+  if (is_frame_list(arguments.settings.reference)) uses.add_input({"REFERENCE", arguments.settings.reference});
   CompareArguments of_frame;
   for (const auto& settings : settings_of_frames(arguments.settings)) {
     of_frame.settings = settings;
     for (const auto& file : files_of(rows, of_frame, FileRole::input)) uses.add_input(file);
   }
+  if (!arguments.junit.empty())
+    for (const auto& settings : settings_of_frames(arguments.settings))
+      uses.add_output({"--junit", failure_path(arguments.junit, name_of(settings))});
   for (const auto& file : files_of(rows, arguments, FileRole::report)) {
     uses.add_output(file);
     require_makeable(file.path, file.option.c_str());
   }
 }
 
-std::string optional_number(std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; }
+/// A number with four decimals, or with two digits where those would hide it.
+std::string number(double value) {
+  return value != 0 && std::abs(value) < 0.001 ? fmt::format("{:.1e}", value) : fmt::format("{:.4f}", value);
+}
+std::string signed_number(double value) { return (value < 0 ? "" : "+") + number(value); }
+std::string optional_number(std::optional<double> value) { return value ? number(*value) : "-"; }
 
 void print_part(const std::string& name, const PartErrors& part) {
-  fmt::print("  {:<22} {:>9} values   rmse {:.4f}   bias {:+.4f}\n", name, part.count, part.rmse, part.bias);
+  fmt::print("  {:<22} {:>9} values   rmse {}   bias {}\n", name, part.count, number(part.rmse),
+             signed_number(part.bias));
 }
 
 void print_heading(const std::string& result, const std::string& reference, const std::vector<std::string>& channels) {
@@ -130,9 +146,9 @@ void print_picture(const FrameComparison& c) {
              c.excluded, c.holes);
   if (c.common) fmt::print("  the files' windows differ: compared {}, which all have\n", to_string(*c.common));
   const PlaneErrors& e = c.errors;
-  fmt::print("  rmse {:.4f}   mae {:.4f}   bias {:+.4f}   max {:.4f}   p95 {:.4f}   p99 {:.4f}\n", e.rmse, e.mae,
-             e.bias, e.max, e.p95, e.p99);
-  fmt::print("  psnr {:.2f} dB   ssim {}   flip {:.4f}   grain {}\n", c.psnr, optional_number(c.ssim), c.flip,
+  fmt::print("  rmse {}   mae {}   bias {}   max {}   p95 {}   p99 {}\n", number(e.rmse), number(e.mae),
+             signed_number(e.bias), number(e.max), number(e.p95), number(e.p99));
+  fmt::print("  psnr {:.2f} dB   ssim {}   flip {}   grain {}\n", c.psnr, optional_number(c.ssim), number(c.flip),
              optional_number(c.grain));
   for (const auto& band : c.bands)
     print_part(fmt::format("reference {:.2f} to {:.2f}", band.from, band.to), band.errors);
@@ -143,22 +159,40 @@ void print_picture(const FrameComparison& c) {
 
 void print_sequence(const CompareReport& report) {
   print_heading(report.result, report.reference, report.frames[0].channels);
-  fmt::print("{:>7} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "frame", "pixels", "rmse", "mae", "bias",
-             "p99", "psnr", "ssim", "flip", "grain");
+  const std::size_t width =
+      std::ranges::max(report.frames, {}, [](const auto& c) { return c.name.size(); }).name.size();
+  fmt::print("{:>{}} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "frame", std::max<std::size_t>(7, width),
+             "pixels", "rmse", "mae", "bias", "p99", "psnr", "ssim", "flip", "grain");
   double sum = 0;
   for (const auto& c : report.frames) {
     const PlaneErrors& e = c.errors;
-    fmt::print("{:>7} {:>9} {:>8.4f} {:>8.4f} {:>+8.4f} {:>8.4f} {:>8.2f} {:>8} {:>8.4f} {:>8}\n", c.frame, c.count,
-               e.rmse, e.mae, e.bias, e.p99, c.psnr, optional_number(c.ssim), c.flip, optional_number(c.grain));
+    fmt::print("{:>{}} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8.2f} {:>8} {:>8} {:>8}\n", c.name,
+               std::max<std::size_t>(7, width), c.count, number(e.rmse), number(e.mae), signed_number(e.bias),
+               number(e.p99), c.psnr, optional_number(c.ssim), number(c.flip), optional_number(c.grain));
     sum += e.rmse;
   }
   const auto part = std::ranges::find_if(report.frames, [](const auto& c) { return c.common.has_value(); });
   if (part != report.frames.end())
-    fmt::print("the files' windows differ: compared what all have, in frame {} {}\n", part->frame,
+    fmt::print("the files' windows differ: compared what all have, in frame {} {}\n", part->name,
                to_string(*part->common));
   const auto& worst = worst_frame(report);
-  fmt::print("worst: frame {}, rmse {:.4f}; mean rmse {:.4f}; flicker {}\n", worst.frame, worst.errors.rmse,
-             sum / double(report.frames.size()), optional_number(report.flicker));
+  fmt::print("worst: frame {}, rmse {}; mean rmse {}{}\n", worst.name, number(worst.errors.rmse),
+             number(sum / double(report.frames.size())),
+             report.is_sequence ? "; flicker " + optional_number(report.flicker) : "");
+}
+
+void write_junit(const CompareReport& report, const std::string& path) {
+  make_folder_of(path, "--junit");
+  for (const auto& frame : report.frames)
+    if (is_broken(frame)) write_whole(failure_path(path, frame.name), frame.error_png);
+  write_whole(path, compare_junit(report, path));
+}
+
+void fail_where_broken(const std::vector<CheckedLimit>& limits) {
+  const auto broken = broken_limits(limits);
+  if (broken.empty()) return;
+  const bool is_unread = std::ranges::any_of(limits, [](const auto& l) { return l.kind == ErrorKind::input; });
+  fail(is_unread ? ErrorKind::input : ErrorKind::comparison, "{}", fmt::join(broken, "; "));
 }
 
 }  // namespace
@@ -172,30 +206,32 @@ int compare_command(const std::vector<std::string>& arguments) {
   CompareArguments& a = *parsed;
   check_files(a.settings);
   check_report(a, syntax.rows);
-  if (a.limits.max_grain && a.settings.depth.empty())
+  const CompareLimits& given = a.settings.limits;  // a list may have more
+  if (given.max_grain && a.settings.depth.empty())
     fail(ErrorKind::usage,
          "--max-grain {}: grain is measured on plain surfaces, and only depth shows where they are; give --depth "
          "FILE.exr",
-         *a.limits.max_grain);
+         *given.max_grain);
   a.settings.pictures = !a.report.empty();
+  a.settings.failures = !a.junit.empty();
 
   const CompareReport report = compare_pictures(a.settings);
-  const auto broken = broken_limits(report, a.limits);
+  const auto limits = checked_limits(report);
   if (a.json)
-    fmt::print("{}\n", compare_json(report, broken.sentences));
-  else if (report.is_sequence && !a.quiet)
+    fmt::print("{}\n", compare_json(report, limits));
+  else if (report.has_several() && !a.quiet)
     print_sequence(report);
   else if (!a.quiet)
     print_picture(report.frames[0]);
   if (!a.quiet)
-    for (const auto& note : notes_on(report, a.settings, a.limits))
+    for (const auto& note : notes_on(report, a.settings))
       print_error("alcove: {}: {}\n", level_of(note), printable(line_of(note, "")));
   if (!a.report.empty()) {
     make_folder_of(a.report, "--report");
-    write_whole(a.report, compare_page(report));
+    write_whole(a.report, compare_page(report, limits));
   }
-  const bool has_limits = a.limits != CompareLimits{};
-  if (has_limits && !broken.sentences.empty()) fail(broken.kind, "{}", fmt::join(broken.sentences, "; "));
+  if (!a.junit.empty()) write_junit(report, a.junit);
+  if (has_limits(report)) fail_where_broken(limits);
   return 0;
 }
 

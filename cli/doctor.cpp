@@ -76,7 +76,7 @@ std::string cache_text() {
 
 std::string picture_text() {
   const std::string why = why_no_image_io();
-  return why.empty() ? "TIFF, PNG and others can be read" : "EXR and DDS only: " + why;
+  return why.empty() ? "TIFF and others can be read" : "EXR, DDS and PNG only: " + why;
 }
 
 /// The variables that change what a run does, those that are set.

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress.h"
+#include "core/base/frame_list.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/frame/raw_plane.h"
+#include "core/options/files.h"
 #include "core/run/batch.h"
 #include "core/run/first_look.h"
 
@@ -50,11 +53,46 @@ bool has_all(FirstLook& look, const Settings& settings, const std::vector<std::s
   return false;
 }
 
+/// Fails where two frames of a list would write one file.
+void require_places(const Settings& settings, const std::string& list) {
+  for (const FileRole role : {FileRole::output, FileRole::report})
+    for (const auto& file : files_of(settings, role))
+      if (file.path.find(kNamePlace) == file.path.npos)
+        fail(ErrorKind::usage, "{} {}: it has no place for the names of {}: write {}, such as out/{}.exr", file.option,
+             file.path, list, kNamePlace, kNamePlace);
+}
+
+/// The command for a frame of a list: its file, and its camera and radius unless others are typed.
+Words words_of_frame(const Words& arguments, const Settings& settings, const ListedFrame& frame) {
+  Words words;
+  for (const auto& word : arguments)
+    words.push_back(word == settings.input.input ? frame.input : with_name(word, frame.name));
+  const auto is_typed = [&](const char* option) {
+    return std::ranges::any_of(arguments, [&](const auto& word) { return word.starts_with(option); });
+  };
+  const bool has_camera = std::ranges::any_of(
+      std::array{"--camera", "--fov", "--vertical-fov", "--focal", "--aperture", "--ortho-width"}, is_typed);
+  if (!frame.camera.empty() && !has_camera) words.push_back("--camera=" + frame.camera);
+  if (frame.radius && !is_typed("--radius")) words.push_back(fmt::format("--radius={}", *frame.radius));
+  return words;
+}
+
+/// Computes the frames of a list, each as by a command of its own. The first that fails ends it.
+int run_list(const Words& arguments, const Settings& settings) {
+  const std::string& list = settings.input.input;
+  const auto frames = read_frame_list(list, "INPUT");
+  require_places(settings, list);
+  for (const auto& frame : frames)
+    if (const int code = run_command(words_of_frame(arguments, settings, frame))) return code;
+  return 0;
+}
+
 }  // namespace
 
 int run_command(const std::vector<std::string>& arguments) {
   RunOptions options;
   if (!parse_run_options(arguments, options)) return 0;
+  if (is_frame_list(options.settings.input.input)) return run_list(arguments, options.settings);
   FirstLook look(options.settings);
   if (!has_all(look, options.settings, arguments)) return int(ErrorKind::usage);
   if (options.dry_run) {

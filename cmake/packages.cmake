@@ -38,8 +38,8 @@ It computes with Vulkan: on a GPU, or on the CPU with mesa-vulkan-drivers.")
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
 set(CPACK_COMPONENT_PICTURES_DEPENDS alcove)
 set(CPACK_DEBIAN_PICTURES_PACKAGE_NAME alcove-pictures)
-set(CPACK_DEBIAN_PICTURES_DESCRIPTION "TIFF, PNG and other pictures for Alcove
-With this module, Alcove reads depth, normals and beauties from TIFF, PNG and
+set(CPACK_DEBIAN_PICTURES_DESCRIPTION "TIFF and other pictures for Alcove
+With this module, Alcove reads depth, normals and beauties from TIFF and
 other formats that OpenImageIO reads.")
 set(CPACK_DEBIAN_PICTURES_PACKAGE_SOURCE alcove)
 

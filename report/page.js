@@ -5,6 +5,8 @@
 const report = JSON.parse(document.getElementById('report').textContent);
 const frames = [...new Set(report.rows.map((row) => row.frame))];
 const kMeanLabel = 'mean over frames';
+/// What results are measured against. Only a suite has ray-traced truth.
+const kReferenceName = report.kind === 'compare' ? 'reference' : 'truth';
 
 /// Columns that the page knows: heading, hint, decimals where they are fixed, and whether the sign is always shown. The order is the table's.
 const kColumns = {
@@ -44,11 +46,16 @@ function fill_select(select, options) {
   if (options.some(([value]) => value === before)) select.value = before;
 }
 
-/// The decimals that give the smallest of `values` three digits, at most four.
-function decimals_for(values) {
+/// The decimals that give the smallest of `values` so many digits.
+function decimals_of_least(values, digits) {
   const sizes = values.map(Math.abs).filter((size) => size > 0);
-  if (!sizes.length || values.every(Number.isInteger)) return 0;
-  return Math.min(4, Math.max(0, 2 - Math.floor(Math.log10(Math.min(...sizes)))));
+  return sizes.length ? Math.max(0, digits - 1 - Math.floor(Math.log10(Math.min(...sizes)))) : 0;
+}
+
+/// The decimals of a column: those that it has where it is known, and more where they would hide a small number.
+function decimals_for(values, known) {
+  if (known !== undefined) return Math.min(12, Math.max(known, decimals_of_least(values, 2)));
+  return values.every(Number.isInteger) ? 0 : Math.min(4, decimals_of_least(values, 3));
 }
 
 function format(value, decimals, signed = false) {
@@ -66,7 +73,7 @@ function with_yardsticks(row) {
 
 /// A single number of the column `key`.
 function number_text(key, value) {
-  return format(value, kColumns[key]?.decimals ?? decimals_for([value]), kColumns[key]?.signed);
+  return format(value, decimals_for([value], kColumns[key]?.decimals), kColumns[key]?.signed);
 }
 
 /// [heading, value as text] of every number in `row`, in the table's order, unknown ones last.
@@ -77,8 +84,9 @@ function numbers_of(row) {
 
 /// [name, text] of what is known of a sequence as a whole.
 function sequence_facts({ worst_frame, worst_rmse, mean_rmse, flicker }) {
+  const facts = [['Worst frame', `${worst_frame}, RMSE ${number_text('rmse', worst_rmse)}`], ['Mean RMSE', number_text('rmse', mean_rmse)]];
   const flickers = Number.isFinite(flicker) ? number_text('flicker', flicker) : 'not measured: no two frames follow each other';
-  return [['Worst frame', `${worst_frame}, RMSE ${number_text('rmse', worst_rmse)}`], ['Mean RMSE', number_text('rmse', mean_rmse)], ['Flicker', flickers]];
+  return flicker === undefined ? facts : [...facts, ['Flicker', flickers]];
 }
 
 function start_header() {
@@ -94,7 +102,22 @@ function start_header() {
   }
 }
 
+/// PASS or FAIL, and each limit with the value that comes nearest to it.
+function start_verdict() {
+  if (!report.verdict) return;
+  const { pass, limits } = report.verdict;
+  const verdict = document.getElementById('verdict');
+  verdict.hidden = document.getElementById('limits').hidden = false;
+  verdict.textContent = pass ? 'PASS' : 'FAIL';
+  verdict.className = pass ? 'pass' : 'fail';
+  const exact = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(6))) : '–');
+  const rows = limits.map(({ option, limit, value, frame, holds }) => make('tr', { class: holds ? 'pass' : 'fail' }, make('th', { scope: 'row' }, option),
+    make('td', { class: 'number' }, exact(limit)), make('td', { class: 'number' }, exact(value)), make('td', {}, frame)));
+  document.querySelector('#limits tbody').replaceChildren(...rows);
+}
+
 start_header();
+start_verdict();
 start_chart();
 start_table();
 start_looks();

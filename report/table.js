@@ -12,7 +12,7 @@ function table_columns() {
   const unknown = [...new Set(rows.flatMap(Object.keys))].filter((key) => !known.includes(key));
   const numeric = [...known, ...unknown].map((key) => ({ key, values: rows.map((row) => row[key]).filter(Number.isFinite) }))
     .filter(({ values }) => values.length)
-    .map(({ key, values }) => ({ key, heading: key, decimals: decimals_for(values), ...kColumns[key] }));
+    .map(({ key, values }) => ({ key, heading: key, ...kColumns[key], decimals: decimals_for(values, kColumns[key]?.decimals) }));
   return [{ key: 'frame', heading: 'frame', text: true }, { key: 'candidate', heading: 'candidate', text: true }, ...numeric];
 }
 

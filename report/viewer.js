@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 'use strict';
 
-const kTruth = ' truth';  // The value of the choice "truth" on the right; a candidate's name has no leading space.
+const kTruth = ' truth';  // The value of the choice of the truth, or of the reference, on the right; a candidate's name has no leading space.
 const kMaxZoom = 16;
 const kStageWidth = 640;  // Smaller pictures are enlarged to at least this width, by a whole number.
 
@@ -132,14 +132,17 @@ function fill_viewer() {
   const left = picture_of(frame, by_id('viewer-left').value);
   const right = picture_of(frame, by_id('viewer-right').value);
   const error = showing_error();
-  const right_name = right ? right.candidate : 'truth';
+  const right_name = right ? right.candidate : kReferenceName;
   set_picture(by_id('layer-left'), shown_of(left), `${left.candidate}${error ? ', signed error' : ''}`);
   set_picture(by_id('layer-right'), right || error ? shown_of(right) : truth_of(frame), `${right_name}${error ? ', signed error' : ''}`);
   const divided = !by_id('layer-right').hidden;
   by_id('stage').classList.toggle('divided', divided);
-  by_id('chip-left').textContent = error ? `${left.candidate}: result − truth` : left.candidate;
-  by_id('chip-right').textContent = error ? `${right_name}: result − truth` : right_name;
+  by_id('chip-left').textContent = error ? `${left.candidate}: result − ${kReferenceName}` : left.candidate;
+  by_id('chip-right').textContent = error ? `${right_name}: result − ${kReferenceName}` : right_name;
   by_id('legend').hidden = !error;
+  const full = String(Number((left.full ?? 0.25).toPrecision(3)));
+  by_id('legend-least').textContent = `−${full}`;
+  by_id('legend-most').textContent = `+${full}`;
   const row = report.rows.find((each) => each.frame === frame && each.candidate === left.candidate);
   by_id('viewer-numbers').textContent = row && report.kind !== 'wedge' ? `${left.candidate}: ${numbers_of(with_yardsticks(row)).map(([heading, text]) => `${heading} ${text}`).join(' · ')}` : '';
 
@@ -157,7 +160,7 @@ function fill_choices() {
   const names = report.images.filter((image) => image.frame === by_id('viewer-frame').value).map((image) => [image.candidate, image.candidate]);
   const truth = truth_of(by_id('viewer-frame').value);
   fill_select(by_id('viewer-left'), names);
-  fill_select(by_id('viewer-right'), truth ? [[kTruth, 'truth'], ...names] : [...names.slice(1), names[0]]);
+  fill_select(by_id('viewer-right'), truth ? [[kTruth, kReferenceName], ...names] : [...names.slice(1), names[0]]);
   depth_image.src = report.frames?.find((each) => each.name === by_id('viewer-frame').value)?.scale?.depth ?? 'data:,';
   for (const side of ['left', 'right']) by_id(`viewer-${side}`).parentElement.hidden = names.length < 2;
   fill_viewer();
@@ -218,15 +221,34 @@ function start_zoom(stage) {
   });
 }
 
+/// The frames from the largest error to the least.
+function by_error(names) {
+  const rmse = (name) => report.rows.find((row) => row.frame === name)?.rmse ?? -1;
+  return [...names].sort((a, b) => rmse(b) - rmse(a));
+}
+
+/// Offers the frames that have pictures, and gives them as they are in the report.
+function fill_frames() {
+  const shown = [...new Set(report.images.map((image) => image.frame))];
+  const sorted = by_id('viewer-sort').querySelector('input').checked ? by_error(shown) : shown;
+  fill_select(by_id('viewer-frame'), sorted.map((frame) => [frame, frame]));
+  return shown;
+}
+
 function start_viewer() {
   if (!report.images.length) return;
   by_id('viewer-section').hidden = false;
   for (const input of document.querySelectorAll('#viewer-show input')) input.parentElement.hidden = !report.images.some((image) => image[input.value]);
   by_id('viewer-show').hidden = !report.images.some((image) => image.error || image.composite);
   const stage = by_id('stage');
-  const shown = [...new Set(report.images.map((image) => image.frame))];
-  fill_select(by_id('viewer-frame'), shown.map((frame) => [frame, frame]));
+  const shown = fill_frames();
   by_id('viewer-frame').parentElement.hidden = shown.length < 2;
+  if (report.kind === 'compare') {
+    by_id('viewer-sort').hidden = shown.length < 2;
+    by_id('viewer-frame').value = by_error(shown)[0];
+    if (picture_of(by_error(shown)[0], report.candidates[0].name).error) document.querySelector('#viewer-show input[value=error]').checked = true;
+  }
+  by_id('viewer-sort').addEventListener('change', fill_frames);
   start_divider();
   start_pan(stage);
   start_zoom(stage);

@@ -6,6 +6,8 @@
 #include <array>
 #include <iterator>
 
+#include "core/base/text.h"
+
 namespace alcove {
 namespace {
 
@@ -127,6 +129,11 @@ Notes warnings_of(const Notes& notes) {
   std::ranges::copy_if(notes, std::back_inserter(warnings),
                        [](const Note& note) { return facts_of(note.code).is_warning; });
   return warnings;
+}
+
+bool is_listed(NoteCode code, const std::string& codes) {
+  const auto listed = split(codes);
+  return std::ranges::find(listed, facts_of(code).name) != listed.end();
 }
 
 std::vector<std::string> texts_of(const Notes& notes) {

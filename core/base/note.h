@@ -130,6 +130,9 @@ void add_new(Notes& notes, const Notes& more);
 
 Notes warnings_of(const Notes& notes);
 
+/// Whether a list of codes with commas, such as that of --set allow, has this one.
+bool is_listed(NoteCode code, const std::string& codes);
+
 /// The sentences of notes, without their codes.
 std::vector<std::string> texts_of(const Notes& notes);
 

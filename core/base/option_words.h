@@ -17,8 +17,9 @@ enum class BehindKind { surfaces, fronts, backs, thickness };
 // the frame that motion vectors point to
 enum class MotionKind { automatic, previous, next };
 enum class DepthKind { automatic, planar, ray, inverse, device, normalized, log, position };
-// device depth between the near and the far plane; zero_to_one: Vulkan, Direct3D; minus_one_to_one: OpenGL
-enum class DeviceRange { zero_to_one, minus_one_to_one };
+// device depth between the near and the far plane; zero_to_one: Vulkan, Direct3D, and automatic, as nobody says so;
+// minus_one_to_one: OpenGL
+enum class DeviceRange { automatic, zero_to_one, minus_one_to_one };
 enum class NormalSpace { automatic, world, view };
 enum class PositionSpace { automatic, world, view };
 enum class NormalEncoding { automatic, signed_float, unorm, octahedral, spheremap };
@@ -52,7 +53,7 @@ struct DepthRange {
   // distance of the planes, in the file's units, 0 < near < far; far may be infinite (device only)
   std::optional<double> near, far;
   bool reversed = false;  // the near plane has the largest value
-  DeviceRange device = DeviceRange::zero_to_one;
+  DeviceRange device = DeviceRange::automatic;
   double log_constant = 1;  // C of z = ((1 + C far)^d - 1) / C, 1 / the file's units, > 0
   // planar, ray and inverse depth: the values are below 0; view positions: their z is not as the camera's
   bool negative = false;
@@ -95,8 +96,8 @@ template <>
 inline constexpr Word<MotionKind> kWordsOf<MotionKind>[] = {
     {"auto", MotionKind::automatic}, {"next", MotionKind::next}, {"previous", MotionKind::previous}};
 template <>
-inline constexpr Word<DeviceRange> kWordsOf<DeviceRange>[] = {{"-1..1", DeviceRange::minus_one_to_one},
-                                                              {"0..1", DeviceRange::zero_to_one}};
+inline constexpr Word<DeviceRange> kWordsOf<DeviceRange>[] = {
+    {"-1..1", DeviceRange::minus_one_to_one}, {"0..1", DeviceRange::zero_to_one}, {"auto", DeviceRange::automatic}};
 template <>
 inline constexpr Word<PositionSpace> kWordsOf<PositionSpace>[] = {
     {"auto", PositionSpace::automatic}, {"view", PositionSpace::view}, {"world", PositionSpace::world}};

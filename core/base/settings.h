@@ -87,10 +87,11 @@ struct InputSettings {
   // automatic: the one whose points lie on the rays of their pixels
   PositionSpace position_space = PositionSpace::automatic;
   bool strict = false;                    // guesses and warnings are errors
-  std::string allow;                      // codes of notes, with commas, that would be errors
+  std::string allow;                      // codes of warnings, with commas, that are no errors
   std::string camera;                     // a camera file: JSON, or .chan
   std::string chan_rotation = "zxy";      // of a .chan file: the axes in the order of their turns
   std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive
+  std::optional<double> vertical_fov;     // the same over the height
   std::optional<double> focal, aperture;  // mm, > 0: focal length and width of the film back
   std::optional<double> ortho_width;      // scene units across the display window, > 0
   std::vector<std::string> from_presets;  // options that presets set, long names; without effect, they are ignored
@@ -153,6 +154,7 @@ struct EstimatorSettings {
   double denoise_depth_sigma = 0;
   double intensity = 1;  // factor on the occlusion, 0 to 100
   double power = 1;      // exponent of the visibility, above 0 to 100
+  double least = 0;      // the lowest AO after all shaping, 0 to 1; a matte's outside may be lower
   // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other
   std::optional<double> fade_start, fade_end;
   // roughness of all surfaces for specular occlusion, 0 to 1; perceptual, half way by default, as engines' own default

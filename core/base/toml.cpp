@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
-#include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/text.h"
 
 namespace alcove {
@@ -62,6 +63,51 @@ toml::table parse_toml(const std::string& text) {
   } catch (const toml::parse_error& error) {
     fail(ErrorKind::usage, "line {}: {}", error.source().begin.line, error.description());
   }
+}
+
+toml::table read_toml(const std::string& path, const char* what, const char* option) {
+  const std::string text = read_text(path, what, option);
+  try {
+    return parse_toml(text);
+  } catch (const Error& error) {
+    fail(ErrorKind::input, "{}: {}", path, error.what());
+  }
+}
+
+void TomlTable::refuse(std::string_view key, const char* why) const {
+  fail(ErrorKind::input, "{}: \"{}\" of {} {}", path, key, name, why);
+}
+
+std::string TomlTable::text(std::string_view key) const {
+  const auto value = values[key].value<std::string>();
+  if (!value || value->empty()) refuse(key, "must be a string");
+  return *value;
+}
+
+double TomlTable::number(std::string_view key) const {
+  const auto value = values[key].value<double>();
+  if (!value || !std::isfinite(*value)) refuse(key, "must be a finite number");
+  return *value;
+}
+
+double TomlTable::positive(std::string_view key) const {
+  const auto value = values[key].value<double>();
+  if (!value || !(*value > 0) || !std::isfinite(*value)) refuse(key, "must be a number above 0");
+  return *value;
+}
+
+int TomlTable::count(std::string_view key, int otherwise, int least) const {
+  if (!values.contains(key)) return otherwise;
+  const auto value = values[key].value<std::int64_t>();
+  if (!value || *value < least || *value > 100000) refuse(key, "must be a whole number of a sensible size");
+  return int(*value);
+}
+
+void TomlTable::require_keys(const std::set<std::string>& known) const {
+  const std::vector<std::string> names(known.begin(), known.end());
+  for (const auto& [key, value] : values)
+    if (!known.contains(std::string(key.str())))
+      fail(ErrorKind::input, "{}: {} has no \"{}\"{}", path, name, key.str(), suggestion(key.str(), names));
 }
 
 }  // namespace alcove

@@ -38,8 +38,7 @@ struct Suite {
 /// Reads a suite:
 ///
 ///   title = "..."                     repeats = 5                  reference-slices = 16
-///   [[frame]]      name = "monkeys"   input = "m.exr"   camera = "m.json"   radius = 0.5   truth = ["a.exr", "b.exr"]
-///                  reference = "r.exr"                                         # optional: see bench.h
+///   [[frame]]      as core/base/frame_list.h has it, with camera, radius and truth; maybe cpu-reference: see bench.h
 ///   [[candidate]]  name = "draft"     preset = "draft"  power = 1.2             # any long option of alcove run
 ///   [[sweep]]      slices = [1, 2, 4] steps = [4, 8]    preset = "draft"        # a candidate for every combination
 ///

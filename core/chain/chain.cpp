@@ -179,7 +179,7 @@ FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Surf
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, open, *visibility.ao, settings.roughness);
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
   out = reduce(gpu, frame, wanted.filter, out);
-  out.composite = composite(gpu, gbuffer, out.color_ao ? out.color_ao : out.ao, frame, wanted.look);
+  out.composite = composite(gpu, gbuffer, out.color_ao ? out.color_ao : out.ao, frame, wanted.look, settings.least);
   for (const auto* view : wanted.debug_views) out.debug.push_back(debug(gpu, *view, gbuffer, seen.stages, frame));
   return out;
 }

@@ -32,7 +32,8 @@ struct Format {
 
 constexpr Format kFormats[] = {
     {2, Sample::single_float, 4, 16},  {10, Sample::half_float, 4, 8},      {11, Sample::unorm16, 4, 8},
-    {16, Sample::single_float, 2, 8},  {24, Sample::ten_ten_ten_two, 4, 4}, {28, Sample::unorm8, 4, 4},
+    {16, Sample::single_float, 2, 8},  {19, Sample::single_float, 1, 8},    {20, Sample::single_float, 1, 8},
+    {21, Sample::single_float, 1, 8},  {24, Sample::ten_ten_ten_two, 4, 4}, {28, Sample::unorm8, 4, 4},
     {34, Sample::half_float, 2, 4},    {35, Sample::unorm16, 2, 4},         {39, Sample::single_float, 1, 4},
     {40, Sample::single_float, 1, 4},  {41, Sample::single_float, 1, 4},    {44, Sample::unorm24, 1, 4},
     {45, Sample::unorm24, 1, 4},       {46, Sample::unorm24, 1, 4},         {53, Sample::unorm16, 1, 2},

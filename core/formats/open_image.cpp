@@ -20,6 +20,7 @@ using namespace std::string_view_literals;
 enum class Reader {
   exr,
   dds,
+  png,
   picture,  // OpenImageIO, for frames too
   other,    // OpenImageIO, for no frame
 };
@@ -37,7 +38,7 @@ struct Signature {
 constexpr Signature kSignatures[] = {
     {"an OpenEXR", Reader::exr, "\x76\x2f\x31\x01"sv},
     {"a DDS", Reader::dds, "DDS "sv},
-    {"a PNG", Reader::picture, "\x89PNG\r\n\x1a\n"sv},
+    {"a PNG", Reader::png, "\x89PNG\r\n\x1a\n"sv},
     {"a TIFF", Reader::picture, "II*\0"sv},
     {"a TIFF", Reader::picture, "MM\0*"sv},
     {"a BigTIFF", Reader::picture, "II+\0"sv},
@@ -93,7 +94,7 @@ const ImageIoModule& module(const std::string& path) {
     const ImageIoModule* found = load(why);
     if (!found)
       fail(ErrorKind::input,
-           "{}: to read a picture that is no EXR, Alcove needs {}, of the package "
+           "{}: to read a picture that is no EXR, DDS or PNG, Alcove needs {}, of the package "
            "alcove-pictures, which is built where OpenImageIO is installed (libopenimageio-dev): {}",
            path, kImageIoFile, why);
     return found;
@@ -130,6 +131,7 @@ ExrFile open_image(const std::string& path, const char* option, Formats formats)
     refuse(path, option, fmt::format("is {} file", format->format));
   if (format && format->reader == Reader::exr) return ExrFile(path, option);
   if (format && format->reader == Reader::dds) return {path, option, open_dds(path, option)};
+  if (format && format->reader == Reader::png) return {path, option, open_png(path, option)};
   return {path, option, open_picture(path, option)};
 }
 

@@ -10,6 +10,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string_view>
@@ -17,6 +18,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/formats/image_io.h"
 
 namespace alcove {
 namespace {
@@ -125,6 +127,144 @@ std::vector<char> encode_png(const std::string& name, int width, int height, int
 void write_png(const std::string& path, int width, int height, int channels, std::span<const float> pixels,
                const std::string& made_by, const std::string& shows) {
   write_whole(path, encode_png(path, width, height, channels, pixels, made_by, shows));
+}
+
+// Reading.
+
+namespace {
+
+void take(png_structp png, png_bytep bytes, png_size_t count) {
+  if (std::fread(bytes, 1, count, static_cast<std::FILE*>(png_get_io_ptr(png))) != count)
+    png_error(png, "the file ends too early");
+}
+
+// Nothing in these three has a destructor, since an error jumps from the calls within to the setjmp.
+
+/// Reads the header, and asks for one sample of 8 or 16 bits per channel, without a palette.
+bool read_header(png_structp png, png_infop info) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_read_info(png, info);
+  png_set_expand(png);
+  png_set_interlace_handling(png);
+  png_read_update_info(png, info);
+  return true;
+}
+
+bool read_row(png_structp png, png_bytep row) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_read_row(png, row, nullptr);
+  return true;
+}
+
+bool read_all(png_structp png, png_bytepp rows) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_read_image(png, rows);
+  return true;
+}
+
+/// A picture as libpng has begun to read it.
+struct Decoder {
+  explicit Decoder(const std::string& path) {
+    file = std::fopen(path.c_str(), "rbe");
+    png = file ? png_create_read_struct(PNG_LIBPNG_VER_STRING, &messages, keep_error, keep_warning) : nullptr;
+    info = png ? png_create_info_struct(png) : nullptr;
+    if (!info) return;
+    png_set_read_fn(png, file, take);
+    is_begun = read_header(png, info);
+  }
+  ~Decoder() {
+    png_destroy_read_struct(&png, &info, nullptr);
+    if (file) (void)std::fclose(file);
+  }
+  Decoder(const Decoder&) = delete;
+  Decoder& operator=(const Decoder&) = delete;
+
+  std::FILE* file = nullptr;
+  Sink messages;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  bool is_begun = false;
+  int next = 0;  // the row that comes next
+};
+
+// The most bytes of pixels for one byte of a file. Deflate packs 1032 bytes of up to 8 pixels each.
+constexpr std::uint64_t kDensest = 1 << 14;
+
+class PngReader : public PictureReader {
+ public:
+  PngReader(const std::string& path, const char* option) : path_(path), option_(option) {
+    begin();
+    data = display = {0, 0, int(png_get_image_width(decoder_->png, decoder_->info)),
+                      int(png_get_image_height(decoder_->png, decoder_->info))};
+    row_.resize(png_get_rowbytes(decoder_->png, decoder_->info));
+    has_16_bits_ = png_get_bit_depth(decoder_->png, decoder_->info) == 16;
+    const int channels = png_get_channels(decoder_->png, decoder_->info);
+    names = channels < 3 ? std::vector<std::string>{"Y", "A"} : std::vector<std::string>{"R", "G", "B", "A"};
+    names.resize(std::size_t(channels));
+    if (const auto size = std::filesystem::file_size(path); row_.size() * std::uint64_t(data.height) / kDensest > size)
+      fail(ErrorKind::input, "{}: its header claims {} pixels, which its {} bytes cannot hold ({})", path,
+           to_string(data), size, option);
+  }
+
+  void read(int first, int rows, std::span<const Channel> channels) override {
+    const bool is_interlaced = png_get_interlace_type(decoder_->png, decoder_->info) != PNG_INTERLACE_NONE;
+    if (is_interlaced) read_interlaced();
+    if (!is_interlaced && first < decoder_->next) begin();
+    for (int row = is_interlaced ? first : decoder_->next; row < first + rows; row++) {
+      const png_byte* bytes = row_.data();
+      if (is_interlaced)
+        bytes = whole_.data() + std::size_t(row) * row_.size();
+      else
+        require(read_row(decoder_->png, row_.data()));
+      decoder_->next = row + 1;
+      if (row >= first) give(bytes, std::size_t(row - first) * std::size_t(data.width), channels);
+    }
+  }
+
+ private:
+  void begin() {
+    decoder_ = std::make_unique<Decoder>(path_);
+    if (!decoder_->is_begun)
+      fail(ErrorKind::input, "{}: not a picture that can be read ({}): {}", path_, option_,
+           reason_of(decoder_->messages));
+  }
+
+  void require(bool is_read) const {
+    if (!is_read)
+      fail(ErrorKind::input, "{}: the pixels cannot be read, the file is damaged or incomplete ({}): {}", path_,
+           option_, reason_of(decoder_->messages));
+  }
+
+  /// Interlaced rows come only together.
+  void read_interlaced() {
+    if (!whole_.empty()) return;
+    whole_.resize(row_.size() * std::size_t(data.height));
+    std::vector<png_bytep> rows;
+    for (int y = 0; y < data.height; y++) rows.push_back(whole_.data() + std::size_t(y) * row_.size());
+    require(read_all(decoder_->png, rows.data()));
+  }
+
+  void give(const png_byte* bytes, std::size_t to, std::span<const Channel> channels) const {
+    const std::size_t size = has_16_bits_ ? 2 : 1;
+    for (const Channel& channel : channels)
+      for (std::size_t x = 0; x < std::size_t(data.width); x++) {
+        const png_byte* sample = bytes + (x * names.size() + channel.index) * size;
+        channel.to[to + x] =
+            has_16_bits_ ? float(unsigned(sample[0]) << 8 | unsigned(sample[1])) / 65535 : float(sample[0]) / 255;
+      }
+  }
+
+  const std::string path_, option_;
+  std::unique_ptr<Decoder> decoder_;
+  bool has_16_bits_ = false;
+  std::vector<png_byte> row_, whole_;
+};
+
+}  // namespace
+
+std::unique_ptr<PictureReader> open_png(const std::string& path, const char* option) {
+  require_readable(path, "picture", option);
+  return std::make_unique<PngReader>(path, option);
 }
 
 bool is_whole_png(const std::string& path, const std::string& made_by) {

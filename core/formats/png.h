@@ -1,4 +1,4 @@
-// Writes PNG pictures: previews, debug views, pages.
+// Writes PNG pictures: previews, debug views, pages. core/formats/image_io.h reads them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

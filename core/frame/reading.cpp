@@ -45,7 +45,7 @@ void set_device(DepthMap& map, const DepthRange& range, bool orthographic, doubl
   const double f = far_of(DepthKind::device, range, !orthographic);
   if (!(n < f))
     fail(ErrorKind::usage, "the near plane must be nearer than the far plane, --near {} is not below --far {}", n, f);
-  const double low = range.device == DeviceRange::zero_to_one ? 0 : -1;
+  const double low = range.device == DeviceRange::minus_one_to_one ? -1 : 0;
   const double near_value = range.reversed ? 1 : low;
   const double far_value = range.reversed ? low : 1;
   count_between(map, near_value, far_value, far_value);
@@ -152,7 +152,7 @@ std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind 
   if (said.near && (is_log || !is_between_planes(kind))) unused.emplace_back("--near");
   if (said.far && !is_between_planes(kind)) unused.emplace_back("--far");
   if (said.reversed && !is_between_planes(kind)) unused.emplace_back("--reversed-z");
-  if (said.device != DeviceRange::zero_to_one && !is_device) unused.emplace_back("--set device-range");
+  if (said.device != DeviceRange::automatic && !is_device) unused.emplace_back("--set device-range");
   if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.emplace_back("--set log-constant");
   return unused;
 }

@@ -79,8 +79,8 @@ void add_depth(Command& command, const FrameSource& source, const InputSettings&
     command.add("--set position-space", word_of(source.reading.position_space));
   const InputSettings defaults;
   const bool is_device = source.reading.depth_kind == DepthKind::device;
-  if (is_device && settings.depth_range.device == DeviceRange::minus_one_to_one)
-    command.add("--set device-range=-1..1");
+  if (is_device && settings.depth_range.device != DeviceRange::automatic)
+    command.add("--set device-range=" + std::string(word_of(settings.depth_range.device)));
   const bool is_log = source.reading.depth_kind == DepthKind::log;
   if (is_log && settings.depth_range.log_constant != defaults.depth_range.log_constant)
     command.add("--set log-constant", std::optional(settings.depth_range.log_constant));
@@ -102,6 +102,7 @@ void add_camera(Command& command, const InputSettings& settings, bool has_camera
   command.add("--camera", settings.camera);
   if (is_chan_file(settings.camera)) command.add("--chan-rotation", settings.chan_rotation);
   command.add("--fov", settings.fov);
+  command.add("--vertical-fov", settings.vertical_fov);
   command.add("--focal", settings.focal);
   command.add("--aperture", settings.aperture);
   command.add("--ortho-width", settings.ortho_width);

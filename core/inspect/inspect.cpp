@@ -143,6 +143,7 @@ void add_aov(Inspection& found, const std::string& name, const FrameSource& sour
 std::string options_of_camera(const InputSettings& settings) {
   if (!settings.camera.empty()) return "--camera";
   if (settings.fov) return "--fov";
+  if (settings.vertical_fov) return "--vertical-fov";
   return settings.focal ? "--focal and --aperture" : "--ortho-width";
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "core/base/frame_list.h"
 #include "core/base/image.h"
 #include "core/base/text.h"
 #include "core/formats/absent_frames.h"
@@ -46,6 +47,7 @@ std::string path_of(const std::string& path, int frame) {
 }
 
 CompareSettings settings_of_frame(CompareSettings settings, int frame) {
+  settings.name = std::to_string(frame);
   for (auto* path : files_of(settings)) *path = path_of(*path, frame);
   return settings;
 }
@@ -291,14 +293,29 @@ ComparePictures pictures_of(const Planes& planes, const std::vector<float>& refe
         pixels.push_back(shown(planes.plane(values, colors.empty() ? 0 : colors[0][c])[i]));
     return colors.empty() ? grey_picture(width, height, pixels) : color_picture(width, height, pixels);
   };
+  return {picture(planes.values.result), picture(reference)};
+}
+
+/// The error that has full colour: 1, 2.5 or 5 times a power of ten that few errors exceed, and none by more than four
+/// times, so that neither a small error is white nor one pixel hides all others.
+float scale_for(const PlaneErrors& errors) {
+  const double most = std::max(errors.p99, 0.25 * errors.max);
+  if (!(most > 0)) return kFullColorError;
+  const double power = std::pow(10, std::floor(std::log10(most)));
+  for (const double step : {1.0, 2.5, 5.0})
+    if (most <= step * power) return float(step * power);
+  return float(10 * power);
+}
+
+/// The error as the mean over the channels, in colours.
+std::string error_png_of(const Planes& planes, const std::vector<float>& reference, float scale) {
   const auto mean = [&](const std::vector<float>& values) {
     std::vector<float> pixels(planes.data.pixels());
     for (std::size_t i = 0; i < values.size(); i++)
       pixels[i % pixels.size()] += values[i] / float(planes.channels.size());
     return pixels;
   };
-  return {picture(planes.values.result), picture(reference),
-          error_picture(width, height, mean(planes.values.result), mean(reference))};
+  return error_png(planes.data.width, planes.data.height, mean(planes.values.result), mean(reference), scale);
 }
 
 /// Adds the measures that need depth: edges and plain surfaces.
@@ -352,6 +369,8 @@ FrameComparison measure(const CompareSettings& settings, const Planes& planes, i
   const auto reference = values.mean_reference();
   FrameComparison c;
   c.frame = frame;
+  c.name = name_of(settings);
+  c.limits = settings.limits;
   c.result = settings.result;
   c.reference = settings.reference;
   c.channels = planes.channels;
@@ -371,7 +390,10 @@ FrameComparison measure(const CompareSettings& settings, const Planes& planes, i
   c.flip = mean_flip(planes, reference, settings.hdr);
   c.bands = darkness_bands(values.result, values.reference, values.mask, values.reference_b);
   if (!planes.depth.empty()) measure_by_depth(c, planes, settings.sky);
+  c.error_scale = scale_for(c.errors);
   if (settings.pictures) c.pictures = pictures_of(planes, reference, settings.hdr);
+  if (settings.pictures || (settings.failures && is_broken(c)))
+    c.error_png = error_png_of(planes, reference, c.error_scale);
   return c;
 }
 
@@ -393,17 +415,20 @@ ErrorFrame error_frame(Planes planes) {
   return frame;
 }
 
-/// Drops the pictures of the frame with the least error when there are too many.
-void limit_pictures(std::vector<FrameComparison>& frames) {
+/// Drops the pictures of the frame with the least error when there are too many; but that of a failure if those are
+/// wanted.
+void limit_pictures(std::vector<FrameComparison>& frames, bool keeps_failures) {
   std::vector<FrameComparison*> pictured;
   for (auto& frame : frames)
     if (frame.pictures) pictured.push_back(&frame);
   if (pictured.size() <= kMostPicturedFrames) return;
-  (*std::ranges::min_element(pictured, {}, [](auto* frame) { return frame->errors.rmse; }))->pictures.reset();
+  FrameComparison& least = **std::ranges::min_element(pictured, {}, [](auto* frame) { return frame->errors.rmse; });
+  least.pictures.reset();
+  if (!keeps_failures || !is_broken(least)) least.error_png.clear();
 }
 
 CompareReport compare_sequence(const CompareSettings& settings) {
-  CompareReport report{settings.result, settings.reference, true, {}, {}};
+  CompareReport report{.result = settings.result, .reference = settings.reference, .is_sequence = true};
   Flicker flicker;
   std::optional<ErrorFrame> previous;
   for (const int frame : frames_of(settings)) {
@@ -411,7 +436,7 @@ CompareReport compare_sequence(const CompareSettings& settings) {
     Planes planes = read_planes_of(here);
     const bool follows = previous && report.frames.back().frame == frame - 1;
     report.frames.push_back(measure(here, planes, frame));
-    limit_pictures(report.frames);
+    limit_pictures(report.frames, settings.failures);
     ErrorFrame errors = error_frame(std::move(planes));
     if (follows && previous->error.size() == errors.error.size() && previous->width == errors.width)
       flicker.add(*previous, errors);
@@ -423,19 +448,61 @@ CompareReport compare_sequence(const CompareSettings& settings) {
 
 }  // namespace
 
+namespace {
+
+/// The settings of each frame of a list.
+std::vector<CompareSettings> settings_of_list(const CompareSettings& settings) {
+  const auto frames = read_frame_list(settings.reference, "REFERENCE");
+  if (frames.size() > 1 && settings.result.find(kNamePlace) == settings.result.npos)
+    fail(ErrorKind::usage, "{}: it has no place for the names of {}: write {}, such as out/{}.exr", settings.result,
+         settings.reference, kNamePlace, kNamePlace);
+  std::vector<CompareSettings> all;
+  for (const auto& frame : frames) {
+    CompareSettings& here = all.emplace_back(settings);
+    for (auto* path : files_of(here)) *path = with_name(*path, frame.name);
+    const auto& references = frame.compared_with();
+    if (references.empty())
+      fail(ErrorKind::input, "{}: frame {} has neither \"reference\" nor \"truth\"", settings.reference, frame.name);
+    here.name = frame.name;
+    here.reference = references.front();
+    if (references.size() > 1) here.reference_b = references.back();
+    here.limits = with_limits(settings.limits, frame.limits);
+  }
+  return all;
+}
+
+CompareReport compare_list(const CompareSettings& settings) {
+  CompareReport report{.result = settings.result, .reference = settings.reference, .is_list = true};
+  for (const auto& here : settings_of_list(settings)) {
+    report.frames.push_back(measure(here, read_planes_of(here), 0));
+    limit_pictures(report.frames, settings.failures);
+  }
+  return report;
+}
+
+}  // namespace
+
 std::vector<CompareSettings> settings_of_frames(const CompareSettings& settings) {
+  if (is_frame_list(settings.reference)) return settings_of_list(settings);
   if (!is_sequence(settings)) return {settings};
   std::vector<CompareSettings> all;
   for (const int frame : frames_of(settings)) all.push_back(settings_of_frame(settings, frame));
   return all;
 }
 
+std::string name_of(const CompareSettings& of_frame) {
+  return of_frame.name.empty() ? std::filesystem::path(of_frame.reference).filename().string() : of_frame.name;
+}
+
 CompareReport compare_pictures(const CompareSettings& settings) {
+  if (is_frame_list(settings.reference)) return compare_list(settings);
   if (is_sequence(settings)) return compare_sequence(settings);
   if (!settings.motion.empty())
     fail(ErrorKind::usage, "--motion {}: it is for the flicker of a sequence, and RESULT is one picture",
          settings.motion);
-  return {settings.result, settings.reference, false, {measure(settings, read_planes_of(settings), 0)}, {}};
+  return {.result = settings.result,
+          .reference = settings.reference,
+          .frames = {measure(settings, read_planes_of(settings), 0)}};
 }
 
 namespace {
@@ -491,12 +558,12 @@ Notes notes_on_frames(const CompareReport& report, const CompareSettings& settin
 
 }  // namespace
 
-Notes notes_on(const CompareReport& report, const CompareSettings& settings, const CompareLimits& limits) {
+Notes notes_on(const CompareReport& report, const CompareSettings& settings) {
   Notes notes = notes_on_frames(report, settings);
   add_new(notes, notes_on_channels(report));
   add_new(notes, warnings_on_sky(report, settings));
   const std::string holes = holes_beyond(report, 0);
-  if (limits == CompareLimits{} && !holes.empty())
+  if (!has_limits(report) && !holes.empty())
     notes.push_back({NoteCode::holes, holes + "; with any limit, such as --max-rmse, the exit code would be 6"});
   return notes;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,9 +15,21 @@
 
 namespace alcove {
 
+/// Limits of a frame.
+struct CompareLimits {
+  std::optional<double> max_rmse, max_p99, min_ssim, max_flip;
+  std::optional<double> max_bias;   // of its size
+  std::optional<double> max_grain;  // needs CompareSettings::depth
+  // share of the pixels within the mask that are finite in one file only, 0 to 1; else none may be
+  std::optional<double> max_excluded;
+  bool operator==(const CompareLimits&) const = default;
+};
+
 /// Files and options of a comparison. Every file may have any format that open_image() reads, and may be a pattern of
-/// core/formats/sequence.h. A file without a pattern serves all frames.
+/// core/formats/sequence.h. A file without a pattern serves all frames. With a list of core/base/frame_list.h as
+/// reference, the other files have a place for the frames' names.
 struct CompareSettings {
+  std::string name;  // of the frame, for people; empty: its number, else the file of the reference
   std::string result, reference;
   std::string reference_b;  // a second render of the reference with independent noise; empty: none
   std::string channels;     // see match_channels(); empty: those of both
@@ -28,7 +41,9 @@ struct CompareSettings {
   std::string frames;                   // a list; empty: those of the result that are on the disk
   double peak = 1;                      // the largest value, for PSNR and SSIM; > 0
   bool hdr = false;                     // scene-linear values: HDR-FLIP
-  bool pictures = false;                // keep pictures for the report
+  CompareLimits limits;
+  bool pictures = false;  // keep pictures for the report
+  bool failures = false;  // keep the error's picture of every frame that breaks a limit
 };
 
 /// A value that is NaN or infinite in one file only.
@@ -40,7 +55,7 @@ struct HoleAt {
 
 /// Data URLs of the report.
 struct ComparePictures {
-  std::string result, reference, error;
+  std::string result, reference;
 };
 
 /// Pixels that are exactly 0 in one of the two and 1 in the other, if they make much of the error. They are sky, which
@@ -53,6 +68,8 @@ struct SkyDifference {
 
 struct FrameComparison {
   int frame = 0;
+  std::string name;               // for people
+  CompareLimits limits;           // of this frame
   std::string result, reference;  // files
   std::vector<std::string> channels;
   std::vector<std::string> ao_channels;  // of the reference, if the name of its AO layer told them; else empty
@@ -69,20 +86,34 @@ struct FrameComparison {
   std::optional<double> grain;      // with depth; none if no pixel is plain
   std::optional<SkyDifference> sky_differs;
   std::optional<ComparePictures> pictures;
+  std::string error_png;  // result - reference in colours; "" where nobody asks for it
+  float error_scale = 0;  // the error that has full colour
 };
 
 struct CompareReport {
-  std::string result, reference;  // as given
-  bool is_sequence = false;
-  std::vector<FrameComparison> frames;  // a single one unless it is a sequence
-  std::optional<double> flicker;        // none unless two frames follow each other
+  std::string result, reference;             // as given
+  bool is_sequence = false;                  // frames of one shot
+  bool is_list = false;                      // unlike frames, which have names
+  std::vector<FrameComparison> frames = {};  // a single one unless it is one of those
+
+  bool has_several() const { return is_sequence || is_list; }
+  std::optional<double> flicker = {};  // none unless two frames follow each other
 };
 
 /// The most frames of a sequence that keep their pictures: those with the largest rmse.
 inline constexpr std::size_t kMostPicturedFrames = 12;
 
+/// Whether a frame has a limit.
+bool has_limits(const CompareReport& report);
+
+/// These limits, and those by the names of their options, "max-rmse", which win.
+CompareLimits with_limits(CompareLimits limits, const std::map<std::string, double>& more);
+
 /// The settings with the files of each frame. Fails as compare_pictures() does on frames that are missing.
 std::vector<CompareSettings> settings_of_frames(const CompareSettings& settings);
+
+/// The name of a frame with these files.
+std::string name_of(const CompareSettings& of_frame);
 
 /// Reads and measures the frames. Fails with ErrorKind::usage on settings that contradict each other. Fails with
 /// ErrorKind::input on missing and unreadable files, on pictures that share no pixel or no channel, on pictures of
@@ -96,32 +127,40 @@ const FrameComparison& worst_frame(const CompareReport& report);
 /// than that share.
 std::string holes_beyond(const CompareReport& report, double most);
 
-/// Limits. Each holds for every frame of a sequence.
-struct CompareLimits {
-  std::optional<double> max_rmse, max_p99, min_ssim, max_flip;
-  std::optional<double> max_bias;   // of its size
-  std::optional<double> max_grain;  // needs CompareSettings::depth
-  // share of the pixels within the mask that are finite in one file only, 0 to 1; else none may be
-  std::optional<double> max_excluded;
-  bool operator==(const CompareLimits&) const = default;
-};
-
-struct BrokenLimits {
-  std::vector<std::string> sentences;  // one per limit: the measure, its frame, and the limit
+/// A limit and the value that comes nearest to it, or breaks it most.
+struct CheckedLimit {
+  const char* option;
+  double limit;
+  double value;        // NaN if it cannot be measured
+  std::string frame;   // the name of the frame
+  std::string broken;  // a sentence of the measure, its frame and the limit; "" if it holds
   // ErrorKind::input if grain has a limit and a frame has no plain pixel, so that nothing could be checked
   ErrorKind kind = ErrorKind::comparison;
 };
 
-/// Checks each limit on the frame with the worst value of its measure. Holes are broken where no limit is given, too.
-BrokenLimits broken_limits(const CompareReport& report, const CompareLimits& limits);
+/// Checks the limits of all frames. Holes break a limit of 0 where none is given, too.
+std::vector<CheckedLimit> checked_limits(const CompareReport& report);
+
+/// Whether a frame breaks one of its limits.
+bool is_broken(const FrameComparison& frame);
+
+/// The sentences of the limits that are broken.
+std::vector<std::string> broken_limits(const std::vector<CheckedLimit>& limits);
 
 /// Notes and warnings to the user beside broken limits.
-Notes notes_on(const CompareReport& report, const CompareSettings& settings, const CompareLimits& limits);
+Notes notes_on(const CompareReport& report, const CompareSettings& settings);
 
 /// The JSON of a comparison; docs/compare-and-bench.md lists the fields.
-std::string compare_json(const CompareReport& report, const std::vector<std::string>& broken);
+std::string compare_json(const CompareReport& report, const std::vector<CheckedLimit>& limits);
 
 /// The page of a comparison, as core/measure/report.h makes it.
-std::string compare_page(const CompareReport& report);
+std::string compare_page(const CompareReport& report, const std::vector<CheckedLimit>& limits);
+
+/// The comparison as JUnit's XML: a test case for each frame, which fails with a sentence for each broken limit. `file`
+/// is its own path, for the pictures beside it.
+std::string compare_junit(const CompareReport& report, const std::string& file);
+
+/// The picture of a failed frame's error, beside the XML of that path.
+std::string failure_path(const std::string& junit, const std::string& frame);
 
 }  // namespace alcove

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -48,12 +50,19 @@ constexpr std::array kMeasures = {
             "--depth shows no 15 x 15 compared pixels of one plane", ErrorKind::input},
 };
 
-/// The frame with the worst value of a measure; a value that could not be measured is the worst.
+const Measure& measure_of(const char* name) {
+  return *std::ranges::find_if(kMeasures, [&](const auto& m) { return std::string_view(m.name) == name; });
+}
+
+/// How bad a value is; one that could not be measured is the worst.
+double badness_of(const Measure& measure, double value) {
+  return std::isnan(value) ? std::numeric_limits<double>::infinity() : measure.badness(value);
+}
+
+/// The frame with the worst value of a measure.
 const FrameComparison& worst_in(const CompareReport& report, const Measure& measure) {
-  return *std::ranges::max_element(report.frames, {}, [&](const auto& frame) {
-    const double value = measure.of(frame);
-    return std::isnan(value) ? std::numeric_limits<double>::infinity() : measure.badness(value);
-  });
+  return *std::ranges::max_element(report.frames, {},
+                                   [&](const auto& frame) { return badness_of(measure, measure.of(frame)); });
 }
 
 Json part_json(const PartErrors& part) { return {{"count", part.count}, {"rmse", part.rmse}, {"bias", part.bias}}; }
@@ -99,8 +108,13 @@ void add_measures(Json& json, const FrameComparison& frame) {
   for (const auto& measure : kMeasures) json[measure.name] = number(measure.of(frame));
 }
 
-Json frame_json(const FrameComparison& frame) {
-  Json json = {{"frame", frame.frame}, {"result", frame.result}, {"reference", frame.reference}};
+/// A frame's number, or in a list its name.
+Json id_of(const FrameComparison& frame, const CompareReport& report) {
+  return report.is_list ? Json(frame.name) : Json(frame.frame);
+}
+
+Json frame_json(const FrameComparison& frame, const CompareReport& report) {
+  Json json = {{"frame", id_of(frame, report)}, {"result", frame.result}, {"reference", frame.reference}};
   add_measures(json, frame);
   add_parts(json, frame);
   return json;
@@ -136,114 +150,244 @@ std::pair<std::string, std::string> names_of(const CompareReport& report) {
   return {file(report.result), file(report.reference)};
 }
 
+Json limits_json(const std::vector<CheckedLimit>& limits) {
+  Json list = Json::array();
+  for (const auto& limit : limits)
+    list.push_back({{"option", limit.option},
+                    {"limit", limit.limit},
+                    {"value", number(limit.value)},
+                    {"frame", limit.frame},
+                    {"holds", limit.broken.empty()}});
+  return list;
+}
+
 double share_of_holes(const FrameComparison& frame) {
   return double(frame.holes) / double(frame.count + frame.excluded);
 }
 
-struct Limit {
+struct LimitOption {
   const char* measure;
   const char* option;
-  std::optional<double> value;
+  std::optional<double> CompareLimits::*value;
 };
+constexpr std::array kLimits = {LimitOption{"rmse", "--max-rmse", &CompareLimits::max_rmse},
+                                LimitOption{"p99", "--max-p99", &CompareLimits::max_p99},
+                                LimitOption{"ssim", "--min-ssim", &CompareLimits::min_ssim},
+                                LimitOption{"flip", "--max-flip", &CompareLimits::max_flip},
+                                LimitOption{"bias", "--max-bias", &CompareLimits::max_bias},
+                                LimitOption{"grain", "--max-grain", &CompareLimits::max_grain}};
 
-}  // namespace
+std::string place_of(const FrameComparison& frame, bool is_one_of_many) {
+  return is_one_of_many ? fmt::format("frame {}: ", frame.name) : "";
+}
 
-std::string holes_beyond(const CompareReport& report, double most) {
-  const FrameComparison& frame = *std::ranges::max_element(report.frames, {}, share_of_holes);
+/// The holes of a frame that has more than the share; "" if it has not.
+std::string holes_in(const FrameComparison& frame, double most, bool is_one_of_many) {
   if (share_of_holes(frame) <= most) return "";
   const HoleAt& hole = *frame.first_hole;
   return fmt::format(
       "{}{} of {} pixels are NaN or infinite in one file only, the first in the {} at x {}, y {}, channel {}",
-      report.is_sequence ? fmt::format("frame {}: ", frame.frame) : "", frame.holes, frame.count + frame.excluded,
-      file_of(hole), hole.x, hole.y, hole.channel);
+      place_of(frame, is_one_of_many), frame.holes, frame.count + frame.excluded, file_of(hole), hole.x, hole.y,
+      hole.channel);
 }
 
-BrokenLimits broken_limits(const CompareReport& report, const CompareLimits& limits) {
-  BrokenLimits broken;
-  const double most_holes = limits.max_excluded.value_or(0);
-  if (const std::string holes = holes_beyond(report, most_holes); !holes.empty())
-    broken.sentences.push_back(fmt::format("{}, and --max-excluded is {:.6g}", holes, most_holes));
-  const std::array all{Limit{"rmse", "--max-rmse", limits.max_rmse}, Limit{"p99", "--max-p99", limits.max_p99},
-                       Limit{"ssim", "--min-ssim", limits.min_ssim}, Limit{"flip", "--max-flip", limits.max_flip},
-                       Limit{"bias", "--max-bias", limits.max_bias}, Limit{"grain", "--max-grain", limits.max_grain}};
-  for (const auto& limit : all) {
-    if (!limit.value) continue;
-    const Measure& measure =
-        *std::ranges::find_if(kMeasures, [&](const auto& m) { return std::string_view(m.name) == limit.measure; });
-    const FrameComparison& worst = worst_in(report, measure);
-    const double value = measure.of(worst);
-    if (measure.badness(value) <= measure.badness(*limit.value)) continue;
-    const std::string where = report.is_sequence ? fmt::format("frame {}: ", worst.frame) : "";
-    const std::string what = std::isnan(value)
-                                 ? fmt::format("cannot be measured in {}: {}", worst.result, measure.why_not)
-                                 : fmt::format("is {:.6g}", value);
-    broken.sentences.push_back(
-        fmt::format("{}{} {}, and {} is {:.6g}", where, limit.measure, what, limit.option, *limit.value));
-    if (std::isnan(value) && measure.kind_without == ErrorKind::input) broken.kind = ErrorKind::input;
+CheckedLimit checked_holes(const FrameComparison& frame, bool is_one_of_many) {
+  const double most = frame.limits.max_excluded.value_or(0);
+  const std::string holes = holes_in(frame, most, is_one_of_many);
+  return {"--max-excluded", most, share_of_holes(frame), frame.name,
+          holes.empty() ? "" : fmt::format("{}, and --max-excluded is {:.6g}", holes, most)};
+}
+
+/// The limit of a frame that has it.
+CheckedLimit checked(const FrameComparison& frame, const LimitOption& option, bool is_one_of_many) {
+  const Measure& measure = measure_of(option.measure);
+  const double limit = *(frame.limits.*option.value), value = measure.of(frame);
+  CheckedLimit check{option.option, limit, value, frame.name, ""};
+  if (measure.badness(value) <= measure.badness(limit)) return check;
+  const std::string what = std::isnan(value)
+                               ? fmt::format("cannot be measured in {}: {}", frame.result, measure.why_not)
+                               : fmt::format("is {:.6g}", value);
+  check.broken = fmt::format("{}{} {}, and {} is {:.6g}", place_of(frame, is_one_of_many), option.measure, what,
+                             option.option, limit);
+  if (std::isnan(value)) check.kind = measure.kind_without;
+  return check;
+}
+
+/// Checks each limit where it is broken most, or else nearest to it.
+std::vector<CheckedLimit> checked_limits(std::span<const FrameComparison> frames, bool is_many) {
+  std::vector<CheckedLimit> checks;
+  const auto excess = [](const FrameComparison& frame) {
+    return share_of_holes(frame) - frame.limits.max_excluded.value_or(0);
+  };
+  const FrameComparison& holes = *std::ranges::max_element(frames, {}, excess);
+  if (excess(holes) > 0 || holes.limits.max_excluded) checks.push_back(checked_holes(holes, is_many));
+  for (const auto& option : kLimits) {
+    const Measure& measure = measure_of(option.measure);
+    const auto badness = [&](const FrameComparison& frame) {
+      const auto limit = frame.limits.*option.value;
+      return limit ? badness_of(measure, measure.of(frame)) - measure.badness(*limit)
+                   : -std::numeric_limits<double>::infinity();
+    };
+    const FrameComparison& worst = *std::ranges::max_element(frames, {}, badness);
+    if (worst.limits.*option.value) checks.push_back(checked(worst, option, is_many));
   }
-  return broken;
+  return checks;
 }
 
-std::string compare_json(const CompareReport& report, const std::vector<std::string>& broken) {
+}  // namespace
+
+std::string holes_beyond(const CompareReport& report, double most) {
+  return holes_in(*std::ranges::max_element(report.frames, {}, share_of_holes), most, report.has_several());
+}
+
+bool has_limits(const CompareReport& report) {
+  return std::ranges::any_of(report.frames, [](const auto& frame) { return frame.limits != CompareLimits{}; });
+}
+
+CompareLimits with_limits(CompareLimits limits, const std::map<std::string, double>& more) {
+  for (const auto& [name, value] : more) {
+    if (name == "max-excluded") limits.max_excluded = value;
+    for (const auto& option : kLimits)
+      if ("--" + name == option.option) limits.*option.value = value;
+  }
+  return limits;
+}
+
+std::vector<CheckedLimit> checked_limits(const CompareReport& report) {
+  return checked_limits(report.frames, report.has_several());
+}
+
+bool is_broken(const FrameComparison& frame) { return !broken_limits(checked_limits({&frame, 1}, false)).empty(); }
+
+std::vector<std::string> broken_limits(const std::vector<CheckedLimit>& limits) {
+  std::vector<std::string> sentences;
+  for (const auto& limit : limits)
+    if (!limit.broken.empty()) sentences.push_back(limit.broken);
+  return sentences;
+}
+
+std::string compare_json(const CompareReport& report, const std::vector<CheckedLimit>& limits) {
   Json json = {{"result", report.result}, {"reference", report.reference}, {"channels", report.frames[0].channels}};
-  if (report.is_sequence) {
+  if (report.has_several()) {
     add_worst_measures(json, report);
     const auto& worst = worst_frame(report);
-    json["worst"] = {{"frame", worst.frame}, {"rmse", worst.errors.rmse}};
+    json["worst"] = {{"frame", id_of(worst, report)}, {"rmse", worst.errors.rmse}};
     json["mean"] = mean_json(report);
-    json["flicker"] = number(report.flicker);
+    if (report.is_sequence) json["flicker"] = number(report.flicker);
   } else {
     add_measures(json, report.frames[0]);
     add_parts(json, report.frames[0]);
   }
+  const auto broken = broken_limits(limits);
   json["pass"] = broken.empty();
   json["broken"] = broken;
-  if (report.is_sequence)
-    for (const auto& frame : report.frames) json["frames"].push_back(frame_json(frame));
+  json["limits"] = limits_json(limits);
+  if (report.has_several())
+    for (const auto& frame : report.frames) json["frames"].push_back(frame_json(frame, report));
   return json_text(json, 1);
 }
 
-std::string compare_page(const CompareReport& report) {
+namespace {
+
+Json row_json(const FrameComparison& frame, const std::string& candidate) {
+  Json row = {{"frame", frame.name}, {"candidate", candidate}};
+  for (const auto& measure : kMeasures) row[measure.name] = number(measure.of(frame));
+  return row;
+}
+
+Json image_json(const FrameComparison& frame, const std::string& candidate) {
+  return {{"frame", frame.name},
+          {"candidate", candidate},
+          {"width", frame.width},
+          {"height", frame.height},
+          {"result", frame.pictures->result},
+          {"truth", frame.pictures->reference},
+          {"error", url_of_png(frame.error_png)},
+          {"full", frame.error_scale}};
+}
+
+Json sequence_json(const CompareReport& report) {
+  if (!report.has_several()) return nullptr;
+  const FrameComparison& worst = worst_frame(report);
+  Json json = {
+      {"worst_frame", worst.name}, {"worst_rmse", number(worst.errors.rmse)}, {"mean_rmse", mean_json(report)["rmse"]}};
+  if (report.is_sequence) json["flicker"] = number(report.flicker);
+  return json;
+}
+
+Json verdict_json(const std::vector<CheckedLimit>& limits) {
+  if (limits.empty()) return nullptr;
+  return {{"pass", broken_limits(limits).empty()}, {"limits", limits_json(limits)}};
+}
+
+}  // namespace
+
+std::string compare_page(const CompareReport& report, const std::vector<CheckedLimit>& limits) {
   const auto [name, reference] = names_of(report);
-  Json candidate = {{"name", name}, {"settings", "against " + report.reference}, {"ms", nullptr}, {"ms_min", nullptr}};
+  Json candidate = {{"name", name}, {"settings", "against " + report.reference}};
   candidate.update(mean_json(report));
   Json rows = Json::array(), images = Json::array();
   for (const auto& frame : report.frames) {
-    const std::string label =
-        report.is_sequence ? std::to_string(frame.frame) : std::filesystem::path(frame.reference).filename().string();
-    Json row = {{"frame", label},
-                {"candidate", name},
-                {"ms", nullptr},
-                {"ms_min", nullptr},
-                {"estimator_rmse", nullptr},
-                {"geometry_rmse", nullptr},
-                {"samples_per_pixel", nullptr}};
-    for (const auto& measure : kMeasures) row[measure.name] = number(measure.of(frame));
-    rows.push_back(std::move(row));
-    if (frame.pictures)
-      images.push_back({{"frame", label},
-                        {"candidate", name},
-                        {"width", frame.width},
-                        {"height", frame.height},
-                        {"result", frame.pictures->result},
-                        {"truth", frame.pictures->reference},
-                        {"error", frame.pictures->error}});
+    rows.push_back(row_json(frame, name));
+    if (frame.pictures) images.push_back(image_json(frame, name));
   }
-  const FrameComparison& worst = worst_frame(report);
-  const Json sequence = {{"worst_frame", std::to_string(worst.frame)},
-                         {"worst_rmse", number(worst.errors.rmse)},
-                         {"mean_rmse", mean_json(report)["rmse"]},
-                         {"flicker", number(report.flicker)}};
-  const std::string title = name + " against " + reference;
-  return report_page(json_text({{"title", title},
+  return report_page(json_text({{"title", name + " against " + reference},
                                 {"kind", "compare"},
                                 {"device", nullptr},
                                 {"yardstick_ms", nullptr},
+                                {"verdict", verdict_json(limits)},
                                 {"candidates", Json::array({candidate})},
                                 {"rows", rows},
-                                {"sequence", report.is_sequence ? sequence : Json(nullptr)},
+                                {"sequence", sequence_json(report)},
                                 {"images", images}},
                                1));
+}
+
+// JUnit.
+
+namespace {
+
+/// Text within XML, which has no control characters.
+std::string xml_text(const std::string& text) {
+  std::string escaped;
+  for (const char c : printable(text)) {
+    switch (c) {
+      case '&': escaped += "&amp;"; break;
+      case '<': escaped += "&lt;"; break;
+      case '>': escaped += "&gt;"; break;
+      case '"': escaped += "&quot;"; break;
+      default: escaped += c;
+    }
+  }
+  return escaped;
+}
+
+}  // namespace
+
+std::string failure_path(const std::string& junit, const std::string& frame) {
+  std::string name = frame;
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_'; }, '_');
+  return std::filesystem::path(junit).replace_extension("").string() + "." + name + ".error.png";
+}
+
+std::string compare_junit(const CompareReport& report, const std::string& file) {
+  std::string cases;
+  int failures = 0;
+  for (const auto& frame : report.frames) {
+    cases += fmt::format("  <testcase classname=\"alcove compare\" name=\"{}\">", xml_text(frame.name));
+    if (const auto broken = broken_limits(checked_limits({&frame, 1}, false)); !broken.empty()) {
+      failures++;
+      cases +=
+          fmt::format("\n    <failure message=\"{}\"/>\n    <system-out>[[ATTACHMENT|{}]]</system-out>\n  ",
+                      xml_text(fmt::format("{}", fmt::join(broken, "; "))), xml_text(failure_path(file, frame.name)));
+    }
+    cases += "</testcase>\n";
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"{} against {}\" tests=\"{}\" failures=\"{}\">\n{}"
+      "</testsuite>\n",
+      xml_text(report.result), xml_text(report.reference), report.frames.size(), failures, cases);
 }
 
 }  // namespace alcove

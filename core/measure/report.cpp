@@ -29,10 +29,12 @@ std::string base64(std::span<const char> bytes) {
 }
 
 std::string url_of(int width, int height, int channels, std::span<const float> pixels) {
-  return "data:image/png;base64," + base64(encode_png("picture", width, height, channels, pixels));
+  return url_of_png(encode_png("picture", width, height, channels, pixels));
 }
 
 }  // namespace
+
+std::string url_of_png(std::span<const char> png) { return "data:image/png;base64," + base64(png); }
 
 std::string report_page(const std::string& json) {
   const std::string_view page = report_template();
@@ -59,11 +61,17 @@ std::string grey_picture(int width, int height, std::span<const float> values) {
 
 std::string color_picture(int width, int height, std::span<const float> rgb) { return url_of(width, height, 3, rgb); }
 
-std::string error_picture(int width, int height, std::span<const float> result, std::span<const float> reference) {
+std::string error_picture(int width, int height, std::span<const float> result, std::span<const float> reference,
+                          float full) {
+  return url_of_png(error_png(width, height, result, reference, full));
+}
+
+std::string error_png(int width, int height, std::span<const float> result, std::span<const float> reference,
+                      float full) {
   std::vector<float> rgb;
   rgb.reserve(3 * result.size());
   for (std::size_t i = 0; i < result.size(); i++) {
-    const float error = (result[i] - reference[i]) / kFullColorError;
+    const float error = (result[i] - reference[i]) / full;
     const float size = std::min(1.0f, std::abs(error));
     if (!std::isfinite(error)) rgb.insert(rgb.end(), {0.5f, 0.5f, 0.5f});
     // a blue of (0.13, 0.4, 0.67) at full size
@@ -73,7 +81,8 @@ std::string error_picture(int width, int height, std::span<const float> result, 
     else
       rgb.insert(rgb.end(), {1 - 0.3f * size, 1 - 0.91f * size, 1 - 0.83f * size});
   }
-  return color_picture(width, height, rgb);
+  const auto bytes = encode_png("picture", width, height, 3, rgb);
+  return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace alcove

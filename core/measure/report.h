@@ -30,10 +30,13 @@ namespace alcove {
 ///                   "result": PICTURE, "truth": PICTURE, "error": PICTURE or null}. PICTURE is a
 ///                   "data:image/png;base64,..." URL; all three are of one size. "truth" may be null or absent where
 ///                   another image of the same frame has it, so that a frame's truth is stored once. "error" is
-///                   result - truth in the colours of error_picture(), which the page's legend explains. "composite"
-///                   is optional: a PICTURE or null.
-///   "sequence"      optional, or null: {"worst_frame": string, "worst_rmse": number, "mean_rmse": number, "flicker":
-///                   number or null}: measures of a sequence as a whole, shown above the table
+///                   result - truth in the colours of error_picture(), which the page's legend explains, with an
+///                   error of "full" in the strongest, else of kFullColorError. "composite" is optional: a PICTURE or
+///                   null.
+///   "verdict"       optional, or null: {"pass": bool, "limits": list of {"option": string, "limit": number, "value":
+///                   number or null, "frame": string, "holds": bool}}: shown above all
+///   "sequence"      optional, or null: {"worst_frame": string, "worst_rmse": number, "mean_rmse": number, and of
+///                   frames that follow each other "flicker": number or null}: measures as a whole, above the table
 ///   "frames"        optional list of {"name": string, "yardstick_ms": number or null}: a frame's own yardstick, where
 ///                   frames differ in size; "yardstick_ms" above is then their mean. For the circle of a radius around
 ///                   the pointer it adds "scale": {"depth": PICTURE, 0 for sky, else 1 + 254 log(z / near) / log(far /
@@ -44,15 +47,22 @@ std::string report_page(const std::string& json);
 
 // Pictures for the page: planes as "data:image/png;base64,..." URLs.
 
-/// The error with full colour: blue if the result is too dark, red if it is too bright. An error of 0 is white.
+/// The error with full colour where many pictures share a scale: blue if the result is too dark, red if it is too
+/// bright. An error of 0 is white.
 inline constexpr float kFullColorError = 0.25f;
 
 /// Shows width x height values in [0, 1] as grey, unconverted, since AO is data.
 std::string grey_picture(int width, int height, std::span<const float> values);
 /// Shows interleaved r, g, b display values.
 std::string color_picture(int width, int height, std::span<const float> rgb);
-/// Shows result - reference in colours; grey if the difference is not finite.
-std::string error_picture(int width, int height, std::span<const float> result, std::span<const float> reference);
+/// Shows result - reference in colours, an error of `full` in the strongest; grey if the difference is not finite.
+std::string error_picture(int width, int height, std::span<const float> result, std::span<const float> reference,
+                          float full = kFullColorError);
+/// The same as the bytes of a PNG.
+std::string error_png(int width, int height, std::span<const float> result, std::span<const float> reference,
+                      float full);
+/// The URL of a PNG with these bytes.
+std::string url_of_png(std::span<const char> png);
 
 /// The page with the mark "{{report.json}}" in place of the JSON; cmake/embed_report.cmake checks it.
 std::string_view report_template();

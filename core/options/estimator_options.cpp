@@ -218,6 +218,7 @@ void add_shape_rows(std::vector<SettingRow>& rows) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
   pixels.number("--intensity", &S::intensity, "", between(0, 100), "factor on the occlusion");
   pixels.number("power", &S::power, "", above_to(0, 100), "exponent of the visibility");
+  pixels.number("least", &S::least, "", between(0, 1), "the darkest that AO gets, in composites too");
   pixels.number("fade-start", &S::fade_start, "scene units", between(0, 1e30), "depth where the AO begins to fade to 1")
       .idle([](const Settings& all) { return unless_given(all.estimator.fade_end.has_value(), "--set fade-end"); });
   pixels.number("fade-end", &S::fade_end, "scene units", above_to(0, 1e30), "depth from which the AO is 1")

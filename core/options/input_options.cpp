@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/base/note.h"
 #include "core/base/text.h"
 #include "core/frame/camera/camera.h"
 #include "core/frame/find/input_rules.h"
@@ -58,6 +60,18 @@ bool read_flips(const std::string& given, NormalFlips& flips) {
     flip = true;
   }
   flips = read;
+  return true;
+}
+
+/// Reads codes of warnings, with commas.
+bool read_allowed(InputSettings& settings, const std::string& text) {
+  std::vector<std::string> codes;
+  for (const auto& facts : note_table())
+    if (facts.is_warning) codes.emplace_back(facts.name);
+  for (const auto& code : split(text))
+    if (std::ranges::find(codes, code) == codes.end())
+      fail(ErrorKind::usage, "{} is no code of a warning{}", visible(code), suggestion(code, codes));
+  settings.allow = text;
   return true;
 }
 
@@ -121,7 +135,7 @@ void add_file_rows(std::vector<SettingRow>& rows) {
   const auto file = [&](const char* name, std::string S::*path, const char* sentence) -> SettingRow& {
     return inputs.text(name, path, "FILE", sentence).names(FileRole::input);
   };
-  file("--depth", &S::depth, "of the depth alone: EXR, DDS or TIFF").is_common = true;
+  file("--depth", &S::depth, "of the depth alone: EXR, DDS, PNG of 16 bits, TIFF").is_common = true;
   file("--position", &S::position, "an EXR of the positions, instead of a depth");
   inputs.text("--normal", &S::normal, "FILE|none", "of the normals alone: EXR, DDS, TIFF or PNG; none: made from depth")
       .names(FileRole::input, [](const std::string& text) { return lower_case(text) != "none"; })
@@ -158,7 +172,7 @@ void add_channel_rows(std::vector<SettingRow>& rows) {
       .idle(unless_composite);
   pixels
       .text("ambient", &S::ambient, "LIGHT[*LAYER][*NUMBER],...",
-            "layers of the beauty's file which alone AO dims, each by that much, 0 to 1")
+            "layers of the beauty's file which alone AO dims, each by that much; beauty: all of it")
       .idle(unless_composite);
   pixels.text("material-ao-channel", &S::material_ao_channel, "NAME", "of the materials' AO, in its file or INPUT");
   pixels.text("albedo-channels", &S::albedo_channels, "LAYER|R,G,B", "the diffuse colour's layer, or its channels")
@@ -217,7 +231,7 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
       .idle(unless_between_planes);
   pixels
       .choice("device-range", within(&S::depth_range, &DepthRange::device),
-              "of the depth between the planes; -1..1: as OpenGL has it")
+              "of the depth between the planes; -1..1: as OpenGL has it; auto: 0..1")
       .idle([](const Settings& all) { return unless_depth(all, {DepthKind::device}); });
   pixels
       .number("log-constant", within(&S::depth_range, &DepthRange::log_constant), "1 / file units", above(0),
@@ -251,13 +265,8 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
       .flag("--strict", &S::strict, "guesses and warnings are errors");
   OptionGroup(rows, "Input", Effect::none, &Settings::input)
       .own(
-          {"allow", "normals-disagree", "", "", "faults that are no errors: normals that mostly disagree with depth"},
-          [](const S& s) { return s.allow; },
-          [](S& s, const std::string& text) {
-            s.allow = text;
-            return std::ranges::all_of(split(text), [](const std::string& code) { return code == "normals-disagree"; });
-          },
-          "is no list of codes; it takes normals-disagree");
+          {"allow", "CODE,...", "", "", "warnings that --strict takes; normals-disagree: most of them may disagree"},
+          [](const S& s) { return s.allow; }, read_allowed);
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
       .text("--camera", &S::camera, "FILE.json|.chan", "the camera; see docs/inputs.md")
       .names(FileRole::input)
@@ -268,7 +277,9 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
       .others_idle(
           [](const Settings& all) { return unless_given(is_chan_file(all.input.camera), "--camera FILE.chan"); });
   OptionGroup pixels(rows, "Input", Effect::pixels, &Settings::input, true);
-  pixels.number("--fov", &S::fov, "degrees", strictly_between(0, 180), "horizontal field of view").is_common = true;
+  pixels.number("--fov", &S::fov, "degrees", strictly_between(0, 180), "field of view over the width").is_common = true;
+  pixels.number("--vertical-fov", &S::vertical_fov, "degrees", strictly_between(0, 180),
+                "over the height, as Unity, Godot and glTF have it");
   pixels.number("--focal", &S::focal, "mm", above(0), "focal length").idle([](const Settings& all) {
     return unless_given(all.input.aperture.has_value(), "--aperture: add it, the film back's width in mm");
   });

@@ -181,8 +181,9 @@ const std::vector<Rivals>& rivals() {
   static const std::vector<Rivals> kRivals{
       {{"depth"}, {"position"}, "both say how far away surfaces are"},
       {{"depth-channel"}, {"position", "position-channels"}, "depth is read from one of them"},
-      {{"camera"}, {"fov", "focal", "aperture", "ortho-width"}, kCamera},
-      {{"fov"}, {"focal", "aperture", "ortho-width"}, kCamera},
+      {{"camera"}, {"fov", "vertical-fov", "focal", "aperture", "ortho-width"}, kCamera},
+      {{"fov"}, {"vertical-fov", "focal", "aperture", "ortho-width"}, kCamera},
+      {{"vertical-fov"}, {"focal", "aperture", "ortho-width"}, kCamera},
       {{"focal", "aperture"}, {"ortho-width"}, kCamera},
       {{"occluders"}, {"ignore"}, "each says what blocks"},
       {{"occluders", "ignore"},

@@ -212,10 +212,11 @@ Notes FrameTally::notes_on(const FrameSource& source, const InputSettings& setti
     notes.push_back(
         {NoteCode::no_normals,
          "there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)"});
-  if (!source.channels[RawPlane::beauty].empty() && source.channels[RawPlane::indirect].empty())
+  if (!source.channels[RawPlane::beauty].empty() && source.channels[RawPlane::indirect].empty() &&
+      settings.ambient.empty())
     notes.push_back({NoteCode::no_indirect_light,
                      "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims "
-                     "direct light too"});
+                     "direct light too; --set ambient names its ambient light, or beauty for all of it"});
   return notes;
 }
 

@@ -316,11 +316,12 @@ int frame_number_of(const std::string& path) { return frame_number_in(path).numb
 bool fails_on_warnings(const Settings& settings) { return settings.frames.warnings_as_errors || settings.input.strict; }
 
 void refuse_warnings(const Notes& notes, const Settings& settings, const std::string& file) {
-  const Notes warnings = warnings_of(notes);
+  Notes warnings = warnings_of(notes);
+  std::erase_if(warnings, [&](const Note& note) { return is_listed(note.code, settings.input.allow); });
   if (warnings.empty() || !fails_on_warnings(settings)) return;
   std::string text;
   for (const auto& note : warnings) text += (text.empty() ? "" : "; ") + line_of(note, text.empty() ? file : "");
-  fail(ErrorKind::input, "{}: an error by {}", text,
+  fail(ErrorKind::input, "{}: an error by {}; --set allow=CODE,... takes what is in brackets", text,
        settings.frames.warnings_as_errors ? "--set warnings-as-errors" : "--strict");
 }
 

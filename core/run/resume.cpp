@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "core/base/text.h"
 #include "core/base/version.h"
@@ -118,6 +119,15 @@ InputIdentities::Identity InputIdentities::all_of(int frame) {
 
 namespace {
 
+/// Whether the codes of all warnings in a header are among these, which are separated by commas.
+bool are_allowed(const std::string& header_notes, const std::string& codes) {
+  const auto allowed = split(codes);
+  std::istringstream lines(header_notes);
+  for (std::string line; std::getline(lines, line);)
+    if (std::ranges::find(allowed, line.substr(0, line.find(':'))) == allowed.end()) return false;
+  return true;
+}
+
 /// Why an output is made again; "" if it is not there. Nothing if it is whole, no older than the newest input, and made
 /// with the options of this digest from inputs of this identity. Reads headers and the table of chunks; never fails.
 std::optional<std::string> reason_to_make(const NamedFile& output, const Settings& frame,
@@ -141,7 +151,8 @@ std::optional<std::string> reason_to_make(const NamedFile& output, const Setting
            (before.empty() || before == now ? "" : fmt::format(", with the radius {} and not {}", before, now));
   }
   if (attribute("alcove/inputs") != inputs) return "an input has changed";
-  if (fails_on_warnings(frame) && attribute(kNotesAttribute)) return "warnings count as errors, and they have some";
+  if (fails_on_warnings(frame) && !are_allowed(attribute(kNotesAttribute).value_or(""), frame.input.allow))
+    return "warnings count as errors, and they have some";
   return std::nullopt;
 }
 

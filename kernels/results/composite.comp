@@ -6,10 +6,11 @@
 // Out: colour; alpha as it was.
 //
 // beauty - D o (1 - tint), where D is the sum of weight x light x colour, or the beauty, and o = mix alpha t
-// min(gain (1 - ao), 1) is the occlusion. A pixel at an edge is part background, which the AO of the surface must not
-// dim: so alpha. The difference form keeps all other light as it is, even where the passes do not sum to the beauty
-// exactly. t = exp(-density distance) is how much of the surface's light comes through the fog that the beauty shows
-// (Beer and Lambert's law): the fog before a surface is not in its corners.
+// min(gain (1 - ao), 1 - least) is the occlusion, or 1 - ao where a matte's outside is darker than `least`. A pixel at
+// an edge is part background, which the AO of the surface must not dim: so alpha. The difference form keeps all other
+// light as it is, even where the passes do not sum to the beauty exactly. t = exp(-density distance) is how much of the
+// surface's light comes through the fog that the beauty shows (Beer and Lambert's law): the fog before a surface is not
+// in its corners.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/results/results.h"
@@ -66,7 +67,8 @@ void main() {
     const float color = sane(beauty[i]);
     const float ambient = ambient_at(index, c, plane, color);
     const float visible = ao[params.has_color != 0 ? i : index];
-    const float occlusion = params.mix * clamp(params.gain * (1.0 - visible), 0.0, 1.0);
+    const float most = 1.0 - min(params.least, visible);
+    const float occlusion = params.mix * clamp(params.gain * (1.0 - visible), 0.0, most);
     result[i] = sane(color - ambient * surface * occlusion * (1.0 - params.tint[c]));
   }
   if (broken) atomicAdd(counts.repaired_beauty, 1u);

@@ -13,8 +13,9 @@ ALCOVE_CONSTANT uint kShapeByIntensity = 1;  // what is not asked for leaves eve
 ALCOVE_CONSTANT uint kShapeByPower = 2;
 ALCOVE_CONSTANT uint kShapeByFade = 4;
 ALCOVE_CONSTANT uint kShapeByMaterial = 8;
-ALCOVE_CONSTANT uint kShapeByMatte = 16;
-ALCOVE_CONSTANT uint kShapeCountsRepaired = 32;  // else the frame's material AO has been counted
+ALCOVE_CONSTANT uint kShapeByLeast = 16;
+ALCOVE_CONSTANT uint kShapeByMatte = 32;
+ALCOVE_CONSTANT uint kShapeCountsRepaired = 64;  // else the frame's material AO has been counted
 
 struct ShapeParams {
   ivec2 size;        // px
@@ -22,6 +23,7 @@ struct ShapeParams {
   float power;       // exponent of the visibility, > 0
   float fade_start;  // scene units of planar depth: where the AO begins to fade
   float fade_end;    // scene units, > fade_start: where it is 1
+  float least;       // the lowest visibility but of the matte, 0 to 1
   float outside;     // visibility where the matte is 0
   uint planes;       // how many
 };
@@ -65,6 +67,7 @@ struct CompositeParams {
   uint has_color;     // 1: the visibility has a plane per colour
   float fog_density;  // of the beauty's fog, 1 / scene units, >= 0; 0: none
   float gain;         // factor on the occlusion, >= 0
+  float least;        // visibility that the gain takes nothing below, 0 to 1
   float mix;          // of the composite and the beauty, 0 to 1
   vec3 tint;          // what occlusion makes of white light, 0 to 1
 };

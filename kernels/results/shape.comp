@@ -1,5 +1,6 @@
-// Shapes the visibility as the user asks: o + c (m (v + (1 - v) f) - o), with v = max(0, 1 - intensity (1 - ao)) ^ p, f
-// how far the distance fade has come, from 0 to 1, m the material's own AO, c the matte and o what is outside of it.
+// Shapes the visibility as the user asks: o + c (max(m (v + (1 - v) f), l) - o), with v = max(0, 1 - intensity (1 -
+// ao)) ^ p, f how far the distance fade has come, from 0 to 1, m the material's own AO, l the least AO, c the matte and
+// o what is outside of it.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planes of visibility, each by itself; planar depth and material AO where they are asked for.
@@ -37,6 +38,7 @@ float shaped_of(float value, int index) {
     const float own = material[index];
     if (is_finite(own)) value *= clamp(own, 0.0, 1.0);
   }
+  if (shapes_by(kShapeByLeast)) value = max(value, params.least);
   if (shapes_by(kShapeByMatte) && matte[index] < 1.0) value = params.outside + matte[index] * (value - params.outside);
   return value;
 }

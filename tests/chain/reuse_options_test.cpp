@@ -72,6 +72,7 @@ const std::map<std::string, Change> kChanges{
     {"camera", {"", "--camera C", "--camera D"}},
     {"chan-rotation", {"--camera K --aov ao,normal", "--chan-rotation zxy", "--chan-rotation xyz"}},
     {"fov", {"", "--fov 50", "--fov 60"}},
+    {"vertical-fov", {"", "--vertical-fov 50", "--vertical-fov 60"}},
     {"focal", {"--aperture 36", "--focal 35", "--focal 50"}},
     {"aperture", {"--focal 35", "--aperture 36", "--aperture 24"}},
     {"ortho-width", {"", "--ortho-width 4", "--ortho-width 8"}},
@@ -189,7 +190,7 @@ class ReuseOfOptions : public CommandLine {
                           : word);
     }
     const auto says = [&](const char* option) { return more.find(option) != more.npos; };
-    if (!says("--camera") && !says("--fov") && !says("--focal") && !says("--ortho-width"))
+    if (!says("--camera") && !says("fov") && !says("--focal") && !says("--ortho-width"))
       words.insert(words.end(), {"--camera", file("C")});
     if (!says("--depth-channel") && !says("--position") && !says("--layer"))
       words.insert(words.end(), {"--depth-channel", "ViewLayer.Depth.Z"});

@@ -116,6 +116,38 @@ TEST(Shape, fade_is_of_the_screen_space_ao_alone) {
   for (std::size_t i = 0; i < result.size(); i++) ASSERT_EQ(result[i], is_sky(frame, i) ? 1.0f : 0.25f) << i;
 }
 
+TEST(Shape, least_is_the_lowest_value_whatever_else_darkens) {
+  const HostFrame frame = ball().frame;
+  EstimatorSettings settings;
+  settings.intensity = 1.5;
+  settings.power = 2;
+  const Planes ao = uneven_ao(frame.depth.size()), material(ao.size(), 0.5f);
+  const Planes without = shaped(frame, ao, settings, &material);
+  settings.least = 0.25;
+  const Planes result = shaped(frame, ao, settings, &material);
+  for (std::size_t i = 0; i < ao.size(); i++) ASSERT_EQ(result[i], std::max(0.25f, without[i])) << i;
+  EXPECT_EQ(std::ranges::min(without), 0.0f);
+}
+
+// Composite.
+
+/// A white beauty under this AO.
+Planes composed(const Planes& ao, double gain, double least) {
+  HostFrame frame = ball().frame;
+  return pass(frame, [&](const GBuffer& gbuffer, FrameInputs& inputs) -> gpu::Buffer& {
+    inputs[RawPlane::beauty] = &given("test beauty", Planes(3 * ao.size(), 1.0f));
+    return *composite(recorder(), gbuffer, &given("test ao", ao), inputs, {.gain = gain}, least);
+  });
+}
+
+TEST(Composite, gain_darkens_no_pixel_below_the_least_ao_but_one_that_is_darker_without_it) {
+  const Planes ao = uneven_ao(ball().frame.depth.size()), result = composed(ao, 3, 0.25);
+  for (std::size_t i = 0; i < result.size(); i++) {
+    const float visible = ao[i % ao.size()];
+    ASSERT_NEAR(result[i], std::max(1 - 3 * (1 - visible), std::min(visible, 0.25f)), 1e-6) << i;
+  }
+}
+
 // Multi-bounce.
 
 Planes bounced(const Planes& ao, double albedo, const Planes* colors = nullptr) {

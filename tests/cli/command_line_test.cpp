@@ -55,7 +55,7 @@ TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
   for (const char* text : {"=auto", "=1000000000", "=none", "=half", "--slices NUMBER=", "--seed NUMBER=0"})
     EXPECT_THAT(all, HasSubstr(text)) << "defaults";
   EXPECT_THAT(all, Not(HasSubstr("filter-width")));
-  EXPECT_LE(options_in(all), 76);
+  EXPECT_LE(options_in(all), 77);
   EXPECT_EQ(run_program({"compare", "--help"}).out, run_program({"compare", "--help-all"}).out);
 }
 
@@ -144,6 +144,8 @@ TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
       {"steps", {"0", "4097"}},
       {"falloff-start", {"1", "-0.1"}},
       {"power", {"0", "101"}},
+      {"least", {"-0.1", "1.1"}},
+      {"vertical-fov", {"0", "180"}},
       {"denoise-radius", {"0", "9", "1.5"}},
       {"denoise-kernel", {"1", "1,-1", "0,1", "1,,2", "1,x", "1,inf", "1,1,1,1,1,1,1,1,1,1"}},
       {"denoise-depth-sigma", {"-1", "101"}},

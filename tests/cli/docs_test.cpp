@@ -109,10 +109,20 @@ class Documents : public Sources {
       }
   }
 
+  /// A list of one frame, whose picture is approved.
+  void write_list() const {
+    fs::create_directory(folder / "approved");
+    const Finished made = run_here({"run", "frame.exr", "--radius", "0.5", "-o", "approved/hall.exr"});
+    ASSERT_EQ(made.code, 0) << made;
+    write_bytes(folder / "frames.toml",
+                "[[frame]]\nname = 'hall'\ninput = 'frame.exr'\nradius = 0.5\nreference = 'approved/hall.exr'\n");
+  }
+
   Finished run_here(const Names& words) const { return run_program(words, {.folder = folder.path()}); }
 };
 
 TEST_F(Documents, their_commands_run) {
+  write_list();
   int count = 0;
   for (const auto& page : pages())
     for (const auto& command : commands_of(page)) {

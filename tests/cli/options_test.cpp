@@ -42,7 +42,8 @@ class Options : public CommandLine {
       candidates.push_back(row.value.substr(at, bar - at));
       at = bar + 1;
     }
-    candidates.insert(candidates.end(), {"0.5", "0.05", "2", "5", "x", "1,2", "1,2,3,4", "0.1,0.2,0.3", "2/3", "4G"});
+    candidates.insert(candidates.end(),
+                      {"0.5", "0.05", "2", "5", "x", "1,2", "1,2,3,4", "0.1,0.2,0.3", "2/3", "4G", "half-depth"});
     for (const auto& candidate : candidates) {
       try {
         row.read(settings, {candidate});

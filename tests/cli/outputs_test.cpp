@@ -143,6 +143,38 @@ TEST_F(Composites, composite_without_parts_is_a_multiply_and_says_so) {
   EXPECT_THAT(how(), StartsWith("multiply"));
 }
 
+TEST_F(Composites, the_whole_beauty_that_is_asked_for_is_no_warning) {
+  input.erase(".Diff");
+  const Composite plain = compute();
+  const Options words{"--composite", composite, "--set", "composite-layers=rgba"};
+  EXPECT_THAT(done(words).err, HasSubstr("[no-indirect-light]"));
+  Options asked = words;
+  asked.insert(asked.end(), {"--set", "ambient=beauty"});
+  EXPECT_THAT(done(asked).err, Not(HasSubstr("[no-indirect-light]")));
+  EXPECT_THAT(how(), StartsWith("multiply"));
+  EXPECT_EQ(read_exr_image(composite).pixels, plain.result.pixels);
+  EXPECT_THAT(run({"--composite", composite, "--set", "ambient=R,G,B"}).err,
+              AllOf(HasSubstr("--set ambient takes a layer"), Not(HasSubstr("channel names"))));
+}
+
+TEST_F(Composites, frames_of_a_list_are_computed_by_their_own_camera_and_radius) {
+  compute();
+  const std::string list = folder / "list.toml", named = folder / "{name}.exr";
+  write_bytes(list, "[[frame]]\nname = 'wall'\ninput = '" + frame + "'\ncamera = '" + folder / "camera.json" +
+                        "'\nradius = 0.25\n");
+  const auto radius_of = [&](const Options& more) {
+    Options words{"run", list, "-o", named, "--source", "auto"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Finished finished = run_program(words);
+    EXPECT_EQ(finished.code, 0) << finished;
+    return text_in(read_header(folder / "wall.exr"), "alcove/radius");
+  };
+  EXPECT_EQ(radius_of({}), "0.25");
+  EXPECT_EQ(radius_of({"--radius", "0.5"}), "0.5") << "what is typed wins";
+  EXPECT_EQ(radius_of({"--fov", "60", "--normal", "none"}), "0.25");
+  test::expect_refused(run_program({"run", list, "-o", folder / "ao.exr"}), 2, {"--output", "{name}"});
+}
+
 TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {
   FrameFile beauty{kWallWindow, kWallWindow, 1, {}, {}, {{"grade", "none"}}};
   for (const std::string c : {"R", "G", "B", "A"}) beauty.planes[c] = input.planes.at("ViewLayer.Combined." + c);

@@ -26,11 +26,15 @@ def in_frames(**fields):
     return {"frames": [{"frame": 1, **changed(**fields)}]}
 
 
+MATRIX = [[1.4, 0, 0, 0], [0, 2.5, 0, 0], [0, 0, -1, -0.2], [0, 0, -1, 0]]
 TURNED = [[0, 1, 0, 3], [-1, 0, 0, 0], [0, 0, 1, 2.5], [0, 0, 0, 1]]
 CASES = {
     "the example": GOOD,
     "no matrix": changed(world_to_camera=None, normal_space=None),
     "no focal length": changed(fx=None),
+    "a matrix instead": changed(fx=None, fy=None, cx=None, cy=None, projection=MATRIX),
+    "a matrix beside some": changed(fx=None, projection=MATRIX),
+    "a word instead": changed(fx=None, fy=None, cx=None, cy=None, projection="perspective"),
     "a focal length of 0": changed(fx=0),
     "a text for a number": changed(fy="666"),
     "a principal point far away": changed(cx=-2000.5),

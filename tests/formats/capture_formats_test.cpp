@@ -34,6 +34,9 @@ TEST_F(Dds, of_every_format_is_read) {
   EXPECT_THAT(read(54, bytes_of<std::uint16_t>({0x3c00, 0xb800})).pixels, ElementsAre(1, -0.5f));
   EXPECT_THAT(read(46, words({0xab000000, 0xcdffffff})).pixels, ElementsAre(0, 1))
       << "the upper 8 bits are the stencil";
+  for (const std::uint32_t format : {19u, 20u, 21u})
+    EXPECT_THAT(read(format, words({0x3e800000, 0xffffffab, 0x3f800000, 0})).pixels, ElementsAre(0.25f, 1))
+        << "the second word is the stencil";
   const Image half =
       read(10, bytes_of<std::uint16_t>({0x3c00, 0x4000, 0x0001, 0x7bff, 0x7c00, 0xfc00, 0x8000, 0x3555}));
   EXPECT_THAT(half.names, ElementsAre("R", "G", "B", "A"));

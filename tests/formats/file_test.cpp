@@ -12,6 +12,7 @@
 #include "tests/support/exr_header.h"
 #include "tests/support/openexr.h"
 #include "tests/support/program.h"
+#include "tests/support/whole_picture.h"
 
 namespace alcove::file_test {
 namespace {
@@ -391,6 +392,60 @@ TEST_F(Files, a_png_holds_the_nearest_of_256_values) {
     EXPECT_EQ(std::vector<int>(pixels.begin(), pixels.end()), expected) << channels << " channels";
   }
   EXPECT_THAT(names_in(folder.path()), ElementsAre("a.png"));
+}
+
+TEST_F(Files, a_png_of_any_depth_and_any_channels_is_read_as_it_is_stored) {
+  constexpr int kWide = 5, kHigh = 4;
+  for (const auto& type : {OIIO::TypeUInt8, OIIO::TypeUInt16})
+    for (const int channels : {1, 2, 3, 4}) {
+      const std::string png = folder / "a.png";
+      OIIO::ImageSpec spec(kWide, kHigh, channels, type);
+      spec["oiio:UnassociatedAlpha"] = 1;
+      if (channels % 2 == 0) spec.alpha_channel = channels - 1;
+      const int most = type == OIIO::TypeUInt8 ? 255 : 65535;
+      std::vector<float> values(std::size_t(kWide * kHigh * channels));
+      for (std::size_t i = 0; i < values.size(); i++) values[i] = float(i * 7919 % std::size_t(most + 1)) / float(most);
+      const auto out = OIIO::ImageOutput::create(png);
+      ASSERT_TRUE(out->open(png, spec) && out->write_image(OIIO::TypeFloat, values.data()) && out->close());
+      const auto picture = open_png(png, "--normal");
+      EXPECT_EQ(picture->names.size(), std::size_t(channels));
+      EXPECT_EQ(picture->names[0], channels < 3 ? "Y" : "R");
+      std::vector<float> row(kWide);
+      const std::size_t last = std::size_t(channels) - 1;
+      const PictureReader::Channel channel{last, row.data()};
+      for (const int y : {2, 0, 3}) {
+        picture->read(y, 1, {&channel, 1});
+        for (std::size_t x = 0; x < kWide; x++)
+          ASSERT_EQ(row[x], values[(std::size_t(y) * kWide + x) * std::size_t(channels) + last]) << channels;
+      }
+    }
+}
+
+TEST_F(Files, a_png_that_is_damaged_is_refused_at_every_length) {
+  const std::string png = folder / "a.png";
+  write_png(png, 7, 5, 3, std::vector<float>(7 * 5 * 3, 0.3f));
+  const std::string bytes = read_bytes(png);
+  const std::size_t pixels_end = bytes.find("IEND") - 4;
+  for (std::size_t size = 8; size < pixels_end; size++) {
+    write_bytes(png, bytes.substr(0, size));
+    expect_error(ErrorKind::input, {"a.png", "--normal"}, [&] {
+      const auto picture = open_png(png, "--normal");
+      whole(*picture);
+    });
+  }
+}
+
+TEST_F(Files, an_interlaced_png_with_a_palette_is_read) {
+  // Red, blue; blue, red: 1 bit per pixel, by Adam7's passes, written with Python's zlib.
+  const std::string_view digits =
+      "89504e470d0a1a0a0000000d49484452000000020000000201030000013f7faff100000006504c5445ff00000000ff6c"
+      "a1fd8e0000000e49444154789c63606068606800000206010149a78c5f0000000049454e44ae426082";
+  std::string bytes;
+  for (std::size_t i = 0; i < digits.size(); i += 2)
+    bytes += char(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16));
+  write_bytes(folder / "a.png", bytes);
+  const auto picture = open_png(folder / "a.png", "--normal");
+  EXPECT_THAT(whole(*picture).pixels, ElementsAre(1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 1, 0));
 }
 
 TEST_F(Files, a_png_that_cannot_be_written_is_an_output_error) {

@@ -84,6 +84,53 @@ TEST_F(CameraFiles, clip_planes_and_the_conventions_of_games_are_read) {
     expect_field_refused(field, "nonsense");
 }
 
+/// A camera file of a game: no fx, fy, cx and cy, but a matrix.
+json game_camera(const json& projection) { return {{"resolution", {64, 36}}, {"projection", projection}}; }
+
+TEST_F(CameraFiles, the_matrix_of_a_game_is_its_lens) {
+  // A point at (x, y, -z) of OpenGL's camera space is seen at 32 + 32 (2 x / z - 0.25) and 18 - 18 (3 y / z - 0.5).
+  const json opengl = {{2, 0, 0.25, 0}, {0, 3, 0.5, 0}, {0, 0, -1, -0.2}, {0, 0, -1, 0}};
+  const Camera camera = read(game_camera(opengl));
+  expect_near(camera, 64, 54, 24, 27);
+  EXPECT_FALSE(camera.left_handed);
+  // Direct3D looks along +z, where the same shift has another sign.
+  json direct3d = opengl;
+  direct3d[0][2] = -0.25, direct3d[1][2] = -0.5, direct3d[3][2] = 1;
+  expect_near(read(game_camera(direct3d)), 64, 54, 24, 27);
+  EXPECT_TRUE(read(game_camera(direct3d)).left_handed);
+  // Vulkan's y points down the picture.
+  json vulkan = opengl;
+  vulkan[1] = {0, -3, -0.5, 0};
+  expect_near(read(game_camera(vulkan)), 64, 54, 24, 27);
+  const json parallel = {{0.5, 0, 0, 0.25}, {0, 1, 0, -0.5}, {0, 0, -0.1, 0}, {0, 0, 0, 1}};
+  expect_near(read(game_camera(parallel)), 16, 18, 40, 27);
+  EXPECT_TRUE(read(game_camera(parallel)).orthographic);
+}
+
+TEST_F(CameraFiles, what_the_file_says_wins_over_the_matrix_of_a_game) {
+  json fields = game_camera({{2, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 1, -0.2}, {0, 0, 1, 0}});
+  fields["camera_space"] = "right-handed";
+  EXPECT_FALSE(read(fields).left_handed);
+  fields["fx"] = fields["fy"] = 60, fields["cx"] = 32;
+  expect_refused(fields.dump(), "\"cy\" is missing");
+  fields["cy"] = 18;
+  expect_near(read(fields), 60, 60, 32, 18);
+}
+
+TEST_F(CameraFiles, a_matrix_that_is_no_upright_lens_is_refused) {
+  const json good = {{2, 0, 0.25, 0}, {0, 3, 0, 0}, {0, 0, -1, -0.2}, {0, 0, -1, 0}};
+  json transposed = good;
+  for (std::size_t i = 0; i < 4; i++)
+    for (std::size_t j = 0; j < 4; j++) transposed[i][j] = good[j][i];
+  expect_refused(game_camera(transposed).dump(), "transpose");
+  json turned = good, mirrored = good, rows = good, flat = good;
+  turned[0][1] = 1, mirrored[0][0] = -2, rows[3] = {0, 0, -1}, flat[0][0] = 1e-30;
+  expect_refused(game_camera(turned).dump(), "turns or mirrors");
+  expect_refused(game_camera(mirrored).dump(), "turns or mirrors");
+  expect_refused(game_camera(rows).dump(), "4 rows of 4");
+  expect_refused(game_camera(flat).dump(), "sees nothing");
+}
+
 TEST_F(CameraFiles, a_left_handed_camera_space_is_turned_to_look_along_minus_z) {
   json fields = wall_camera();
   fields["world_to_camera"] = {{1, 0, 0, 1}, {0, 1, 0, 2}, {0, 0, -1, 3}, {0, 0, 0, 1}};
@@ -205,6 +252,11 @@ InputSettings with_fov(double degrees) {
   settings.fov = degrees;
   return settings;
 }
+InputSettings with_vertical_fov(double degrees) {
+  InputSettings settings;
+  settings.vertical_fov = degrees;
+  return settings;
+}
 InputSettings with_lens(double focal, double aperture) {
   InputSettings settings;
   settings.focal = focal;
@@ -228,6 +280,7 @@ TEST_F(CameraFiles, options_give_a_camera_over_the_width_of_the_display_window) 
        {Case{with_fov(90), 1, 32, 32}, Case{with_fov(60), 1, 32 / std::tan(30 * degree), 32 / std::tan(30 * degree)},
         Case{with_fov(90), 2, 32, 64}, Case{with_lens(25, 36), 2, 64 * 25 / 36.0, 2 * 64 * 25 / 36.0},
         Case{with_fov(2 * std::atan(18.0 / 25) / degree), 2, 64 * 25 / 36.0, 2 * 64 * 25 / 36.0},
+        Case{with_vertical_fov(90), 1, 18, 18}, Case{with_vertical_fov(90), 2, 9, 18},
         Case{with_ortho_width(16), 0.5, 4, 2}}) {
     const Camera camera = camera_for(by, kDisplay, pixel_aspect, 0);
     expect_near(camera, fx, fy, 32, 18);
@@ -260,8 +313,9 @@ TEST_F(CameraFiles, another_aspect_does_not_fit) {
 }
 
 TEST_F(CameraFiles, none_and_one_that_floats_cannot_hold_are_usage_errors) {
-  const std::vector<std::string> options{"--fov", "--focal", "--aperture", "--ortho-width"};
-  for (const auto& by : {with_fov(1e-300), with_lens(1e30, 1e-30), with_ortho_width(1e-200), InputSettings{}})
+  const std::vector<std::string> options{"--fov", "--vertical-fov", "--focal", "--aperture", "--ortho-width"};
+  for (const auto& by :
+       {with_fov(1e-300), with_vertical_fov(1e-300), with_lens(1e30, 1e-30), with_ortho_width(1e-200), InputSettings{}})
     expect_error(ErrorKind::usage, options, [&] { camera_for(by, kDisplay, 1, 0); });
   expect_error(ErrorKind::usage, {"--camera"}, [] { camera_for(InputSettings{}, kDisplay, 1, 0); });
 }

@@ -230,6 +230,19 @@ TEST_F(Doubts, planes_of_a_z_buffer_are_doubted_where_they_leave_out_half_of_its
   expect(Reply::usage, {"near plane above 0", "--near"});
 }
 
+TEST_F(Doubts, the_near_plane_of_a_matrix_is_doubted_until_an_option_says_it) {
+  // OpenGL's matrix of a near plane at 1, whose depth is read as 0 to 1.
+  const json matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -2}, {0, 0, -1, 0}};
+  give({{"projection", matrix}, {"near", 1}, {"far", "inf"}, {"depth_kind", "device"}});
+  write_depth([](double z) { return 1 - 1 / z; }, 1);
+  expect(Reply::noted, {"[near-plane]", "--near", "--set device-range"});
+  settings.depth_range.near = 1;
+  expect(Reply::silent);
+  settings.depth_range = {};
+  settings.depth_range.device = DeviceRange::zero_to_one;
+  expect(Reply::silent);
+}
+
 // Cameras.
 
 TEST_F(Doubts, a_camera_that_the_pixels_refute_is_refused_or_noted_with_the_right_one) {

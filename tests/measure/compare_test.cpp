@@ -351,6 +351,11 @@ TEST_F(Compare, a_broken_limit_ends_with_6_and_says_which) {
   EXPECT_EQ(j["broken"].size(), 1);
 }
 
+TEST_F(Compare, a_small_error_is_told_in_its_own_digits) {
+  const auto a = exr("a.exr", {{"Y", constant(0.50004f)}}), b = exr("b.exr", {{"Y", constant(0.5f)}});
+  EXPECT_THAT(compare({a, b}).out, AllOf(HasSubstr("rmse 4.0e-05"), HasSubstr("bias +4.0e-05")));
+}
+
 TEST_F(Compare, mistakes_on_the_command_line_end_with_2) {
   const auto a = exr("a.exr", {{"Y", ramp}});
   using Words = std::vector<std::string>;
@@ -555,15 +560,97 @@ TEST_F(CompareSequence, every_option_and_every_field_is_told) {
 
 // The page.
 
+/// The data of a page.
+json shown_in(const std::string& html) {
+  const std::size_t begin = html.find('{', html.find("type=\"application/json\">"));
+  return json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+}
+
+TEST_F(CompareSequence, the_page_and_json_have_the_verdict_and_each_limit_with_its_value) {
+  const std::string page = folder / "page.html";
+  const Options limits{"--max-rmse", "0.2", "--max-bias", "0.5"};
+  const auto with_limits = [&](Options words) {
+    words.insert(words.end(), limits.begin(), limits.end());
+    return words;
+  };
+  EXPECT_EQ(compare(with_limits({result, reference, "--report", page})).code, 6);
+  const json verdict = shown_in(read_bytes(page))["verdict"];
+  EXPECT_EQ(verdict["pass"], false);
+  EXPECT_EQ(verdict["limits"][0],
+            (json{{"option", "--max-rmse"}, {"limit", 0.2}, {"value", 0.25}, {"frame", "3"}, {"holds", false}}));
+  EXPECT_EQ(verdict["limits"][1]["holds"], true);
+  EXPECT_EQ(measured(with_limits({result, reference}), 6)["limits"], verdict["limits"]);
+  ASSERT_EQ(compare({result, reference, "--report", page}).code, 0);
+  EXPECT_TRUE(shown_in(read_bytes(page))["verdict"].is_null()) << "without limits there is none";
+}
+
+TEST_F(Compare, the_scale_of_the_error_fits_a_small_error_and_a_single_pixel_hides_no_other) {
+  const auto scale = [&](Plane plane) {
+    const std::string page = folder / "page.html";
+    EXPECT_EQ(compare({exr("a.exr", {{"Y", plane}}), exr("b.exr", {{"Y", constant(0.5f)}}), "--report", page}).code, 0);
+    return shown_in(read_bytes(page))["images"][0]["full"].get<double>();
+  };
+  EXPECT_NEAR(scale(with_left(constant(0.5f), 0.503f)), 0.005, 1e-9);
+  EXPECT_NEAR(scale(constant(0.75f)), 0.25, 1e-9);
+  EXPECT_NEAR(scale(constant(0.5f)), 0.25, 1e-9) << "of equal pictures";
+  Plane one = constant(0.5f);
+  one[0] = 0.59f;
+  EXPECT_NEAR(scale(one), 0.025, 1e-9);
+}
+
+TEST_F(CompareSequence, junit_has_a_case_for_each_frame_and_a_picture_for_each_that_fails) {
+  const std::string xml = folder / "new/junit.xml", picture = folder / "new/junit.3.error.png";
+  EXPECT_EQ(compare({result, reference, "--junit", xml, "--max-rmse", "0.2"}).code, 6);
+  const std::string text = read_bytes(xml);
+  EXPECT_THAT(text, AllOf(HasSubstr("tests=\"4\" failures=\"1\""), HasSubstr("name=\"2\"></testcase>"),
+                          HasSubstr("<failure message=\"rmse is 0.25, and --max-rmse is 0.2\"/>"),
+                          HasSubstr("[[ATTACHMENT|" + picture + "]]")));
+  EXPECT_THAT(names_in(folder / "new"), ElementsAre("junit.3.error.png", "junit.xml"));
+  EXPECT_EQ(read_bytes(picture).substr(1, 3), "PNG");
+}
+
+TEST_F(Compare, junit_escapes_names_and_writes_over_no_input) {
+  const auto a = exr("a&b.exr", {{"Y", ramp}}), b = exr("<b>.exr", {{"Y", ramp}});
+  ASSERT_EQ(compare({a, b, "--junit", folder / "j.xml"}).code, 0);
+  EXPECT_THAT(read_bytes(folder / "j.xml"),
+              AllOf(HasSubstr("a&amp;b.exr"), HasSubstr("&lt;b&gt;.exr"), Not(HasSubstr("<b>"))));
+  const std::string taken = folder / "j._b__exr.error.png";
+  fs::copy_file(a, taken);
+  expect_error(2, {taken, b, "--junit", folder / "j.xml"}, {"--junit"});
+}
+
+// Lists of frames.
+
+TEST_F(Compare, frames_of_a_list_have_names_and_limits_of_their_own_and_no_flicker) {
+  exr("hall.exr", {{"Y", with_left(constant(0.5f), 0.75f)}});
+  exr("yard.exr", {{"Y", constant(0.6f)}});
+  exr("grey.exr", {{"Y", constant(0.5f)}});
+  const std::string list = folder / "frames.toml", page = folder / "page.html", results = folder / "{name}.exr";
+  write_bytes(list,
+              "[[frame]]\nname = 'hall'\ninput = 'x'\nreference = 'grey.exr'\nmax-rmse = 0.2\n"
+              "[[frame]]\nname = 'yard'\ninput = 'x'\ntruth = ['grey.exr', 'grey.exr']\n");
+  EXPECT_EQ(compare({results, list, "--max-rmse", "0.11", "--report", page}).code, 0) << "the frame's own limit wins";
+  const json shown = shown_in(read_bytes(page));
+  EXPECT_EQ(shown["sequence"]["worst_frame"], "hall");
+  EXPECT_FALSE(shown["sequence"].contains("flicker"));
+  EXPECT_EQ(shown["images"][1]["frame"], "yard");
+  const json told = measured({results, list});
+  EXPECT_EQ(told["frames"][0]["frame"], "hall");
+  EXPECT_NEAR(told["frames"][1]["rmse"], 0.1, 1e-6) << "of the truth where there is no reference";
+  expect_error(6, {results, list, "--max-rmse", "0.09"}, {"frame yard: rmse is 0.1"});
+  expect_error(2, {folder / "hall.exr", list}, {"{name}"});
+  expect_error(2, {results, list, "--report", list}, {"REFERENCE"});
+  write_bytes(list, "[[frame]]\nname = 'hall'\ninput = 'x'\n");
+  expect_error(3, {results, list}, {"frame hall has neither \"reference\" nor \"truth\""});
+}
+
 TEST_F(CompareSequence, the_report_is_one_page_with_pictures) {
   const std::string page = folder / "page.html";
   EXPECT_EQ(compare({result, reference, "--report", page, "--max-rmse", "0.2"}).code, 6);
   const std::string html = read_bytes(page);
   EXPECT_THAT(html, AllOf(HasSubstr("<html"), HasSubstr("\"kind\": \"compare\""), HasSubstr("data:image/png;base64,")));
   EXPECT_THAT(html, HasSubstr("ao.%04d.exr against truth.####.exr"));
-  const std::size_t begin = html.find('{', html.find("type=\"application/json\">"));
-  const json shown = json::parse(html.substr(begin, html.find("</script>", begin) - begin)),
-             told = measured({result, reference});
+  const json shown = shown_in(html), told = measured({result, reference});
   EXPECT_EQ(shown["sequence"]["flicker"], told["flicker"]);
   EXPECT_EQ(shown["sequence"]["worst_frame"], std::to_string(told["worst"]["frame"].get<int>()));
   for (const char* list : {"candidates", "rows"})

@@ -87,14 +87,17 @@ def bench_report():
 
 
 def compare_report():
-    """One candidate without times, as `alcove compare` has it of a sequence."""
+    """One candidate without times, as `alcove compare` has it of a sequence. The last frame is the worst."""
     numbers = {"rmse": 0.0812, "mae": 0.05, "bias": -0.011, "max": 0.61, "p95": 0.14, "p99": 0.26, "psnr": None, "ssim": 0.913, "flip": 0.071, "grain": 0.0042}
     return {"title": f"ao.exr against {HOSTILE}.exr", "kind": "compare", "device": None, "yardstick_ms": None,
             "candidates": [{"name": "ao.exr", "settings": "radius 0.35", "ms": None, "ms_min": None} | numbers],
-            "rows": [{"frame": "1001", "candidate": "ao.exr", "ms": None} | numbers],
-            "sequence": {"worst_frame": "1001", "worst_rmse": 0.0812, "mean_rmse": 0.0812, "flicker": 0.0345},
-            "images": [{"frame": "1001", "candidate": "ao.exr", "width": WIDTH, "height": HEIGHT, "truth": png(lambda x, y: grey(truth(x, y))),
-                        "result": png(lambda x, y: grey(truth(x, y) + ao_error(x, y, 0.08, 1))), "error": None}]}
+            "verdict": {"pass": False, "limits": [{"option": "--max-rmse", "limit": 0.05, "value": 0.0812, "frame": "1002", "holds": False},
+                                                  {"option": "--max-bias", "limit": 0.02, "value": 0.0110004, "frame": "1001", "holds": True}]},
+            "rows": [{"frame": "1001", "candidate": "ao.exr"} | numbers | {"rmse": 0.00004}, {"frame": "1002", "candidate": "ao.exr"} | numbers],
+            "sequence": {"worst_frame": "1002", "worst_rmse": 0.0812, "mean_rmse": 0.0812, "flicker": 0.0345},
+            "images": [{"frame": frame, "candidate": "ao.exr", "width": WIDTH, "height": HEIGHT, "truth": png(lambda x, y: grey(truth(x, y))),
+                        "result": png(lambda x, y: grey(truth(x, y) + ao_error(x, y, 0.08, 1))), "full": full,
+                        "error": png(lambda x, y: signed_colour(ao_error(x, y, 0.08, 1)))} for frame, full in (("1001", 0.0001), ("1002", 0.1))]}
 
 
 # The browser.
@@ -377,6 +380,24 @@ def check_no_overflow(browser):
     browser.emulate(1280)
 
 
+def check_verdict(browser):
+    """PASS or FAIL with the limits; the worst frame's error is shown first, in a scale of its own."""
+    assert browser.text("#verdict") == "FAIL"
+    rows = browser.run("return [...document.querySelectorAll('#limits tbody tr')].map((row) => [row.className, ...[...row.cells].map((cell) => cell.innerText)])")
+    assert rows == [["fail", "--max-rmse", "0.05", "0.0812", "1002"], ["pass", "--max-bias", "0.02", "0.0110004", "1001"]], rows
+    value = "return document.getElementById('viewer-frame').value"
+    assert browser.run(value) == "1002" and browser.text("#chip-left") == "ao.exr: result − reference"
+    assert browser.text("#legend-most") == "+0.1"
+    offered = "return [...document.getElementById('viewer-frame').options].map((option) => option.text)"
+    assert browser.run(offered) == ["1001", "1002"]
+    browser.click("#viewer-sort input")
+    assert browser.run(offered) == ["1002", "1001"]
+    browser.choose("#viewer-frame", "1001")
+    assert browser.text("#legend-most") == "+0.0001"
+    browser.click("#viewer-show label:nth-child(1)")
+    assert browser.text("#chip-right") == "reference"
+
+
 def write_page(program, report, path):
     path.write_bytes(subprocess.run([program], input=json.dumps(report).encode(), stdout=subprocess.PIPE, check=True).stdout)
     return path
@@ -405,7 +426,9 @@ def main(program):
             # The flicker is the sequence's: it stands above, and is no column of the frames.
             assert "Flicker\n0.0345" in browser.text("#facts").replace("Flicker 0.0345", "Flicker\n0.0345"), browser.text("#facts")
             assert not browser.run("return document.querySelector('#table th[data-key=flicker]')")
-            assert numbers(column(browser, "ssim")) == [0.913] and browser.text("#chip-right") == "truth"
+            assert numbers(column(browser, "ssim")) == [0.913] * 2
+            assert numbers(column(browser, "rmse"))[0] == 0.00004, "a small error has digits"
+            check_verdict(browser)
             browser.click("#table th[data-key=rmse] button")
             check_no_overflow(browser)
             check_quiet(browser, pages["compare"])

@@ -118,18 +118,33 @@ struct Value {
 
 /// Settings that say something else of the same thing, so that neither has an effect beside the other.
 const std::vector<std::pair<Value, Value>>& pairs() {
-  static const Value camera{"camera", "c.json"}, fov{"fov", "60"}, ortho{"ortho-width", "2"};
+  static const Value camera{"camera", "c.json"}, fov{"fov", "60"}, ortho{"ortho-width", "2"},
+      tall{"vertical-fov", "40"};
   static const Value position{"position", "p.exr"}, depth_channel{"depth-channel", "Z"};
   static const Value occluders{"occluders", "Hero"}, ignore{"ignore", "Set*"}, around{"around", "2"};
   static const Value views{"other-views", "true"}, tolerance{"tolerance", "0.1"}, quiet{"quiet", "true"};
   static const Value channels{"position-channels", "P"}, half{"resolution", "half"}, mean{"accumulate", "2"};
   static const Value kernel{"denoise-kernel", "1,0.5"}, reach{"denoise-radius", "3"}, depth{"depth", "d.exr"};
   static const Value verbose{"verbose", "true"}, progress{"progress", "plain"};
-  static const std::vector<std::pair<Value, Value>> all{
-      {depth, position}, {depth_channel, position}, {depth_channel, channels}, {camera, fov},      {camera, ortho},
-      {fov, ortho},      {tolerance, half},         {tolerance, mean},         {kernel, reach},    {quiet, verbose},
-      {quiet, progress}, {occluders, ignore},       {occluders, around},       {occluders, views}, {ignore, around},
-      {ignore, views}};
+  static const std::vector<std::pair<Value, Value>> all{{depth, position},
+                                                        {depth_channel, position},
+                                                        {depth_channel, channels},
+                                                        {camera, fov},
+                                                        {camera, ortho},
+                                                        {fov, ortho},
+                                                        {fov, tall},
+                                                        {camera, tall},
+                                                        {tall, ortho},
+                                                        {tolerance, half},
+                                                        {tolerance, mean},
+                                                        {kernel, reach},
+                                                        {quiet, verbose},
+                                                        {quiet, progress},
+                                                        {occluders, ignore},
+                                                        {occluders, around},
+                                                        {occluders, views},
+                                                        {ignore, around},
+                                                        {ignore, views}};
   return all;
 }
 
@@ -250,7 +265,8 @@ TEST_F(Said, of_a_pair_what_is_typed_beats_a_preset_and_a_later_preset_an_earlie
 TEST_F(Said, a_lens_is_said_in_one_way) {
   const Words lens{"--focal", "35", "--aperture", "36"};
   EXPECT_EQ(refusal(lens), "");
-  for (const Value& other : std::vector<Value>{{"camera", "c.json"}, {"fov", "60"}, {"ortho-width", "2"}}) {
+  for (const Value& other :
+       std::vector<Value>{{"camera", "c.json"}, {"fov", "60"}, {"vertical-fov", "40"}, {"ortho-width", "2"}}) {
     EXPECT_THAT(refusal(joined(lens, {"--" + other.key, other.value})),
                 AllOf(HasSubstr("--" + other.key), HasSubstr("only one of them")));
     const Words words = joined(preset("other.toml", {other}), lens);

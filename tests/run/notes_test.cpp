@@ -140,6 +140,21 @@ TEST_F(Notes, that_are_warnings_fail_where_they_count_as_errors) {
   EXPECT_EQ(run({"--set", "warnings-as-errors=true"}).code, 0) << "a note is no warning";
 }
 
+TEST_F(Notes, that_are_allowed_by_their_codes_are_no_errors) {
+  half_frame().write(frame);
+  const auto strictly = [&](const std::string& codes, const char* more = "--no-skip") {
+    return run({more, "--set", "warnings-as-errors=true", "--set", "allow=" + codes});
+  };
+  const Finished allowed = strictly("half-depth,repaired-depth");
+  EXPECT_EQ(allowed.code, 0) << allowed;
+  EXPECT_THAT(allowed.err, HasSubstr("[half-depth]")) << "it is said all the same";
+  EXPECT_THAT(strictly("half-depth", "--resume").err, HasSubstr("kept")) << "nor a reason to compute it again";
+  EXPECT_EQ(strictly("repaired-depth").code, 3);
+  const Finished misspelt = strictly("half-depht");
+  EXPECT_EQ(misspelt.code, 2);
+  EXPECT_THAT(misspelt.err, AllOf(HasSubstr("--set allow"), HasSubstr("half-depth?")));
+}
+
 TEST_F(SequenceNotes, are_said_once_and_recorded_for_every_frame) {
   write_frames(1, 3, half_frame());
   const Finished finished = done({"--stats", folder / "stats.json"});

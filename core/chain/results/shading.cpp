@@ -10,7 +10,7 @@
 namespace alcove {
 
 Shaping shaping_of(const EstimatorSettings& settings) {
-  return {settings.intensity, settings.power, settings.fade_start.value_or(0), settings.fade_end};
+  return {settings.intensity, settings.power, settings.fade_start.value_or(0), settings.fade_end, settings.least};
 }
 
 gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
@@ -22,11 +22,13 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
   params.power = float(shaping.power);
   params.fade_start = float(shaping.fade_start);
   params.fade_end = float(shaping.fade_end.value_or(0));
+  params.least = float(shaping.least);
   params.outside = float(matte.outside);
   params.planes = planes_in(planes, gbuffer.view);
   const uint mode = (shaping.intensity != 1 ? kShapeByIntensity : 0) | (shaping.power != 1 ? kShapeByPower : 0) |
                     (shaping.fade_end ? kShapeByFade : 0) | (material_ao ? kShapeByMaterial : 0) |
-                    (matte.plane ? kShapeByMatte : 0) | (material_ao && prefix.empty() ? kShapeCountsRepaired : 0);
+                    (shaping.least > 0 ? kShapeByLeast : 0) | (matte.plane ? kShapeByMatte : 0) |
+                    (material_ao && prefix.empty() ? kShapeCountsRepaired : 0);
   gpu.dispatch("shape", params,
                {{"Ao", planes},
                 {"Shaped", shaped},
@@ -40,7 +42,8 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
 
 Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
                  const gpu::Buffer* material_ao, const Matte& matte) {
-  const bool changes = shaping.intensity != 1 || shaping.power != 1 || shaping.fade_end || material_ao || matte.plane;
+  const bool changes = shaping.intensity != 1 || shaping.power != 1 || shaping.fade_end || material_ao ||
+                       shaping.least > 0 || matte.plane;
   if (!visibility.ao || !changes) return visibility;
   Visibility result = visibility;
   result.ao = &shape(gpu, gbuffer, *visibility.ao, shaping, material_ao, matte);
@@ -105,7 +108,7 @@ gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu:
 }
 
 gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* ao, const FrameInputs& frame,
-                       const CompositeLook& look) {
+                       const CompositeLook& look, double least) {
   if (!frame[RawPlane::beauty]) return nullptr;
   const gpu::Buffer& beauty = *frame[RawPlane::beauty];
   const gpu::Buffer* light = frame[RawPlane::indirect];
@@ -123,6 +126,7 @@ gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Bu
   params.has_color = planes_in(*ao, frame.view) == 3 ? 1 : 0;
   params.fog_density = float(look.fog_density);
   params.gain = float(look.gain);
+  params.least = float(least);
   params.mix = float(look.mix);
   params.tint = to_vec3(look.tint);
   gpu.dispatch("composite", params,

@@ -17,6 +17,7 @@ struct Shaping {
   double power = 1;
   double fade_start = 0;           // scene units of planar depth
   std::optional<double> fade_end;  // none: there is no fade
+  double least = 0;                // the lowest value but of a matte
 };
 Shaping shaping_of(const EstimatorSettings& settings);
 
@@ -49,8 +50,8 @@ gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, cons
 gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
 
 /// The beauty's planes, for the host; null if the frame has no beauty. `ao` has one plane, or three with multi-bounce.
-/// It dims the lights of frame.ambient; without any, the whole beauty.
+/// It dims the lights of frame.ambient; without any, the whole beauty. The look's gain takes no AO below `least`.
 gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* ao, const FrameInputs& frame,
-                       const CompositeLook& look);
+                       const CompositeLook& look, double least);
 
 }  // namespace alcove

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/camera/camera.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -24,6 +26,11 @@ constexpr std::size_t kWithoutView = 7, kWithView = 8;  // numbers of a line
 constexpr double kMostFrameNumber = 1e9;
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+/// The focal length in y, px, of a field of view over the height.
+double focal_over_height(const Window& display, double degrees) {
+  return 0.5 * display.height / std::tan(radians(degrees) / 2);
+}
 
 /// Reads the numbers of a line. Fails with ErrorKind::input on a word that is no number.
 std::vector<double> numbers_in(const std::string& path, const std::string& line, int number) {
@@ -100,7 +107,7 @@ Camera read_chan(const std::string& path, int frame, const std::string& rotation
   const double fov = numbers[kWithoutView];
   if (!(fov > 0 && fov < 180))
     fail(ErrorKind::input, "{}: the vertical field of view of frame {} is {} degrees (--camera)", path, frame, fov);
-  Camera camera = centred(display, 0.5 * display.height / std::tan(0.5 * radians(fov)) / pixel_aspect, pixel_aspect);
+  Camera camera = centred(display, focal_over_height(display, fov) / pixel_aspect, pixel_aspect);
   camera.chan_angles = {radians(numbers[4]), radians(numbers[5]), radians(numbers[6])};
   camera.view_from_world = view_by_angles(*camera.chan_angles, rotation);
   camera.view_from_world_offset = scaled(times(*camera.view_from_world, {numbers[1], numbers[2], numbers[3]}), -1);
@@ -119,6 +126,9 @@ constexpr double kMostCenter = 1e9;                       // px: cx and cy, to e
 constexpr int kDeepest = 64;  // lists and objects within each other, since copying and quoting them recurses
 
 bool is_scale(double pixels) { return pixels >= kLeastScale && pixels <= kMostScale; }
+
+using Row4 = std::array<double, 4>;
+using Rows4 = std::array<Row4, 4>;
 
 /// A camera file being read: every complaint names the file and the field.
 struct CameraFile {
@@ -162,6 +172,24 @@ struct CameraFile {
     if (std::abs(value) > kMostCenter)
       refuse(field, fmt::format("must be from {:g} to {:g}, not {}", -kMostCenter, kMostCenter, value));
     return value;
+  }
+
+  /// The rows of a matrix of finite numbers; none where the field is no list.
+  std::optional<Rows4> rows(const char* field) const {
+    const Json* value = find(field);
+    if (!value || !value->is_array()) return std::nullopt;
+    Rows4 rows{};
+    bool fine = value->size() == 4;
+    for (std::size_t row = 0; fine && row < 4; row++) {
+      fine = (*value)[row].is_array() && (*value)[row].size() == 4;
+      for (std::size_t column = 0; fine && column < 4; column++) {
+        const Json& number = (*value)[row][column];
+        fine = number.is_number() && std::isfinite(number.get<double>());
+        if (fine) rows[row][column] = number.get<double>();
+      }
+    }
+    if (!fine) refuse(field, "must be 4 rows of 4 finite numbers");
+    return rows;
   }
 
   std::string text(const char* field) const {
@@ -244,23 +272,14 @@ bool left_handed(const CameraFile& file) {
 /// Fills in rotation and offset of world_to_camera. The rotation is orthonormal once a uniform scale is divided out.
 void read_view_from_world(const CameraFile& file, Camera& camera) {
   const char* field = "world_to_camera";
-  const Json* value = file.find(field);
-  if (!value) return;
-  Matrix3 m{};
-  std::array<double, 3> offset{};
-  bool fine = value->is_array() && value->size() == 4;
-  for (std::size_t row = 0; fine && row < 4; row++) {
-    fine = (*value)[row].is_array() && (*value)[row].size() == 4;
-    for (std::size_t column = 0; fine && column < 4; column++) {
-      fine = (*value)[row][column].is_number() && std::isfinite((*value)[row][column].get<double>());
-      if (fine && row < 3) (column < 3 ? m[row][column] : offset[row]) = (*value)[row][column].get<double>();
-    }
-  }
-  if (!fine) file.refuse(field, "must be 4 rows of 4 finite numbers");
-  const Json& last = (*value)[3];
+  if (!file.find(field)) return;
+  const auto rows = file.rows(field);
+  if (!rows) file.refuse(field, "must be 4 rows of 4 finite numbers");
   for (std::size_t column = 0; column < 4; column++)
-    if (std::abs(last[column].get<double>() - (column == 3)) > 1e-6)
+    if (std::abs((*rows)[3][column] - (column == 3)) > 1e-6)
       file.refuse(field, "must end in the row 0 0 0 1: it is for column vectors");
+  Matrix3 m{};
+  for (std::size_t row = 0; row < 3; row++) std::copy_n((*rows)[row].begin(), 3, m[row].begin());
   const auto dot = [&](int a, int b) {
     return m[std::size_t(a)][0] * m[std::size_t(b)][0] + m[std::size_t(a)][1] * m[std::size_t(b)][1] +
            m[std::size_t(a)][2] * m[std::size_t(b)][2];
@@ -278,7 +297,7 @@ void read_view_from_world(const CameraFile& file, Camera& camera) {
   for (std::size_t row = 0; row < 3; row++) {
     const double scale = (camera.left_handed && row == 2 ? -1 : 1) / std::sqrt(squared);
     for (auto& x : m[row]) x *= scale;
-    camera.view_from_world_offset[row] = offset[row] * scale;
+    camera.view_from_world_offset[row] = (*rows)[row][3] * scale;
   }
   camera.view_from_world = m;
 }
@@ -293,10 +312,7 @@ std::optional<double> clip_plane(const CameraFile& file, const char* field) {
 
 /// Tells the projection by its word, or by the last row of the matrix that games have: 0 0 0 1 divides by nothing.
 bool is_orthographic(const CameraFile& file) {
-  const Json* value = file.find("projection");
-  if (value && value->is_array() && value->size() == 4 && (*value)[3].is_array() && (*value)[3].size() == 4 &&
-      (*value)[3][3].is_number())
-    return (*value)[3][3].get<double>() == 1;
+  if (const auto matrix = file.rows("projection")) return (*matrix)[3][3] == 1;
   const std::string projection = file.text("projection");
   if (!projection.empty() && projection != "perspective" && projection != "orthographic")
     file.refuse("projection", fmt::format("must be perspective or orthographic, not \"{}\"", projection));
@@ -305,13 +321,49 @@ bool is_orthographic(const CameraFile& file) {
 
 /// Gives the depth where a projection to 0..1, not reversed, has z = 0: -B / A of its third row A z + B.
 std::optional<double> matrix_near(const CameraFile& file) {
-  const Json* value = file.find("projection");
-  if (!value || !value->is_array() || value->size() != 4 || !(*value)[2].is_array() || (*value)[2].size() != 4)
-    return std::nullopt;
-  const Json &slope = (*value)[2][2], &offset = (*value)[2][3];
-  if (!slope.is_number() || !offset.is_number() || slope.get<double>() == 0) return std::nullopt;
-  const double near = std::abs(offset.get<double>() / slope.get<double>());
+  const auto matrix = file.rows("projection");
+  if (!matrix) return std::nullopt;
+  const double near = std::abs((*matrix)[2][3] / (*matrix)[2][2]);
   return near > 0 && std::isfinite(near) ? std::optional(near) : std::nullopt;
+}
+
+/// Fails unless a projection matrix is for column vectors and neither turns nor mirrors the picture.
+void require_upright(const CameraFile& file, const Rows4& m) {
+  constexpr double kRounding = 1e-6;  // a distance stands in this place of a matrix for row vectors
+  const bool divides = m[3][0] == 0 && m[3][1] == 0 && std::abs(std::abs(m[3][2]) - 1) < kRounding && m[3][3] == 0;
+  if (!divides && m[3] != Row4{0, 0, 0, 1})
+    file.refuse("projection",
+                "has none of the last rows 0 0 -1 0, 0 0 1 0 and 0 0 0 1 of those for column vectors: transpose one "
+                "for row vectors");
+  if (m[0][1] != 0 || m[1][0] != 0 || m[0][0] <= 0 || m[1][1] == 0)
+    file.refuse("projection", "turns or mirrors the picture: give fx, fy, cx and cy instead");
+}
+
+/// Takes the lens of a file without fx, fy, cx and cy out of the matrix that games have. Its y points down the picture
+/// where it is Vulkan's, and its camera looks along +z where the last row is 0 0 1 0.
+void read_lens_of_matrix(const CameraFile& file, const Rows4& m, Camera& camera) {
+  require_upright(file, m);
+  const bool is_affine = m[3][3] == 1;
+  const std::size_t shift = is_affine ? 3 : 2;
+  const double side = m[3][2] < 0 ? -1 : 1, up = m[1][1] > 0 ? 1 : -1;
+  camera.fx = 0.5 * camera.width * m[0][0];
+  camera.fy = 0.5 * camera.height * std::abs(m[1][1]);
+  camera.cx = 0.5 * camera.width * (1 + side * m[0][shift]);
+  camera.cy = 0.5 * camera.height * (1 - up * side * m[1][shift]);
+  if (!is_scale(camera.fx) || !is_scale(camera.fy) || std::abs(camera.cx) > kMostCenter ||
+      std::abs(camera.cy) > kMostCenter)
+    file.refuse("projection", "sees nothing");
+  if (!is_affine && !file.find("camera_space")) camera.left_handed = side > 0;
+}
+
+void read_lens(const CameraFile& file, Camera& camera) {
+  const bool has_none = !file.find("fx") && !file.find("fy") && !file.find("cx") && !file.find("cy");
+  const auto matrix = file.rows("projection");
+  if (has_none && matrix) return read_lens_of_matrix(file, *matrix, camera);
+  camera.fx = file.scale("fx");
+  camera.fy = file.scale("fy");
+  camera.cx = file.center("cx");
+  camera.cy = file.center("cy");
 }
 
 bool truth(const CameraFile& file, const char* field) {
@@ -358,7 +410,8 @@ Camera centred_by_options(const Window& display, double fx, double aspect, bool 
   camera.orthographic = orthographic;
   if (!is_scale(camera.fx) || !is_scale(camera.fy))
     fail(ErrorKind::usage,
-         "a camera of {:g} pixels per unit sees nothing: give another --fov, --focal with --aperture, or --ortho-width",
+         "a camera of {:g} pixels per unit sees nothing: give another --fov or --vertical-fov, --focal with "
+         "--aperture, or --ortho-width",
          fx);
   return camera;
 }
@@ -386,12 +439,9 @@ Camera camera_in(CameraFile file, int frame, const std::string& view) {
   Camera camera;
   camera.width = file.resolution(0);
   camera.height = file.resolution(1);
-  camera.fx = file.scale("fx");
-  camera.fy = file.scale("fy");
-  camera.cx = file.center("cx");
-  camera.cy = file.center("cy");
   camera.orthographic = is_orthographic(file);
   camera.left_handed = left_handed(file);
+  read_lens(file, camera);
   read_view_from_world(file, camera);
   camera.near = clip_plane(file, "near");
   camera.far = clip_plane(file, "far");
@@ -439,7 +489,7 @@ Camera centred(const Window& display, double fx, double pixel_aspect) {
 }
 
 bool names_a_camera(const InputSettings& settings) {
-  return !settings.camera.empty() || settings.fov || settings.focal || settings.ortho_width;
+  return !settings.camera.empty() || settings.fov || settings.vertical_fov || settings.focal || settings.ortho_width;
 }
 
 Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame,
@@ -449,7 +499,9 @@ Camera camera_for(const InputSettings& settings, const Window& display, double p
   if (!settings.camera.empty()) return fitted(read_camera(settings.camera, frame, view), display, settings.camera);
   const double half_width = 0.5 * display.width;
   if (settings.fov)
-    return centred_by_options(display, half_width / std::tan(*settings.fov * std::numbers::pi / 360), pixel_aspect,
+    return centred_by_options(display, half_width / std::tan(radians(*settings.fov) / 2), pixel_aspect, false);
+  if (settings.vertical_fov)
+    return centred_by_options(display, focal_over_height(display, *settings.vertical_fov) / pixel_aspect, pixel_aspect,
                               false);
   if (settings.focal && settings.aperture)
     return centred_by_options(display, 2 * half_width * *settings.focal / *settings.aperture, pixel_aspect, false);

@@ -42,7 +42,7 @@ struct Camera {
 
 /// The options that give a camera.
 inline constexpr const char* kCameraOptions =
-    "--camera FILE.json, or --fov DEGREES, or --focal MM with --aperture MM, or --ortho-width UNITS";
+    "--camera FILE.json, or --fov DEGREES (--vertical-fov), or --focal MM with --aperture MM, or --ortho-width UNITS";
 
 /// ErrorKind::usage: nothing gives a camera to the frame of this file. `why` says why the header or the positions do
 /// not.
@@ -75,8 +75,8 @@ void require_listed(const std::string& path, int frame);
 bool names_a_camera(const InputSettings& settings);
 
 /// Gives the camera of the settings for a frame of this display window and pixel aspect (width / height of a pixel): by
-/// its file, by fov, by focal and aperture, or by ortho_width. Fails with NoCamera if there is none, and with
-/// ErrorKind::input if it does not fit.
+/// its file, by fov or vertical_fov, by focal and aperture, or by ortho_width. Fails with NoCamera if there is none,
+/// and with ErrorKind::input if it does not fit.
 Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame,
                   const std::string& view = "");
 

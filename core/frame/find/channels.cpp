@@ -224,6 +224,7 @@ const AovNames kLightNames{
     .what = "light",
     .channel_option = "--set ambient",
     .in_layer = kColours,
+    .is_listed = true,
 };
 
 const AovNames kDiffuseColorNames{
@@ -447,9 +448,9 @@ std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<Named
       return found;
   if (wanted.size() != count && !(names.may_have_alpha && wanted.size() == count + 1) &&
       !(names.may_be_two && wanted.size() == 2))
-    fail(ErrorKind::input, "{}: no layer {}{} for {}{}; there is {}; {} takes a layer or {} channel names with commas",
-         file.path(), chosen, within, names.channel_option, suggestion(chosen, takes(channels, names)),
-         list_of(full_names(channels)), names.channel_option, count);
+    fail(ErrorKind::input, "{}: no layer {}{} for {}{}; there is {}; {} takes a layer{}", file.path(), chosen, within,
+         names.channel_option, suggestion(chosen, takes(channels, names)), list_of(full_names(channels)),
+         names.channel_option, names.is_listed ? "" : fmt::format(" or {} channel names with commas", count));
   std::vector<const NamedChannel*> found;
   for (const auto& name : wanted) {
     found.push_back(find_named(channels, name));

@@ -76,6 +76,7 @@ struct AovNames {
   Components bare = {};   // These name the AOV by themselves in any file.
   Components alone = {};  // These name it by themselves in a file that was given for this AOV only.
   bool may_have_alpha = false;
+  bool is_listed = false;   // The user may name several, with commas: each is a layer.
   bool may_be_two = false;  // The user may name two channels instead of three.
 };
 

@@ -116,12 +116,13 @@ void find_usual(FrameSource& source, const ChannelSearch& search, std::size_t fi
 
 /// Finds the lights in the beauty's file. `settings.ambient` lists them with commas, each LIGHT[*LAYER][*NUMBER]: a
 /// layer, one that multiplies it, and how much of it AO dims, 0 to 1. Without, it is the indirect diffuse light, where
-/// that is found; else there is none.
+/// that is found; else there is none, as with the word beauty: AO dims all of it.
 ///
 /// Blender's light passes are without the surface's colour. It is taken from the pass beside them (DiffInd x DiffCol,
 /// GlossDir x GlossCol) where nothing else is said. Fails with ErrorKind::usage on a text that is no such list, and
 /// with ErrorKind::input where a layer is missing.
 void find_ambient(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
+  if (settings.ambient == "beauty") return;
   const auto lights = settings.ambient.empty() ? std::vector<std::string>() : split(settings.ambient);
   if (lights.size() > kMostAmbientLights)
     fail(ErrorKind::usage, "--set ambient: it takes at most {} lights, and there are {}", kMostAmbientLights,

@@ -196,6 +196,7 @@ std::string name_of_lens(const FrameSource& source, const InputSettings& setting
   if (!source.camera_from.empty()) return source.camera_from;
   if (!settings.camera.empty()) return "the camera of " + settings.camera;
   if (settings.fov) return fmt::format("--fov {:g}", *settings.fov);
+  if (settings.vertical_fov) return fmt::format("--vertical-fov {:g}", *settings.vertical_fov);
   return settings.focal ? "--focal with --aperture" : "--ortho-width";
 }
 

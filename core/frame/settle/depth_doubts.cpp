@@ -50,13 +50,13 @@ class DepthDoubts : private DepthSettlement {
                                              "distances are {:.3g} times those by the file",
                                              *near, *by_file, *near / *by_file));
     if (reading_.depth_kind != DepthKind::device || reading_.depth_range.reversed ||
-        reading_.depth_range.device != DeviceRange::zero_to_one)
+        reading_.depth_range.device != DeviceRange::automatic || settings_.depth_range.near)
       return;
     if (!near || !by_matrix || std::abs(*by_matrix / *near - 1) < kSame) return;
     note(NoteCode::near_plane,
          fmt::format("the near plane is {:.4g}, but the camera file's projection, read with z = depth, has it at "
                      "{:.4g}: so read, distances would be {:.3g} "
-                     "times as large; trust the one that was measured (--near, --set device-range)",
+                     "times as large; --near or --set device-range says which is right",
                      *near, *by_matrix, *by_matrix / *near));
   }
 
@@ -88,7 +88,7 @@ class DepthDoubts : private DepthSettlement {
   void doubt_range() {
     if (reading_.depth_kind != DepthKind::device) return;
     const auto below = std::ranges::count_if(raw_.depth, [](float d) { return d > -1 && d < 0; });
-    if (reading_.depth_range.device == DeviceRange::zero_to_one && below > 0)
+    if (reading_.depth_range.device == DeviceRange::automatic && below > 0)
       note(NoteCode::said_otherwise,
            fmt::format("{} pixels have a depth of -1 to 0 and count as sky: is it that of --set device-range=-1..1?",
                        below));

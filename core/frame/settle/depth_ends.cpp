@@ -70,7 +70,7 @@ class DepthEnds : private DepthSettlement {
   /// Nothing is seen at exactly the near plane, so that many pixels there are sky of a depth that runs the other way.
   void settle_direction() {
     auto& range = reading_.depth_range;
-    const float low = range.device == DeviceRange::zero_to_one ? 0 : -1, near = range.reversed ? 1 : low,
+    const float low = range.device == DeviceRange::minus_one_to_one ? -1 : 0, near = range.reversed ? 1 : low,
                 far = range.reversed ? low : 1;
     const auto at_near = std::size_t(std::ranges::count(raw_.depth, near));
     if (double(at_near) < kPlateau * double(raw_.depth.size()) ||

@@ -101,7 +101,7 @@ class NormalDoubts : private NormalSettlement {
     // Coarse depth turns the normals of depth themselves by so much.
     if (chosen.explained() >= kUsable || has_coarse_depth(reading_)) return;
     const bool is_tangent = are_alike(raw_, depth_map_of(reading_));
-    if (chosen.explained() >= kRefuted && is_allowed(NoteCode::normals_disagree)) return;
+    if (chosen.explained() >= kRefuted && is_listed(NoteCode::normals_disagree, settings_.allow)) return;
     fail(ErrorKind::input, "{}, nor in any other space{}: {}; {}{}", read,
          is_tangent ? ", but all look the same way, as those of tangent space" : "", kCheck, kWithout,
          chosen.explained() >= kRefuted ? "; --set allow=normals-disagree takes them as they are" : "");

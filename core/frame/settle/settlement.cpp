@@ -23,11 +23,6 @@ Settlement::Settlement(PlanesToSettle planes)
 
 void Settlement::note(NoteCode code, std::string text) { notes_.push_back({code, std::move(text), file_}); }
 
-bool Settlement::is_allowed(NoteCode code) const {
-  const auto allowed = split(settings_.allow);
-  return std::ranges::find(allowed, facts_of(code).name) != allowed.end();
-}
-
 void Settlement::take_down(const std::string& what, const std::string& chosen, const std::string& why,
                            const std::string& option, bool unusual, bool proven) {
   seen_.guesses.push_back({what, chosen, why, option});

@@ -35,8 +35,6 @@ class Settlement {
   void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
              bool unusual, bool proven = false);
   void note(NoteCode code, std::string text);
-  /// Whether --set allow names the code: then it is no error.
-  bool is_allowed(NoteCode code) const;
 
   Reading& reading_;
   const InputSettings& settings_;

@@ -1,0 +1,82 @@
+// Lists of frames from TOML.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/frame_list.h"
+
+#include <filesystem>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+
+namespace alcove {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::set<std::string> kLimitKeys = {"max-rmse", "max-p99",   "min-ssim",    "max-flip",
+                                          "max-bias", "max-grain", "max-excluded"};
+
+/// The files of a key that has one or two; none where it is not there.
+std::vector<std::string> files_of(const TomlTable& table, const char* key, const fs::path& folder) {
+  std::vector<std::string> paths;
+  if (!table.values.contains(key)) return paths;
+  const auto* list = table.values[key].as_array();
+  if (!list) return {(folder / table.text(key)).string()};
+  for (const auto& entry : *list) {
+    const auto name = entry.value<std::string>();
+    if (!name || name->empty()) table.refuse(key, "must be one file or two");
+    paths.push_back((folder / *name).string());
+  }
+  if (paths.empty() || paths.size() > 2) table.refuse(key, "must be one file or two");
+  return paths;
+}
+
+std::string file_of(const TomlTable& table, const char* key, const fs::path& folder) {
+  return table.values.contains(key) ? (folder / table.text(key)).string() : "";
+}
+
+ListedFrame frame_of(const TomlTable& table, const fs::path& folder) {
+  auto known = kLimitKeys;
+  known.insert({"name", "input", "camera", "radius", "truth", "reference", "cpu-reference"});
+  table.require_keys(known);
+  ListedFrame frame{table.text("name"), (folder / table.text("input")).string()};
+  frame.camera = file_of(table, "camera", folder);
+  if (table.values.contains("radius")) frame.radius = table.positive("radius");
+  frame.truth = files_of(table, "truth", folder);
+  frame.reference = files_of(table, "reference", folder);
+  frame.cpu_reference = file_of(table, "cpu-reference", folder);
+  for (const auto& key : kLimitKeys)
+    if (table.values.contains(key)) frame.limits[key] = table.number(key);
+  return frame;
+}
+
+}  // namespace
+
+bool is_frame_list(const std::string& path) { return lower_case(path).ends_with(".toml"); }
+
+std::vector<ListedFrame> frames_in(const toml::table& root, const std::string& path, const std::string& folder) {
+  TomlTable{path, "the list", root}.require_keys(
+      {"title", "repeats", "reference-slices", "frame", "candidate", "sweep"});
+  std::vector<ListedFrame> frames;
+  for_each_table(path, root, "frame", [&](const TomlTable& table) { frames.push_back(frame_of(table, folder)); });
+  require_unique_names(path, frames, "frame");
+  return frames;
+}
+
+std::vector<ListedFrame> read_frame_list(const std::string& path, const char* option) {
+  const auto frames = frames_in(read_toml(path, "list of frames", option), path, fs::path(path).parent_path().string());
+  for (const auto& frame : frames)
+    if (frame.name.find('/') != frame.name.npos || frame.name.starts_with('.'))
+      fail(ErrorKind::input, "{}: the name {} of the list must be one that a file may have, without / and no dot first",
+           path, frame.name);
+  return frames;
+}
+
+std::string with_name(std::string text, const std::string& name) {
+  const std::string place = kNamePlace;
+  for (std::size_t at = text.find(place); at != text.npos; at = text.find(place, at + name.size()))
+    text.replace(at, place.size(), name);
+  return text;
+}
+
+}  // namespace alcove
