@@ -56,8 +56,8 @@ std::vector<std::string> presets_of(const std::vector<std::string>& words);
 std::vector<std::string> files_of_preset(const std::string& preset);
 /// Gives the alcove.toml beside a file or in the nearest folder above it. Fails with ErrorKind::usage.
 std::string project_file(const std::string& input);
-/// Gives what a preset says, behind what those say that it builds on, in the order of the files. Fails with ErrorKind::usage, naming preset and key, on keys that
-/// are no options.
+/// Gives what a preset says, behind what those say that it builds on, in the order of the files. Fails with
+/// ErrorKind::usage, naming preset and key, on keys that are no options.
 std::vector<OptionValue> values_of_preset(const std::string& preset);
 
 /// Gives what a preset is for: the first sentence of the comment that its file begins with, "" without one.
