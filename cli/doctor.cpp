@@ -82,7 +82,8 @@ std::string picture_text() {
 /// The variables that change what a run does, those that are set.
 std::string environment_text() {
   std::vector<std::string> names = gpu::driver_variables(), set;
-  names.insert(names.end(), {"ALCOVE_PRESETS", "OCIO", "XDG_CACHE_HOME", "TMPDIR", "SLURM_JOB_ID"});
+  names.insert(names.end(),
+               {"ALCOVE_PRESETS", "ALCOVE_PRESET_PATH", "OCIO", "XDG_CACHE_HOME", "TMPDIR", "SLURM_JOB_ID"});
   for (const auto& name : names)
     if (const char* value = std::getenv(name.c_str())) set.push_back(fmt::format("{}={}", name, value));
   return set.empty() ? "nothing of note" : fmt::format("{}", fmt::join(set, " "));

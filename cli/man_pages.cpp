@@ -108,7 +108,8 @@ constexpr const char* kExitStatus =
     ".TP\n6\nA comparison failed.\n.TP\n128 and more\nThe number of the signal that ended the run, plus 128.\n";
 
 constexpr const char* kEnvironment =
-    ".SH ENVIRONMENT\n.TP\nALCOVE_PRESETS\nThe folder of presets.\n.TP\nOCIO\nThe colour configuration of composites "
+    ".SH ENVIRONMENT\n.TP\nALCOVE_PRESETS\nThe folder of presets.\n.TP\nALCOVE_PRESET_PATH\n"
+    "Folders of further presets, with colons, which come first.\n.TP\nOCIO\nThe colour configuration of composites "
     "and previews.\n.TP\nXDG_CACHE_HOME\nWhere compiled kernels are kept, in the folder alcove.\n";
 
 std::string see_also(const std::string& but) {

@@ -55,11 +55,23 @@ std::vector<OptionValue> values_of_sets(const Words& sets) {
   return values;
 }
 
+/// The project's file, and then the presets.
+Words presets_in(const TypedOptions& typed) {
+  Words presets;
+  if (is_on(typed, "--project")) {
+    Words inputs;
+    for (const char* option : {"INPUT", "--depth", "--position"})
+      std::ranges::copy(words_for(typed, option), std::back_inserter(inputs));
+    presets.push_back(project_file(inputs.empty() ? "" : inputs.front()));
+  }
+  std::ranges::copy(presets_of(words_for(typed, "--preset")), std::back_inserter(presets));
+  return presets;
+}
+
 /// The values of presets and then of the command line.
 std::vector<OptionValue> all_values(const TypedOptions& typed) {
   std::vector<OptionValue> values;
-  for (const auto& preset : presets_of(words_for(typed, "--preset")))
-    std::ranges::copy(values_of_preset(preset), std::back_inserter(values));
+  for (const auto& preset : presets_in(typed)) std::ranges::copy(values_of_preset(preset), std::back_inserter(values));
   for (auto& value : values_of_sets(words_for(typed, "--set"))) {
     if (!words_for(typed, value.row->name).empty())
       fail(ErrorKind::usage, "{} is given more than once", value.row->long_name());
@@ -114,6 +126,7 @@ std::vector<ProposedOption> proposed_options(const TypedOptions& typed, const Se
     values.erase(idle);
   }
   std::vector<ProposedOption> proposed;
+  if (is_on(typed, "--project")) proposed.push_back({"--project", "--project"});
   for (const auto& preset : words_for(typed, "--preset"))
     proposed.push_back({"--preset " + for_shell(preset), "--preset " + for_shell(preset)});
   for (const auto& value : values) proposed.push_back({value.row->long_name(), words_of(value)});
@@ -222,13 +235,15 @@ std::optional<TypedOptions> read_arguments(const Command& command, const std::ve
   bool prints_config = false;
   with_help(command, [&] {
     options.settings = with_values(options.settings, all_values(*typed), reader);
-    for (const auto& preset : presets_of(words_for(*typed, "--preset")))
-      options.settings.preset_files.push_back(preset_file(preset));
+    for (const auto& preset : presets_in(*typed))
+      std::ranges::copy(files_of_preset(preset), std::back_inserter(options.settings.preset_files));
     options.dry_run = is_on(*typed, "--dry-run");
     prints_config = is_on(*typed, "--print-config");
+    if (is_on(*typed, "--shareable") && !prints_config)
+      fail(ErrorKind::usage, "--shareable has no effect without --print-config");
   });
   if (!prints_config) return typed;
-  fmt::print("{}", preset_text(options.settings));
+  fmt::print("{}", preset_text(options.settings, is_on(*typed, "--shareable")));
   return std::nullopt;
 }
 

@@ -44,15 +44,20 @@ bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOpt
 /// Gives the folder of presets: ALCOVE_PRESETS, else beside the program, above it, or in ../share/alcove. Fails with
 /// ErrorKind::usage.
 std::string preset_folder();
-/// Gives the names of presets: paths below the folder without .toml, sorted.
+/// Gives the names of presets, sorted: paths without .toml below that folder, below those of ALCOVE_PRESET_PATH and
+/// below alcove/presets of the user's configuration.
 std::vector<std::string> preset_names();
-/// Gives the file of a preset, which is named, in any case, or is a path. Fails with ErrorKind::usage, naming the
-/// nearest.
+/// Gives the file of a preset, which is named, in any case, or is a path. ALCOVE_PRESET_PATH comes before the user's
+/// configuration, and that before the program's own. Fails with ErrorKind::usage, naming the nearest.
 std::string preset_file(const std::string& name);
 /// Gives the presets of words that may be lists with commas: each word is a preset, or else its parts are.
 std::vector<std::string> presets_of(const std::vector<std::string>& words);
-/// Gives what a preset says, in the order of its file. Fails with ErrorKind::usage, naming preset and key, on keys that
-/// are no options.
+/// Gives the files of a preset and of those that it builds on.
+std::vector<std::string> files_of_preset(const std::string& preset);
+/// Gives the alcove.toml beside a file or in the nearest folder above it. Fails with ErrorKind::usage.
+std::string project_file(const std::string& input);
+/// Gives what a preset says, behind what those say that it builds on, in the order of the files. Fails with
+/// ErrorKind::usage, naming preset and key, on keys that are no options.
 std::vector<OptionValue> values_of_preset(const std::string& preset);
 
 /// Gives what a preset is for: the first sentence of the comment that its file begins with, "" without one.

@@ -4,12 +4,15 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/flat_toml.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/options/options.h"
@@ -22,6 +25,76 @@ namespace fs = std::filesystem;
 bool is_file(const std::string& path) {
   std::error_code error;
   return fs::exists(path, error) && !fs::is_directory(path, error);
+}
+
+}  // namespace
+
+namespace {
+
+/// The user's own folders, which come before that of the program. One that is named and not there is an error: another
+/// preset of the same name would be taken.
+std::vector<std::string> own_folders() {
+  std::vector<std::string> folders;
+  std::error_code error;
+  const char* path = std::getenv("ALCOVE_PRESET_PATH");
+  std::istringstream list(path ? path : "");
+  for (std::string folder; std::getline(list, folder, ':');) {
+    if (folder.empty()) continue;
+    if (!fs::is_directory(folder, error)) fail(ErrorKind::usage, "ALCOVE_PRESET_PATH: there is no folder {}", folder);
+    folders.push_back(folder);
+  }
+  const char *config = std::getenv("XDG_CONFIG_HOME"), *home = std::getenv("HOME");
+  const fs::path base = config && *config ? fs::path(config) : home ? fs::path(home) / ".config" : fs::path();
+  if (!base.empty() && fs::is_directory(base / "alcove/presets", error)) folders.push_back(base / "alcove/presets");
+  return folders;
+}
+
+std::vector<std::string> all_folders() {
+  auto folders = own_folders();
+  folders.push_back(preset_folder());
+  return folders;
+}
+
+/// The names in a folder.
+std::vector<std::string> names_below(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == ".toml")
+      names.push_back(entry->path().lexically_relative(folder).replace_extension().string());
+  return names;
+}
+
+/// The file of a known name, of the first folder that has it.
+std::string file_of(const std::string& name) {
+  for (const auto& folder : all_folders())
+    if (const std::string file = folder + "/" + name + ".toml"; is_file(file)) return file;
+  return "";
+}
+
+/// The preset and those that it builds on, what is built on first.
+std::vector<std::string> chain_of(const std::string& preset) {
+  constexpr std::size_t kMost = 8;
+  std::vector<std::string> chain{preset};
+  while (chain.size() <= kMost) {
+    const auto entries = parse_flat_toml(read_text(preset_file(chain.back()), "preset", "--preset"));
+    const auto base = std::ranges::find(entries, "preset", &FlatEntry::key);
+    if (base == entries.end()) return {chain.rbegin(), chain.rend()};
+    if (base->values.size() != 1) fail(ErrorKind::usage, "preset takes one name, and the list has several");
+    chain.push_back(base->values.front());
+  }
+  fail(ErrorKind::usage, "it builds on itself, or on more than {} others", kMost);
+}
+
+/// The same, with the preset in the sentence of an Error.
+std::vector<std::string> named_chain_of(const std::string& preset) {
+  try {
+    return chain_of(preset);
+  } catch (const Error& error) {
+    if (std::string(error.what()).find(preset) != std::string::npos) throw;
+    fail(error.kind(), "{} (--preset): {}", preset, error.what());
+  }
 }
 
 }  // namespace
@@ -40,24 +113,19 @@ std::string preset_folder() {
 }
 
 std::vector<std::string> preset_names() {
-  std::vector<std::string> names;
-  const fs::path folder = preset_folder();
-  std::error_code error;
-  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
-  for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error))
-    if (entry->path().extension() == ".toml")
-      names.push_back(entry->path().lexically_relative(folder).replace_extension().string());
-  std::ranges::sort(names);
-  return names;
+  std::set<std::string> names;
+  for (const auto& folder : all_folders())
+    for (auto& name : names_below(folder)) names.insert(std::move(name));
+  return {names.begin(), names.end()};
 }
 
 std::string preset_file(const std::string& name) {
   // A known name is never a file that happens to lie in the working directory.
   const auto names = preset_names();
-  if (std::ranges::find(names, name) != names.end()) return preset_folder() + "/" + name + ".toml";
+  if (std::ranges::find(names, name) != names.end()) return file_of(name);
   if (is_file(name)) return name;
   if (const auto known = std::ranges::find(names, lower_case(name), lower_case); known != names.end())
-    return preset_folder() + "/" + *known + ".toml";
+    return file_of(*known);
   std::vector<std::string> own = names;
   std::erase_if(own, [](const auto& known) { return known.find('/') != known.npos; });
   fail(ErrorKind::usage,
@@ -75,7 +143,24 @@ std::vector<std::string> presets_of(const std::vector<std::string>& words) {
 }
 
 std::vector<OptionValue> values_of_preset(const std::string& preset) {
-  return preset_values(preset, read_text(preset_file(preset), "preset", "--preset"));
+  std::vector<OptionValue> values;
+  for (const auto& name : named_chain_of(preset))
+    std::ranges::copy(preset_values(name, read_text(preset_file(name), "preset", "--preset"), true),
+                      std::back_inserter(values));
+  return values;
+}
+
+std::vector<std::string> files_of_preset(const std::string& preset) {
+  std::vector<std::string> files;
+  for (const auto& name : named_chain_of(preset)) files.push_back(preset_file(name));
+  return files;
+}
+
+std::string project_file(const std::string& input) {
+  std::error_code error;
+  for (fs::path at = fs::absolute(input, error); at != at.parent_path(); at = at.parent_path())
+    if (const std::string file = (at.parent_path() / "alcove.toml").string(); is_file(file)) return file;
+  fail(ErrorKind::usage, "--project: there is no alcove.toml beside {} or in a folder above it", visible(input));
 }
 
 std::string preset_sentence(const std::string& text) {

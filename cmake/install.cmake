@@ -18,6 +18,8 @@ install(FILES README.md CHANGELOG.md DESTINATION ${documents})
 install(DIRECTORY docs DESTINATION ${documents} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg PATTERN *.json)
 install(FILES examples/interior.gbuffer.exr examples/interior.beauty.exr examples/interior.camera.json DESTINATION ${documents}/examples)
 install(DIRECTORY examples/farm DESTINATION ${documents}/examples USE_SOURCE_PERMISSIONS)
+install(CODE "set(documents \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${documents}\")")
+install(SCRIPT cmake/installed_links.cmake)
 
 # Our licence in Debian's format: indented, with a dot on empty lines.
 file(READ LICENSE licence)

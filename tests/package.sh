@@ -58,6 +58,12 @@ mv "$folder/first" "$folder/moved"  # no path to the prefix is kept
 (cd "$folder/moved" && find . ! -type d -printf '%P\n') >"$folder/files"
 expect_files "cmake --install" "$folder/wanted" "$folder/files"
 examples=$folder/moved/share/doc/alcove/examples
+# Every link of an installed page leads to an installed file.
+(cd "$folder/moved/share/doc/alcove" && grep -oE '\]\([^)#: ]+' README.md CHANGELOG.md docs/*.md examples/*/*.md) | while IFS=: read -r page link; do
+  [ -e "$folder/moved/share/doc/alcove/$(dirname "$page")/${link#](}" ] || echo "$page: ${link#](}"
+done >"$folder/dead"
+[ ! -s "$folder/dead" ] || fail "dead links of installed pages:
+$(cat "$folder/dead")"
 mkdir "$folder/elsewhere"
 # Of the environment only where compiled kernels lie, and what sanitizers are told.
 alone() { (cd "$folder/elsewhere" && env -i XDG_CACHE_HOME="${XDG_CACHE_HOME:-$folder/cache}" ASAN_OPTIONS="${ASAN_OPTIONS:-}" "$folder/moved/bin/alcove" "$@"); }

@@ -36,8 +36,8 @@ std::string why_no_image_io();
 /// Opens a DDS texture as RenderDoc saves it, and reads its first image. Its format must be R32_FLOAT, D32_FLOAT,
 /// R16_UNORM, D16_UNORM, R16_FLOAT, R24_UNORM_X8 / D24_UNORM_S8, R32_FLOAT_X8X24 / D32_FLOAT_S8X24, R32G32_FLOAT,
 /// R16G16_FLOAT, R16G16_UNORM, R8G8B8A8_UNORM, R10G10B10A2_UNORM, R16G16B16A16 (float and unorm) or
-/// R32G32B32A32_FLOAT. The channels are called R, G, B, A, as many as there are; unorm values go from 0 to 1. Fails with
-/// ErrorKind::input on other formats, on headers that make no sense, and on files that are too short.
+/// R32G32B32A32_FLOAT. The channels are called R, G, B, A, as many as there are; unorm values go from 0 to 1. Fails
+/// with ErrorKind::input on other formats, on headers that make no sense, and on files that are too short.
 std::unique_ptr<PictureReader> open_dds(const std::string& path, const char* option);
 
 /// Opens a PNG: Y, or R, G, B, each with A if it has any, of 8 or 16 bits. Fails with ErrorKind::input as

@@ -275,6 +275,7 @@ void add_estimator_rows(std::vector<SettingRow>& rows) {
   };
   show("--preset", "NAME|FILE[,...]", "settings from presets; later ones win")
       .implies(FileRole::input, [](const Settings& all) { return all.preset_files; });
+  command_line.show({"--project", "", "", "", "settings from alcove.toml beside the input, or in a folder above it"});
   show("--set", "KEY=VALUE", "any setting; alcove run --help-markdown lists the keys");
   add_radius_rows(rows);
   add_search_rows(rows);

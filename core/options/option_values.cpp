@@ -40,10 +40,11 @@ const SettingRow& row_of(const FlatEntry& entry) {
 
 }  // namespace
 
-std::vector<OptionValue> preset_values(const std::string& preset, const std::string& text) {
+std::vector<OptionValue> preset_values(const std::string& preset, const std::string& text, bool builds_on_others) {
   std::vector<OptionValue> values;
   try {
-    for (const auto& entry : settings_in(text)) values.push_back({&row_of(entry), entry.values, preset});
+    for (const auto& entry : settings_in(text))
+      if (!builds_on_others || entry.key != "preset") values.push_back({&row_of(entry), entry.values, preset});
   } catch (const Error& error) {
     fail(error.kind(), "{} (--preset): {}", preset, error.what());
   }

@@ -112,6 +112,7 @@ void add_report_rows(std::vector<SettingRow>& rows) {
     return if_given(shows_lines(all), "--progress", kWhy);
   });
   progress.show({"--print-config", "", "", "", "print the settings as a preset and stop"});
+  progress.show({"--shareable", "", "", "", "of --print-config: without files, frames, camera and device"});
 }
 
 /// Text as a cell of a table in Markdown, where a bar would end it.
@@ -236,10 +237,21 @@ std::string option_table_markdown() {
   return text.substr(1);
 }
 
-std::string preset_text(const Settings& settings) {
+namespace {
+
+/// Whether a setting is as good for other frames: no file, no frame, no camera, and nothing of this machine.
+bool is_shareable(const SettingRow& row) {
+  static const Words kCamera{"near", "far", "fov", "vertical-fov", "focal", "aperture", "ortho-width", "roi"};
+  return row.role == FileRole::none && row.group != "Frames" && row.group != "Device" &&
+         std::ranges::find(kCamera, row.key()) == kCamera.end();
+}
+
+}  // namespace
+
+std::string preset_text(const Settings& settings, bool only_shareable) {
   std::string text;
   for (const auto& row : option_table()) {
-    if (!row.is_key()) continue;
+    if (!row.is_key() || (only_shareable && !is_shareable(row))) continue;
     Words words = row.words(settings);
     if (words.empty() || !objection(row, settings).empty()) continue;
     for (auto& word : words) word = toml_of(word);

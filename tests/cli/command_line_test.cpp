@@ -55,7 +55,7 @@ TEST_F(CommandLine, help_of_run_shows_a_dozen_options_and_help_all_the_rest) {
   for (const char* text : {"=auto", "=1000000000", "=none", "=half", "--slices NUMBER=", "--seed NUMBER=0"})
     EXPECT_THAT(all, HasSubstr(text)) << "defaults";
   EXPECT_THAT(all, Not(HasSubstr("filter-width")));
-  EXPECT_LE(options_in(all), 77);
+  EXPECT_LE(options_in(all), 79);
   EXPECT_EQ(run_program({"compare", "--help"}).out, run_program({"compare", "--help-all"}).out);
 }
 
@@ -180,6 +180,47 @@ TEST_F(CommandLine, presets_are_listed_and_printed) {
     EXPECT_EQ(run_program({"presets", name}).out, read_bytes(ALCOVE_SOURCE_DIR "/presets/" + name + ".toml"));
     EXPECT_NE(config({"--preset", name}), "") << name;
   }
+}
+
+TEST_F(CommandLine, presets_of_a_show_come_before_those_of_the_user_and_ours_and_may_build_on_others) {
+  fs::create_directories(folder / "show");
+  fs::create_directories(folder / "home/alcove/presets");
+  write_bytes(folder / "show/look.toml", "intensity = 0.5\npreset = \"draft\"\n");
+  write_bytes(folder / "show/loop.toml", "preset = \"loop\"\n");
+  write_bytes(folder / "home/alcove/presets/look.toml", "intensity = 0.75\n");
+  const auto printed = [&](const std::string& preset, const std::string& path) {
+    return run_program({"run", frame, "--print-config", "--preset", preset},
+                       {.environment = {{"ALCOVE_PRESET_PATH", path}, {"XDG_CONFIG_HOME", folder / "home"}}});
+  };
+  const Finished show = printed("look", folder / "show");
+  EXPECT_THAT(show.out, AllOf(HasSubstr("intensity=0.5\n"), HasSubstr("search=\"quick\"\n"))) << show;
+  EXPECT_THAT(printed("look", "").out, HasSubstr("intensity=0.75\n"));
+  EXPECT_THAT(printed("draft", folder / "show").out, HasSubstr("search=\"quick\"\n"));
+  test::expect_refused(printed("look", folder / "missing"), 2, {"ALCOVE_PRESET_PATH", "missing"});
+  test::expect_refused(printed("loop", folder / "show"), 2, {"loop", "itself"});
+}
+
+TEST_F(CommandLine, a_project_has_settings_of_its_own_where_they_are_asked_for) {
+  fs::create_directories(folder / "shots/010");
+  const std::string shot = folder / "shots/010/frame.exr";
+  write_bytes(folder / "shots/alcove.toml", "intensity = 0.25\n");
+  const auto printed = [&](const Options& more) {
+    return run_program(joined({"run", shot, "--print-config"}, more)).out;
+  };
+  EXPECT_THAT(printed({"--project"}), HasSubstr("intensity=0.25\n"));
+  EXPECT_THAT(printed({"--project", "--intensity", "0.5"}), HasSubstr("intensity=0.5\n"));
+  EXPECT_THAT(printed({}), HasSubstr("intensity=1\n")) << "nothing is read that nobody named";
+  test::expect_refused(run_program({"run", frame, "--print-config", "--project"}), 2, {"--project", frame});
+}
+
+TEST_F(CommandLine, settings_that_are_shared_name_no_files_frames_and_cameras) {
+  const Options words{"run",    frame, "-o",           ao,       "--camera",  camera, "--radius",      "2",
+                      "--near", "1",   "--depth-kind", "device", "--threads", "3",    "--print-config"};
+  EXPECT_THAT(run_program(words).out, AllOf(HasSubstr("output="), HasSubstr("camera="), HasSubstr("near=")));
+  const std::string shared = run_program(joined(words, {"--shareable"})).out;
+  EXPECT_THAT(shared, AllOf(HasSubstr("radius=2\n"), HasSubstr("slices=")));
+  for (const char* key : {"output=", "camera=", "\nnear=", "threads="}) EXPECT_THAT(shared, Not(HasSubstr(key)));
+  test::expect_refused(run_program({"run", frame, "--shareable"}), 2, {"--shareable", "--print-config"});
 }
 
 TEST_F(CommandLine, presets_are_listed_with_what_each_is_for_ours_first_and_inputs_last) {
