@@ -121,6 +121,15 @@ TEST(Detectors, each_fault_is_told_by_its_numbers_and_by_nothing_else) {
   for (const Detector& d : detectors()) EXPECT_TRUE(told.contains(d.code)) << facts_of(d.code).name << " has no case";
 }
 
+TEST(Detectors, the_distance_of_displaced_normals_is_a_median) {
+  Findings f = sound();
+  f.normals = {200, 20, 3};
+  ASSERT_EQ(detected(f).size(), 1);
+  EXPECT_THAT(detected(f)[0].text,
+              HasSubstr("along 90 % of the outlines the normals change beside the depth, by 3 px in "
+                        "the median"));
+}
+
 TEST(Detectors, the_better_depth_of_the_same_file_is_named) {
   Findings f = sound();
   f.has_half_type = true;
