@@ -103,6 +103,22 @@ void check_files(const CompareSettings& s) {
   require(!s.depth_channel.empty(), "--depth-channel", s.depth, "--depth");
   require(s.sky != CompareSettings().sky, "--sky", s.depth, "--depth");
   require(!s.motion_channels.empty(), "--motion-channels", s.motion, "--motion");
+  if (!is_frame_list(s.reference)) return;
+  for (const auto& [option, value] : {std::pair{"--frames", s.frames}, std::pair{"--motion", s.motion}})
+    if (!value.empty())
+      fail(ErrorKind::usage, "{} {}: it is for a sequence, and {} is a list of unlike frames", option, value,
+           s.reference);
+}
+
+/// Refuses a limit of grain, also one that a list has, where there is no depth.
+void check_grain(const CompareSettings& settings) {
+  if (!settings.depth.empty()) return;
+  for (const auto& frame : settings_of_frames(settings))
+    if (frame.limits.max_grain)
+      fail(ErrorKind::usage,
+           "--max-grain {}: grain is measured on plain surfaces, and only depth shows where they are; give --depth "
+           "FILE.exr",
+           *frame.limits.max_grain);
 }
 
 /// Refuses to write over a picture of any frame.
@@ -117,7 +133,7 @@ void check_report(const CompareArguments& arguments, const std::vector<RowOf<Com
   }
   if (!arguments.junit.empty())
     for (const auto& settings : settings_of_frames(arguments.settings))
-      uses.add_output({"--junit", failure_path(arguments.junit, name_of(settings))});
+      uses.add_output({"--junit", failure_path(arguments.junit, name_of(settings))}, " of frame " + name_of(settings));
   for (const auto& file : files_of(rows, arguments, FileRole::report)) {
     uses.add_output(file);
     require_makeable(file.path, file.option.c_str());
@@ -205,13 +221,8 @@ int compare_command(const std::vector<std::string>& arguments) {
   if (!parsed) return 0;
   CompareArguments& a = *parsed;
   check_files(a.settings);
+  check_grain(a.settings);
   check_report(a, syntax.rows);
-  const CompareLimits& given = a.settings.limits;  // a list may have more
-  if (given.max_grain && a.settings.depth.empty())
-    fail(ErrorKind::usage,
-         "--max-grain {}: grain is measured on plain surfaces, and only depth shows where they are; give --depth "
-         "FILE.exr",
-         *given.max_grain);
   a.settings.pictures = !a.report.empty();
   a.settings.failures = !a.junit.empty();
 
