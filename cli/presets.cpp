@@ -73,6 +73,15 @@ std::string file_of(const std::string& name) {
   return "";
 }
 
+/// What a preset builds on: a known name, or a file, which is beside the preset or at a path of its own.
+std::string base_of(const std::string& preset, const FlatEntry& entry) {
+  if (entry.values.size() != 1) fail(ErrorKind::usage, "preset takes one name, and the list has several");
+  const std::string& name = entry.values.front();
+  const std::string beside = (fs::path(preset_file(preset)).parent_path() / name).string();
+  const auto names = preset_names();
+  return std::ranges::find(names, name) == names.end() && is_file(beside) ? beside : name;
+}
+
 /// The preset and those that it builds on, what is built on first.
 std::vector<std::string> chain_of(const std::string& preset) {
   constexpr std::size_t kMost = 8;
@@ -81,8 +90,7 @@ std::vector<std::string> chain_of(const std::string& preset) {
     const auto entries = parse_flat_toml(read_text(preset_file(chain.back()), "preset", "--preset"));
     const auto base = std::ranges::find(entries, "preset", &FlatEntry::key);
     if (base == entries.end()) return {chain.rbegin(), chain.rend()};
-    if (base->values.size() != 1) fail(ErrorKind::usage, "preset takes one name, and the list has several");
-    chain.push_back(base->values.front());
+    chain.push_back(base_of(chain.back(), *base));
   }
   fail(ErrorKind::usage, "it builds on itself, or on more than {} others", kMost);
 }
@@ -158,7 +166,8 @@ std::vector<std::string> files_of_preset(const std::string& preset) {
 
 std::string project_file(const std::string& input) {
   std::error_code error;
-  for (fs::path at = fs::absolute(input, error); at != at.parent_path(); at = at.parent_path())
+  // In /show/../a.exr, /show is no folder above it.
+  for (fs::path at = fs::absolute(input, error).lexically_normal(); at != at.parent_path(); at = at.parent_path())
     if (const std::string file = (at.parent_path() / "alcove.toml").string(); is_file(file)) return file;
   fail(ErrorKind::usage, "--project: there is no alcove.toml beside {} or in a folder above it", visible(input));
 }
