@@ -650,6 +650,9 @@ TEST_F(Compare, frames_of_a_list_have_names_and_limits_of_their_own_and_no_flick
   expect_error(2, {results, list, "--report", list}, {"REFERENCE"});
   expect_error(2, {results, list, "--frames", "1-2"}, {"--frames 1-2", "unlike frames"});
   const std::string hall = "[[frame]]\nname = 'hall'\ninput = 'x'\nreference = 'grey.exr'\n";
+  const std::string yard = "[[frame]]\nname = 'yard'\ninput = 'x'\nreference = 'grey.exr'\nmax-rmse = 1\n";
+  write_bytes(list, hall + "max-excluded = 0.5\n" + yard);
+  EXPECT_EQ(measured({results, list})["limits"][0]["option"], "--max-excluded") << "that one frame has";
   write_bytes(list, hall + "max-grain = 0.1\n");
   expect_error(2, {results, list}, {"--max-grain 0.1", "--depth"});
   for (const char* limit : {"max-rmse = -1", "min-ssim = 7", "max-excluded = 1.5"}) {
