@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "cli/commands.h"
 #include "cli/parsing.h"
@@ -225,6 +226,10 @@ int compare_command(const std::vector<std::string>& arguments) {
   check_report(a, syntax.rows);
   a.settings.pictures = !a.report.empty();
   a.settings.failures = !a.junit.empty();
+  // Of an earlier comparison: where this one comes to no end, they would be taken for its verdict.
+  std::error_code none;
+  for (const std::string& path : {a.report, a.junit})
+    if (!path.empty()) std::filesystem::remove(path, none);
 
   const CompareReport report = compare_pictures(a.settings);
   const auto limits = checked_limits(report);

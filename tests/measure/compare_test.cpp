@@ -609,6 +609,15 @@ TEST_F(CompareSequence, junit_has_a_case_for_each_frame_and_a_picture_for_each_t
   EXPECT_EQ(read_bytes(picture).substr(1, 3), "PNG");
 }
 
+TEST_F(Compare, reports_of_an_earlier_comparison_do_not_stay_where_one_comes_to_no_end) {
+  const std::string a = exr("a.exr", {{"Y", ramp}}), b = exr("b.exr", {{"Y", ramp}});
+  const Options reports{"--junit", folder / "j.xml", "--report", folder / "r.html"};
+  ASSERT_EQ(compare(joined({a, b}, reports)).code, 0);
+  ASSERT_TRUE(fs::exists(folder / "j.xml") && fs::exists(folder / "r.html"));
+  expect_error(3, joined({a, folder / "gone.exr"}, reports), {"gone.exr"});
+  EXPECT_FALSE(fs::exists(folder / "j.xml") || fs::exists(folder / "r.html"));
+}
+
 TEST_F(Compare, junit_escapes_names_and_writes_over_no_input) {
   const auto a = exr("a&b.exr", {{"Y", ramp}}), b = exr("<b>.exr", {{"Y", ramp}});
   ASSERT_EQ(compare({a, b, "--junit", folder / "j.xml"}).code, 0);
