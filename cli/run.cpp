@@ -67,8 +67,7 @@ void require_places(const Settings& settings, const std::vector<ListedFrame>& fr
   for (const FileRole role : {FileRole::output, FileRole::report})
     for (const auto& file : files_of(settings, role)) {
       if (file.path.find(kNamePlace) == file.path.npos)
-        fail(ErrorKind::usage, "{} {}: it has no place for the names of {}: write {}, such as out/{}.exr", file.option,
-             file.path, list, kNamePlace, kNamePlace);
+        fail(ErrorKind::usage, "{} {}: {}", file.option, file.path, why_no_place(list));
       for (const auto& frame : frames)
         uses.add_output({file.option, with_name(file.path, frame.name)}, " of frame " + frame.name);
     }

@@ -60,6 +60,10 @@ ListedFrame frame_of(const TomlTable& table, const fs::path& folder) {
 
 }  // namespace
 
+std::string why_no_place(const std::string& list) {
+  return fmt::format("it has no place for the names of {}: write {}, such as out/{}.exr", list, kNamePlace, kNamePlace);
+}
+
 bool is_frame_list(const std::string& path) { return lower_case(path).ends_with(".toml"); }
 
 std::vector<ListedFrame> frames_in(const toml::table& root, const std::string& path, const std::string& folder) {

@@ -349,19 +349,7 @@ std::string compare_page(const CompareReport& report, const std::vector<CheckedL
 namespace {
 
 /// Text within XML, which has no control characters.
-std::string xml_text(const std::string& text) {
-  std::string escaped;
-  for (const char c : printable(text)) {
-    switch (c) {
-      case '&': escaped += "&amp;"; break;
-      case '<': escaped += "&lt;"; break;
-      case '>': escaped += "&gt;"; break;
-      case '"': escaped += "&quot;"; break;
-      default: escaped += c;
-    }
-  }
-  return escaped;
-}
+std::string xml_text(const std::string& text) { return markup_text(printable(text)); }
 
 }  // namespace
 
