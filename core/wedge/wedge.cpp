@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -17,6 +18,7 @@
 #include "core/formats/sheet.h"
 #include "core/frame/raw_plane.h"
 #include "core/measure/report.h"
+#include "core/options/options.h"
 #include "core/run/first_look.h"
 #include "core/run/memory.h"
 #include "core/run/pipeline.h"
@@ -48,15 +50,35 @@ Json scale_of(const Reading& reading, ShownPicture depth) {
           {"orthographic", view.orthographic != 0}};
 }
 
+/// The values that a run takes of its estimate, but for what shapes the visibility: looks with the same share one.
+std::string estimate_of(Settings settings) {
+  EstimatorSettings& estimator = settings.estimator;
+  const EstimatorSettings plain;
+  estimator.intensity = plain.intensity;
+  estimator.power = plain.power;
+  estimator.least = plain.least;
+  estimator.fade_start = plain.fade_start;
+  estimator.fade_end = plain.fade_end;
+  settings.output.look = {};
+  std::string text;
+  for (const auto& row : option_table())
+    if (row.words) text += fmt::format("{} {}\n", row.name, fmt::join(row.words(settings), "\n"));
+  return text;
+}
+
 /// The looks of one frame after the other.
 class WedgeMaker {
  public:
   WedgeMaker(std::vector<WedgeLook>& looks, bool has_page) : looks_(looks), has_page_(has_page) {
-    for (auto& look : looks_) {
-      Settings settings = look.settings;
+    std::map<std::string, std::size_t> groups;
+    for (std::size_t i = 0; i < looks_.size(); i++) {
+      Settings settings = looks_[i].settings;
       settings.output.aovs = "ao,depth";
       firsts_.emplace_back(settings);
-      add_new(look.notes, firsts_.back().prepare());
+      add_new(looks_[i].notes, firsts_.back().prepare());
+      const auto [group, is_new] = groups.emplace(estimate_of(firsts_.back().plan().settings()), groups_.size());
+      if (is_new) groups_.emplace_back();
+      groups_[group->second].push_back(i);
     }
     set_exr_threads(core_count());
     set_exr_memory(memory_.host_bytes / kCodecPart);
@@ -71,12 +93,12 @@ class WedgeMaker {
       const std::string file = std::filesystem::path(main_input(looks_.front().settings.input)).filename().string();
       planes_ = {};
       frames_.push_back({{"name", plan().is_sequence() ? std::to_string(frame) : file}, {"scale", nullptr}});
-      for (std::size_t i = 0; i < looks_.size(); i++, cell_++) {
-        const auto shown = looks_[i].error ? std::vector<ShownPicture>() : make_look(looks_[i], firsts_[i], frame);
-        if (!sheet) continue;
-        const std::string number = plan().is_sequence() ? fmt::format("{}  ", frame) : "";
-        const std::string end = looks_[i].error ? "failed" : fmt::format("{:.0f} ms", rows_.back()["ms"].get<double>());
-        sheet->put(cell_, fmt::format("{}{}  {}", number, looks_[i].name, end), shown);
+      std::vector<PageCell> cells(looks_.size());
+      for (const auto& group : groups_) make_group(group, frame, cells, sheet);
+      first_cell_ += looks_.size();
+      for (const auto& [row, image] : cells) {
+        if (!row.is_null()) rows_.push_back(row);
+        if (!image.is_null()) images_.push_back(image);
       }
       if (beauty_.width) images_.push_back(image_of("beauty", beauty_, "beauty"));
       beauty_ = {};
@@ -105,6 +127,11 @@ class WedgeMaker {
   }
 
  private:
+  /// What the page has of a look of a frame; null: the look has failed, or there is no page.
+  struct PageCell {
+    Json row, image;
+  };
+
   const FramePlan& plan() { return firsts_.front().plan(); }
 
   /// An image of the page and of this frame, whose picture has that name.
@@ -116,8 +143,18 @@ class WedgeMaker {
             {name, url_of(picture)}};
   }
 
-  /// Gives the AO and the composite, if there is one; nothing where the look fails.
-  std::vector<ShownPicture> make_look(WedgeLook& look, FirstLook& first, int frame) {
+  /// Computes the looks of one estimate, unless they have failed in a frame before.
+  void make_group(const std::vector<std::size_t>& group, int frame, std::vector<PageCell>& cells, Sheet* sheet) {
+    if (!looks_[group.front()].error) run_group(group, frame, cells, sheet);
+    for (const std::size_t look : group) {
+      if (!looks_[look].error) continue;
+      cells[look] = {};
+      if (sheet) sheet->put(first_cell_ + look, label_of(look, frame, "failed"), {});
+    }
+  }
+
+  void run_group(const std::vector<std::size_t>& group, int frame, std::vector<PageCell>& cells, Sheet* sheet) {
+    FirstLook& first = firsts_[group.front()];
     const FramePlan& frames = first.plan();
     const FrameSource* const like = settled_ ? &*settled_ : nullptr;
     const InputSettings& input = frames.settings().input;
@@ -127,34 +164,56 @@ class WedgeMaker {
     InputIdentities identities(frames);
     RunContext run{first, frames, identities, like, nullptr, shot ? &*shot : nullptr, takes_means, {}};
     run.planes = &planes_;
-    // The driver compiles a kernel at its first use, which is no part of the look's time.
-    gpu::Recorder small(lanes_.device());
-    record_small_frame(small, frames.settings().estimator, frames.settings().output);
-    small.run();
-    std::vector<ShownPicture> shown;
-    run.take_results = [&](FrameSource& source, const Window& window, const FrameOutputs& outputs) {
-      const OutputSettings& output = look.settings.output;
-      shown.push_back(shown_plane(source, window, *outputs.ao));
-      if (outputs.composite) {
-        const DisplayTransform transform(output.ocio, output.display, output.view_transform);
-        shown.push_back(shown_colors(source, window, outputs.composite, &transform));
-        if (has_page_ && !beauty_.width) beauty_ = shown_colors(source, window, nullptr, &transform);
-      }
-      Json& scale = frames_.back()["scale"];
-      if (has_page_ && scale.is_null()) scale = scale_of(source.reading, shown_plane(source, window, *outputs.depth));
+    for (const std::size_t look : group) {
+      run.looks.push_back(firsts_[look].plan().at(frame));
+      // The driver compiles a kernel at its first use, which is no part of the look's time.
+      gpu::Recorder small(lanes_.device());
+      record_small_frame(small, run.looks.back().estimator, run.looks.back().output);
+      small.run();
+    }
+    std::vector<double> ms(group.size());
+    run.take_look = [&](std::size_t i, FrameSource& source, const Window& window, const FrameOutputs& outputs,
+                        double of_look) {
+      ms[i] = of_look;
+      const std::vector<ShownPicture> shown = pictures_of(source, window, outputs, run.looks[i].output);
+      put_into_page(looks_[group[i]], shown, of_look, cells[group[i]]);
+      const std::string label = label_of(group[i], frame, fmt::format("{:.0f} ms", of_look));
+      if (sheet) sheet->put(first_cell_ + group[i], label, shown);
     };
     const auto take = [&](FrameReport&& report) {
-      look.ms += report.compute_ms;
-      look.error = report.error;
-      add_new(look.notes, report.notes);
-      if (report.error) return;
-      rows_.push_back({{"frame", frames_.back()["name"]}, {"candidate", look.name}, {"ms", report.compute_ms}});
-      if (!has_page_) return;
-      images_.push_back(image_of(look.name, shown[0], "result"));
-      if (shown.size() > 1) images_.back()["composite"] = url_of(shown[1]);
+      for (std::size_t i = 0; i < group.size(); i++) {
+        WedgeLook& look = looks_[group[i]];
+        look.ms += report.error ? 0 : ms[i];
+        look.error = report.error;
+        add_new(look.notes, report.notes);
+      }
     };
     run_pipeline(lanes_, run, room_of_lane(memory_, 1, lanes_.device().info()), std::span(&frame, 1), take, {});
+  }
+
+  /// The AO and the composite, if there is one.
+  std::vector<ShownPicture> pictures_of(FrameSource& source, const Window& window, const FrameOutputs& outputs,
+                                        const OutputSettings& output) {
+    std::vector<ShownPicture> shown{shown_plane(source, window, *outputs.ao)};
+    Json& scale = frames_.back()["scale"];
+    if (has_page_ && scale.is_null()) scale = scale_of(source.reading, shown_plane(source, window, *outputs.depth));
+    if (!outputs.composite) return shown;
+    const DisplayTransform transform(output.ocio, output.display, output.view_transform);
+    shown.push_back(shown_colors(source, window, outputs.composite, &transform));
+    if (has_page_ && !beauty_.width) beauty_ = shown_colors(source, window, nullptr, &transform);
     return shown;
+  }
+
+  void put_into_page(const WedgeLook& look, const std::vector<ShownPicture>& shown, double ms, PageCell& cell) const {
+    cell.row = {{"frame", frames_.back()["name"]}, {"candidate", look.name}, {"ms", ms}};
+    if (!has_page_) return;
+    cell.image = image_of(look.name, shown[0], "result");
+    if (shown.size() > 1) cell.image["composite"] = url_of(shown[1]);
+  }
+
+  std::string label_of(std::size_t look, int frame, const std::string& end) {
+    const std::string number = plan().is_sequence() ? fmt::format("{}  ", frame) : "";
+    return fmt::format("{}{}  {}", number, looks_[look].name, end);
   }
 
   std::vector<WedgeLook>& looks_;
@@ -162,11 +221,12 @@ class WedgeMaker {
   const DeviceSettings& device_ = looks_.front().settings.device;
   Lanes lanes_{{device_.device, device_.require_gpu, device_.validate, !device_.no_pipeline_cache}, 1};
   const RunMemory memory_ = memory_for_frames(looks_.front().settings, lanes_.device().info());
-  std::deque<FirstLook> firsts_;        // of each look
-  std::optional<FrameSource> settled_;  // as which all are read
-  ReadPlanes planes_;                   // of the frame
-  std::size_t cell_ = 0;                // of the sheet
-  ShownPicture beauty_;                 // of the frame, where there are composites
+  std::deque<FirstLook> firsts_;                  // of each look
+  std::vector<std::vector<std::size_t>> groups_;  // looks that have one estimate, in the order of the first of each
+  std::optional<FrameSource> settled_;            // as which all are read
+  ReadPlanes planes_;                             // of the frame
+  std::size_t first_cell_ = 0;                    // of the sheet, of the frame
+  ShownPicture beauty_;                           // of the frame, where there are composites
   Json rows_ = Json::array(), images_ = Json::array(), frames_ = Json::array();
 };
 
