@@ -409,18 +409,18 @@ class FrameRun {
     const FrameInputs inputs = load(source, computed);
     last_.forget();
     const Seen seen = see(gpu_, inputs, settings_.estimator, settings_.output);
-    const double shared_ms = run_passes();
+    LookTime time{run_passes()};
     for (std::size_t i = 0; i < run_.looks.size(); i++) {
       go_on();
       const Settings& look = run_.looks[i];
       const FrameOutputs outputs = results_of(gpu_, inputs, seen, look.estimator, look.output);
-      const double ms = shared_ms + run_passes();
+      time.own_ms = run_passes();
       // What is noted is the same of each.
       if (i == 0) {
         tally_.add_outputs(outputs, computed, false);
         finish_tally(source);
       }
-      run_.take_look(i, source, computed, outputs, ms);
+      run_.take_look(i, source, computed, outputs, time);
     }
   }
 

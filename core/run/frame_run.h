@@ -63,9 +63,14 @@ class FrameTally {
 
 // The frame.
 
-/// Takes the results of the look of that number, over a window, and the device time of a run with this look alone.
+/// The device time of a look: a run with it alone takes the sum.
+struct LookTime {
+  double estimate_ms = 0;  // of what all looks share
+  double own_ms = 0;
+};
+/// Takes the results of the look of that number, over a window.
 using TakeLook =
-    std::function<void(std::size_t look, FrameSource&, const Window&, const FrameOutputs&, double milliseconds)>;
+    std::function<void(std::size_t look, FrameSource&, const Window&, const FrameOutputs&, const LookTime&)>;
 
 /// The common state of all frames of a run.
 struct RunContext {

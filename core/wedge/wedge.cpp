@@ -173,11 +173,13 @@ class WedgeMaker {
     }
     std::vector<double> ms(group.size());
     run.take_look = [&](std::size_t i, FrameSource& source, const Window& window, const FrameOutputs& outputs,
-                        double of_look) {
-      ms[i] = of_look;
+                        const LookTime& time) {
+      ms[i] = time.estimate_ms + time.own_ms;
       const std::vector<ShownPicture> shown = pictures_of(source, window, outputs, run.looks[i].output);
-      put_into_page(looks_[group[i]], shown, of_look, cells[group[i]]);
-      const std::string label = label_of(group[i], frame, fmt::format("{:.0f} ms", of_look));
+      put_into_page(looks_[group[i]], shown, cells[group[i]]);
+      cells[group[i]].row["ms"] = ms[i];
+      cells[group[i]].row["estimate_ms"] = time.estimate_ms;
+      const std::string label = label_of(group[i], frame, fmt::format("{:.0f} ms", ms[i]));
       if (sheet) sheet->put(first_cell_ + group[i], label, shown);
     };
     const auto take = [&](FrameReport&& report) {
@@ -204,8 +206,8 @@ class WedgeMaker {
     return shown;
   }
 
-  void put_into_page(const WedgeLook& look, const std::vector<ShownPicture>& shown, double ms, PageCell& cell) const {
-    cell.row = {{"frame", frames_.back()["name"]}, {"candidate", look.name}, {"ms", ms}};
+  void put_into_page(const WedgeLook& look, const std::vector<ShownPicture>& shown, PageCell& cell) const {
+    cell.row = {{"frame", frames_.back()["name"]}, {"candidate", look.name}};
     if (!has_page_) return;
     cell.image = image_of(look.name, shown[0], "result");
     if (shown.size() > 1) cell.image["composite"] = url_of(shown[1]);

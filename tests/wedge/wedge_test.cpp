@@ -74,6 +74,26 @@ TEST_F(Wedge, shows_the_bits_of_its_commands) {
   expect_bits_of_commands(shown(of_frame("--radius .7 --estimator hbao,crytek,bitmask --intensity 1,2")));
 }
 
+// Looks that differ in their shaping alone take one estimate, and so one time of it.
+TEST_F(Wedge, estimates_once_for_looks_that_differ_in_their_shaping_alone) {
+  FrameFile with_beauty = wall_frame();
+  add_beauty(with_beauty);
+  with_beauty.write(frame);
+  const auto estimates_of = [](const json& report) {
+    std::set<double> times;
+    for (const auto& row : report["rows"]) times.insert(row["estimate_ms"].get<double>());
+    return times.size();
+  };
+  const json report = shown(of_frame("--radius .5,auto --set intensity=.5,1,1.5,2"));
+  ASSERT_EQ(report["rows"].size(), 8);
+  EXPECT_EQ(estimates_of(report), 2);
+  expect_bits_of_commands(report);
+  EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --set least=0,.2 --set gain=1,2 --set power=1,2"))), 1);
+  EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --set slices=2,4 --set intensity=1,2"))), 2);
+  write_bytes(folder / "dark.toml", "intensity=2\n");
+  EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --preset standard," + (folder / "dark.toml")))), 1);
+}
+
 // What a frame is read by goes into the commands, be it a guess's option, a name with blanks or a flag.
 TEST_F(Wedge, reads_the_frame_as_run_does) {
   FrameFile other = wall_frame();
