@@ -120,6 +120,14 @@ std::size_t count_of(const std::vector<Words>& arguments) {
   return count;
 }
 
+/// A file's name without the folder in which all of the list lie.
+std::string without_shared_folder(const Words& files, const std::string& file) {
+  const auto folder_of = [](const std::string& path) { return path.substr(0, path.rfind('/') + 1); };
+  const std::string folder = folder_of(file);
+  const bool is_shared = std::ranges::all_of(files, [&](const auto& other) { return folder_of(other) == folder; });
+  return is_shared ? file.substr(folder.size()) : file;
+}
+
 /// The look of that number: the values of the last list change fastest. The last argument is the radius.
 WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::size_t number) {
   Words chosen, parts;
@@ -136,7 +144,8 @@ WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::
     const std::string option = i > 0 ? arguments[i - 1].front() : "";
     const std::string name =
         option == "--preset" || option == "--set" ? "" : option.substr(std::min<std::size_t>(2, option.size())) + " ";
-    if (arguments[i].size() > 1 || (parts.empty() && i + 1 == arguments.size())) parts.push_back(name + value);
+    if (arguments[i].size() == 1 && !(parts.empty() && i + 1 == arguments.size())) continue;
+    parts.push_back(name + (option == "--preset" ? without_shared_folder(arguments[i], value) : value));
   }
   chosen.insert(chosen.end(), {"-o", usual_output(typed.input, "ao", ".exr")});
   if (typed.no_composite.empty())
@@ -231,8 +240,8 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
   for (std::size_t i = 0; i < count; i++) {
     looks.push_back(look_of(typed, all, i));
     std::string& name = looks.back().name;
-    if (proposed && looks.back().settings.estimator.radius == proposed)
-      name += name.find("radius") != name.npos ? " (proposed)" : " (proposed radius)";
+    const bool has_own_radius = radii.size() > 1 || count == 1;
+    if (proposed && has_own_radius && looks.back().settings.estimator.radius == proposed) name += " (proposed)";
   }
   check_looks(looks);
   return looks;

@@ -427,8 +427,8 @@ class FrameRun {
   void run_whole(FrameSource& source, const Window& computed) {
     if (run_.take_look) return run_looks(source, computed);
     const EstimatorSettings& estimator = settings_.estimator;
-    const bool reuses = run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed &&
-                        !run_.takes_means;
+    const bool reuses =
+        run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.takes_means;
     const FrameOutputs outputs = compute(source, computed, reuses);
     finish_tally(source);
     const Stopwatch writing;
@@ -511,7 +511,7 @@ class FrameRun {
   /// Pictures show a frame on a scale of its own, which no tile knows.
   void refuse_pictures(const FrameSource& source, WindowLimits limits, const Window& computed) const {
     if (settings_.output.preview.empty() && settings_.output.debug.empty()) return;
-    const char* const whose = run_.take_look                  ? "a wedge needs it whole: give a part by --roi"
+    const char* const whose = run_.take_look                     ? "a wedge needs it whole: give a part by --roi"
                               : settings_.output.preview.empty() ? "--set debug needs it whole: leave it out"
                                                                  : "--preview needs it whole: leave it out";
     if (!source.region && !run_.planes) limits.kept = 0;  // all of it is read into its buffers

@@ -238,7 +238,8 @@ void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const st
   WedgeMaker maker(looks, !page.empty());
   std::set<std::optional<double>> radii;
   for (const auto& look : looks) radii.insert(look.settings.estimator.radius);
-  Sheet cells(maker.frames() * looks.size(), radii.size() < looks.size() ? radii.size() : 0);
+  const bool has_rows = radii.size() > 1 && radii.size() < looks.size();
+  Sheet cells(maker.frames() * looks.size(), has_rows ? radii.size() : 0);
   maker.make(sheet.empty() ? nullptr : &cells);
   if (!page.empty()) write_whole(page, maker.page());
   if (!sheet.empty()) cells.write(sheet);

@@ -22,7 +22,7 @@ struct WedgeLook {
 };
 
 /// Computes looks of the same frames, which are read alike, and once; all but time, notes and errors is given. Writes a
-/// page and a sheet; "" stands for none. A row of the sheet has all radii, where anything else differs too. A look that
+/// page and a sheet; "" stands for none. A row of the sheet has all radii, where there are several and anything else differs too. A look that
 /// fails is left out. Fails with the first error where all looks fail, and with ErrorKind::output.
 void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet);
 

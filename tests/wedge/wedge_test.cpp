@@ -3,6 +3,7 @@
 #include <regex>
 #include <sstream>
 
+#include "core/formats/picture.h"
 #include "core/measure/report.h"
 #include "tests/support/sequence_folder.h"
 
@@ -126,10 +127,28 @@ TEST_F(Wedge, has_the_radius_that_inspect_proposes) {
   EXPECT_EQ(names_of(shown(of_frame("--radius 9,.01"))), (Names{"radius 0.01", name, "radius 9"}));
   EXPECT_EQ(names_of(shown(of_frame("--radius auto"))), Names{name});
   EXPECT_EQ(names_of(shown(of_frame("--set radius=9,.01"))), (Names{"radius 0.01", name, "radius 9"}));
-  EXPECT_EQ(names_of(shown(of_frame("--radius auto --set intensity=1,2"))),
-            (Names{"intensity=1 (proposed radius)", "intensity=2 (proposed radius)"}));
+  EXPECT_EQ(names_of(shown(of_frame("--radius auto --set intensity=1,2"))), (Names{"intensity=1", "intensity=2"}));
   EXPECT_EQ(names_of(shown(of_frame(fmt::format("--radius 9,{} --preset draft,standard", proposed)))),
             (Names{"draft, " + name, "draft, radius 9", "standard, " + name, "standard, radius 9"}));
+}
+
+TEST_F(Wedge, names_no_look_by_what_all_have) {
+  for (const char* preset : {"soft", "hard"}) write_bytes(folder / preset, "intensity=2\n");
+  const std::string presets = (folder / "soft") + "," + (folder / "hard");
+  EXPECT_EQ(names_of(shown(of_frame("--radius auto --preset " + presets))), (Names{"soft", "hard"}));
+  EXPECT_EQ(names_of(shown(of_frame("--radius auto --preset standard," + (folder / "soft")))),
+            (Names{"standard", folder / "soft"}));
+}
+
+// The sheet of looks of one radius is no column.
+TEST_F(Wedge, makes_sheets_about_as_wide_as_high) {
+  const auto width_of = [&](const std::string& more) {
+    EXPECT_EQ(run(typed(frame + " --camera " + camera + " --sheet " + sheet + " " + more)).code, 0);
+    return open_image(sheet, "the test", Formats::all).parts()[0].data.width;
+  };
+  const int cell = width_of("--radius auto") - 8;
+  EXPECT_EQ(width_of("--radius auto --set intensity=1,2,3,4"), 2 * cell + 8);
+  EXPECT_EQ(width_of("--radius .1,.2,auto --set intensity=1,2"), 3 * cell + 8) << "a row of all radii";
 }
 
 TEST_F(Wedge, of_a_beauty_shows_composites_and_makes_them) {
