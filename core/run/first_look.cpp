@@ -369,7 +369,7 @@ std::string plan_text(FirstLook& look, bool is_wedge) {
   if (!plan.missing().empty())
     line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
   for (const auto& note : notes) line(level_of(note), line_of(note, ""));
-  refuse_overwriting(plan);
+  if (!is_wedge) refuse_overwriting(plan);
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
   require_endings(first.output);
@@ -407,8 +407,8 @@ std::string plan_text(FirstLook& look, bool is_wedge) {
                               : is_wedge      ? "too little, for a wedge needs it whole: give a part by --roi"
                                               : tiles_text(source, first, limits);
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
-  if (const std::string needs = needs_text(source, first, limits, plan.is_sequence()); !needs.empty())
-    line("--memory", needs);
+  const std::string needs = is_wedge ? "" : needs_text(source, first, limits, plan.is_sequence());
+  if (!needs.empty()) line("--memory", needs);
   const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared,
                                   const std::string& cost) {
     line(name, fmt::format("up to {} of the {} frames of the shot: {} MiB of {} for each at once, beside what it takes "

@@ -503,14 +503,15 @@ class FrameRun {
     const std::uint64_t side_by_side = settings_.output.preview_style == "split" ? 4 : 1;  // each, and both
     const std::uint64_t bytes = picture_of(source.reading, source.reading.display).pixels() * kBytes * side_by_side;
     if (bytes > room_.bytes)
-      limits.refuse(fmt::format("{}: a preview shows the display window, {}: leave out --preview", report_.input,
-                                to_string(source.reading.display)),
+      limits.refuse(fmt::format("{}: {} shows the display window, {}: {}", report_.input,
+                                run_.take_look ? "a wedge" : "a preview", to_string(source.reading.display),
+                                run_.take_look ? "use a smaller frame" : "leave out --preview"),
                     MemoryNeeds{bytes, bytes});
   }
 
   /// Pictures show a frame on a scale of its own, which no tile knows.
   void refuse_pictures(const FrameSource& source, WindowLimits limits, const Window& computed) const {
-    if (settings_.output.preview.empty() && settings_.output.debug.empty()) return;
+    if (!run_.take_look && settings_.output.preview.empty() && settings_.output.debug.empty()) return;
     const char* const whose = run_.take_look                     ? "a wedge needs it whole: give a part by --roi"
                               : settings_.output.preview.empty() ? "--set debug needs it whole: leave it out"
                                                                  : "--preview needs it whole: leave it out";

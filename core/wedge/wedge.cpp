@@ -66,19 +66,27 @@ std::string estimate_of(Settings settings) {
   return text;
 }
 
+/// Looks by their numbers, those together that have one estimate.
+std::vector<std::vector<std::size_t>> groups_of(const std::vector<WedgeLook>& looks) {
+  std::map<std::string, std::size_t> known;
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < looks.size(); i++) {
+    const auto [group, is_new] = known.emplace(estimate_of(looks[i].settings), groups.size());
+    if (is_new) groups.emplace_back();
+    groups[group->second].push_back(i);
+  }
+  return groups;
+}
+
 /// The looks of one frame after the other.
 class WedgeMaker {
  public:
   WedgeMaker(std::vector<WedgeLook>& looks, bool has_page) : looks_(looks), has_page_(has_page) {
-    std::map<std::string, std::size_t> groups;
-    for (std::size_t i = 0; i < looks_.size(); i++) {
-      Settings settings = looks_[i].settings;
+    for (auto& look : looks_) {
+      Settings settings = look.settings;
       settings.output.aovs = "ao,depth";
       firsts_.emplace_back(settings);
-      add_new(looks_[i].notes, firsts_.back().prepare());
-      const auto [group, is_new] = groups.emplace(estimate_of(firsts_.back().plan().settings()), groups_.size());
-      if (is_new) groups_.emplace_back();
-      groups_[group->second].push_back(i);
+      add_new(look.notes, firsts_.back().prepare());
     }
     set_exr_threads(core_count());
     set_exr_memory(memory_.host_bytes / kCodecPart);
@@ -223,12 +231,12 @@ class WedgeMaker {
   const DeviceSettings& device_ = looks_.front().settings.device;
   Lanes lanes_{{device_.device, device_.require_gpu, device_.validate, !device_.no_pipeline_cache}, 1};
   const RunMemory memory_ = memory_for_frames(looks_.front().settings, lanes_.device().info());
-  std::deque<FirstLook> firsts_;                  // of each look
-  std::vector<std::vector<std::size_t>> groups_;  // looks that have one estimate, in the order of the first of each
-  std::optional<FrameSource> settled_;            // as which all are read
-  ReadPlanes planes_;                             // of the frame
-  std::size_t first_cell_ = 0;                    // of the sheet, of the frame
-  ShownPicture beauty_;                           // of the frame, where there are composites
+  const std::vector<std::vector<std::size_t>> groups_ = groups_of(looks_);
+  std::deque<FirstLook> firsts_;        // of each look
+  std::optional<FrameSource> settled_;  // as which all are read
+  ReadPlanes planes_;                   // of the frame
+  std::size_t first_cell_ = 0;          // of the sheet, of the frame
+  ShownPicture beauty_;                 // of the frame, where there are composites
   Json rows_ = Json::array(), images_ = Json::array(), frames_ = Json::array();
 };
 
@@ -243,6 +251,19 @@ void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const st
   maker.make(sheet.empty() ? nullptr : &cells);
   if (!page.empty()) write_whole(page, maker.page());
   if (!sheet.empty()) cells.write(sheet);
+}
+
+std::string wedge_text(const std::vector<WedgeLook>& looks) {
+  FirstLook first(looks.front().settings);
+  const std::size_t estimates = groups_of(looks).size();
+  const InputSettings& input = looks.front().settings.input;
+  const bool takes_from_others = input.accumulate > 0 || takes_others(input);
+  std::string text = plan_text(first, true);
+  text += fmt::format("{:<14}{} of each frame, by {} estimate{}{}\n", "looks", looks.size(), estimates,
+                      estimates == 1 ? "" : "s",
+                      takes_from_others && estimates > 1 ? ", each of which takes frames around anew" : "");
+  for (const auto& look : looks) text += fmt::format("{:<14}{}\n", "", printable(look.name));
+  return text;
 }
 
 }  // namespace alcove

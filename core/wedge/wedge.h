@@ -26,4 +26,8 @@ struct WedgeLook {
 /// fails is left out. Fails with the first error where all looks fail, and with ErrorKind::output.
 void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet);
 
+/// What make_wedge() would do, as --dry-run prints it. Computes and writes nothing. Fails as that would on settings,
+/// names, and a single frame that cannot be read as it is.
+std::string wedge_text(const std::vector<WedgeLook>& looks);
+
 }  // namespace alcove

@@ -236,6 +236,27 @@ TEST_F(Wedge, tells_which_look_fails_and_shows_the_others) {
   EXPECT_TRUE(fs::exists(sheet));
 }
 
+TEST_F(Wedge, that_fails_leaves_no_page_of_an_earlier_one_and_says_why) {
+  for (const auto& file : {page, sheet}) write_bytes(file, "of an earlier wedge");
+  const Finished failed = run(joined(of_frame("--radius 1,2 --memory 1M"), {"--sheet", sheet}));
+  EXPECT_EQ(failed.code, 2) << failed;
+  EXPECT_THAT(failed.err, AllOf(HasSubstr("at least --memory"), Not(HasSubstr("beauty"))));
+  EXPECT_FALSE(fs::exists(page) || fs::exists(sheet));
+}
+
+TEST_F(Wedge, may_be_tried_dry) {
+  write_bytes(page, "of an earlier wedge");
+  const Finished dry = run(of_frame("--radius 1,2 --set intensity=1,2 --dry-run"));
+  EXPECT_EQ(dry.code, 0) << dry;
+  EXPECT_THAT(dry.out, AllOf(HasSubstr("memory  "), Not(HasSubstr("ao.exr")), HasSubstr("no composite")));
+  EXPECT_THAT(dry.out, testing::ContainsRegex("looks +6 of each frame, by 3 estimates\n +intensity=1, radius"));
+  EXPECT_EQ(read_bytes(page), "of an earlier wedge");
+  write_frames(1, 5);
+  const std::string shot = in + "/f.####.exr";
+  EXPECT_THAT(run(of_frame("--radius auto --frames 3 --set intensity=1,2 --around 1 --dry-run", shot)).out,
+              AllOf(HasSubstr(" reads for 1 frame, "), HasSubstr("by 1 estimate\n")));
+}
+
 TEST_F(Wedge, may_say_nothing) {
   const Finished quiet = run(of_frame("--radius 1 -q"));
   EXPECT_EQ(quiet.code, 0);
