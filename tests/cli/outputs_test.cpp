@@ -195,6 +195,47 @@ TEST_F(Composites, no_frame_of_a_list_writes_over_what_another_one_reads) {
   test::expect_refused(run_program({"run", list}), 3, {"frame b", "is a list itself"});
 }
 
+TEST_F(Composites, a_list_with_a_bad_frame_ends_before_any_work_or_goes_on_where_it_is_told_to) {
+  compute();
+  const std::string list = folder / "list.toml", good = folder / "good.exr", bad = folder / "bad.0001.exr";
+  const auto entry = [&](const std::string& name, const std::string& file) {
+    return "[[frame]]\nname = '" + name + "'\ninput = '" + file + "'\ncamera = '" + folder / "camera.json" +
+           "'\nradius = 1\n";
+  };
+  const auto run_list = [&](const Options& more) {
+    fs::remove(good);
+    return run_program(joined({"run", list, "-o", folder / "{name}.exr"}, more));
+  };
+  for (const std::string& lost : {folder / "in.lost.exr", folder / "in.lost.####.exr"}) {
+    write_bytes(list, entry("lost", lost) + entry("good", frame));
+    test::expect_refused(run_list({}), 3, {"lost"});
+    EXPECT_FALSE(fs::exists(good));
+    EXPECT_EQ(run_list({"--keep-going"}).code, 1) << lost;
+    EXPECT_TRUE(fs::exists(good));
+    EXPECT_EQ(run_list({"--set", "missing=skip"}).code, 0) << lost;
+    EXPECT_TRUE(fs::exists(good));
+  }
+  write_bytes(list, entry("good", frame) + entry("lost", folder / "in.lost.exr"));
+  EXPECT_EQ(run_list({}).code, 3);
+  EXPECT_FALSE(fs::exists(good)) << "a missing input is known before any work";
+  write_bytes(bad, "no EXR");
+  write_bytes(list, entry("bad", bad) + entry("good", frame));
+  EXPECT_EQ(run_list({}).code, 3);
+  EXPECT_FALSE(fs::exists(good));
+  const Finished finished = run_list({"--keep-going"});
+  EXPECT_EQ(finished.code, 1);
+  EXPECT_THAT(finished.err, HasSubstr("bad.0001.exr"));
+  EXPECT_TRUE(fs::exists(good));
+  write_bytes(list, entry("shot", folder / "bad.####.exr") + entry("bad.0001", frame));
+  test::expect_refused(run_list({}), 2, {"--output of frame bad.0001", "bad.0001.exr"});
+}
+
+TEST_F(Composites, a_dry_run_refuses_a_display_configuration_that_is_not_there) {
+  compute();
+  const Options words{"--composite", composite, "--preview", folder / "p.png", "--set", "ocio=/none/show.ocio"};
+  test::expect_refused(run(joined(words, {"--dry-run"})), 3, {"/none/show.ocio", "--set ocio"});
+}
+
 TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {
   FrameFile beauty{kWallWindow, kWallWindow, 1, {}, {}, {{"grade", "none"}}};
   for (const std::string c : {"R", "G", "B", "A"}) beauty.planes[c] = input.planes.at("ViewLayer.Combined." + c);

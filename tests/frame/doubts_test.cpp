@@ -202,9 +202,9 @@ TEST_F(Doubts, options_that_the_kind_of_depth_takes_not_are_refused_and_named_bu
   give();
   write_depth(itself, 1e12f);
   set_range(DepthKind::automatic, 0.1, 100, true);
-  settings.from_presets = {"--near", "--far", "--reversed-z"};
+  settings.from_presets = {{"--near", "far"}, {"--far", "far"}, {"--reversed-z", "far"}};
   expect(Reply::silent);
-  settings.from_presets = {"--near", "--reversed-z"};
+  settings.from_presets = {{"--near", "far"}, {"--reversed-z", "far"}};
   expect(Reply::usage, {"--far has no effect"});
   settings.from_presets.clear();
   settings.depth_range.device = DeviceRange::minus_one_to_one;
