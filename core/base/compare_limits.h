@@ -32,7 +32,8 @@ struct LimitRow {
 inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 inline constexpr std::array kLimitTable = {
     LimitRow{"--max-rmse", "rmse", &CompareLimits::max_rmse, 0, kNoLimit, "the largest rmse"},
-    LimitRow{"--max-p99", "p99", &CompareLimits::max_p99, 0, kNoLimit, "the largest 99th percentile of the error's size"},
+    LimitRow{"--max-p99", "p99", &CompareLimits::max_p99, 0, kNoLimit,
+             "the largest 99th percentile of the error's size"},
     LimitRow{"--min-ssim", "ssim", &CompareLimits::min_ssim, -1, 1, "the least structural similarity"},
     LimitRow{"--max-flip", "flip", &CompareLimits::max_flip, 0, 1, "the largest mean FLIP"},
     LimitRow{"--max-bias", "bias", &CompareLimits::max_bias, 0, kNoLimit, "the largest size of the mean error"},

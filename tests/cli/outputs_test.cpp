@@ -157,6 +157,18 @@ TEST_F(Composites, the_whole_beauty_that_is_asked_for_is_no_warning) {
               AllOf(HasSubstr("--set ambient takes a layer"), Not(HasSubstr("channel names"))));
 }
 
+TEST_F(Composites, what_inspect_proposes_for_a_beauty_without_parts_is_taken_by_strict) {
+  input.erase(".Diff");
+  compute();
+  const Options words{"inspect", frame, "--camera", camera, "--beauty", frame, "--json"};
+  const std::string command = json::parse(run_well(words).out)["command"];
+  Options proposed = typed(command);
+  proposed.erase(proposed.begin());
+  const Finished finished = run_program(joined(proposed, {"--strict"}), {.folder = folder.path()});
+  EXPECT_EQ(finished.code, 0) << command << finished;
+  EXPECT_TRUE(fs::exists(folder / "composite.exr"));
+}
+
 TEST_F(Composites, frames_of_a_list_are_computed_by_their_own_camera_and_radius) {
   compute();
   const std::string list = folder / "list.toml", named = folder / "{name}.exr";

@@ -284,7 +284,7 @@ TEST_F(Sources, a_matrix_for_another_depth_range_is_noted) {
       "Z", [](const test::Hit& hit) { return 1 - 0.5 / hit.distance; }, 1);
   json camera = camera_of(shot());
   camera.update({{"near", 0.5}, {"far", "inf"}, {"depth_kind", "device"}});
-  camera["projection"] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, -1}, {0, 0, 1, 0}};
+  camera["projection"] = game_matrix(camera, {0, 0, 1, -1}, 1);
   give(camera);
   write(settings.input);
   EXPECT_THAT(texts_of(settled().notes), Contains(HasSubstr("2 times as large")));
