@@ -16,7 +16,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double near_of(DepthKind kind, const DepthRange& range) {
-  if (!range.near) fail(ErrorKind::usage, "{} depth needs the distance of the near plane: give --near", word_of(kind));
+  if (!range.near)
+    fail(ErrorKind::usage, "{} depth needs the distance of the near plane: give --near{}", word_of(kind),
+         range.far ? "" : ", and --far, which is inf where there is no far plane");
   return *range.near;
 }
 

@@ -157,6 +157,14 @@ TEST_F(Composites, the_whole_beauty_that_is_asked_for_is_no_warning) {
               AllOf(HasSubstr("--set ambient takes a layer"), Not(HasSubstr("channel names"))));
 }
 
+TEST_F(Composites, a_beauty_whose_alpha_is_0_everywhere_is_a_warning) {
+  compute();
+  EXPECT_THAT(done({"--composite", composite}).err, Not(HasSubstr("[transparent-beauty]")));
+  input.change("Combined.A", [](float) { return 0.f; });
+  compute();
+  EXPECT_THAT(done({"--composite", composite}).err, AllOf(HasSubstr("alpha is 0"), HasSubstr("[transparent-beauty]")));
+}
+
 TEST_F(Composites, what_inspect_proposes_for_a_beauty_without_parts_is_taken_by_strict) {
   input.erase(".Diff");
   compute();

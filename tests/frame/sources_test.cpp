@@ -243,10 +243,15 @@ TEST_F(Sources, reshade_and_renderdoc_by_name) {
   planes.erase("R");
   give_camera();
   expect_refused(Reply::refused, {"--near", "--reversed-z"});
+  const std::string camera = std::exchange(settings.camera, "");
+  settings.vertical_fov = 60;  // which is a lens and no place
+  expect_refused(Reply::refused, {"--near", "--far", "--reversed-z", "world_to_camera"});
+  settings.camera = camera;
+  settings.vertical_fov.reset();
   settings.source = "reshade";
   expect_same("reshade");
   settings.source = "renderdoc";
-  expect_refused(Reply::usage, {"--near"});
+  expect_refused(Reply::usage, {"--near, and --far"});
   settings.depth_range.near = 1;
   settings.depth_range.far = 1000;
   settings.depth_range.reversed = true;
