@@ -180,7 +180,8 @@ void check_reports(const Typed& typed, const FramePlan& plan) {
   add_inputs(uses, plan);
   for (std::size_t i = 0; i + 1 < typed.arguments.size(); i++)
     if (typed.arguments[i] == Words{"--preset"})
-      for (const auto& preset : presets_of(typed.arguments[i + 1])) uses.add_input({"--preset", preset_file(preset)});
+      for (const auto& preset : presets_of(typed.arguments[i + 1]))
+        for (const auto& file : read_chain(preset).files) uses.add_input({"--preset", file});
   for (const auto& file : {NamedFile{"--output", typed.page}, {"--sheet", typed.sheet}}) {
     if (file.path.empty()) continue;
     uses.add_output(file);

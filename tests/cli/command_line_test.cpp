@@ -219,6 +219,14 @@ TEST_F(CommandLine, a_preset_that_names_its_own_name_builds_on_the_next_of_that_
   EXPECT_THAT(printed(), AllOf(HasSubstr("intensity=0.5\n"), HasSubstr("power=2\n"), HasSubstr("search=\"quick\"")));
 }
 
+TEST_F(CommandLine, a_wedge_writes_over_no_preset_that_another_one_builds_on) {
+  write_bytes(folder / "base.html", "intensity = 0.5\n");
+  write_bytes(folder / "look.toml", "preset = \"base.html\"\n");
+  const Options words{"wedge", frame,      "--camera",           camera, "--radius",
+                      "1",     "--preset", folder / "look.toml", "-o",   folder / "base.html"};
+  test::expect_refused(run_program(words), 2, {"--output", "base.html", "--preset"});
+}
+
 TEST_F(CommandLine, files_of_a_preset_and_of_a_project_lie_beside_it) {
   fs::create_directories(folder / "shots/010");
   fs::copy_file(frame, folder / "shots/010/frame.exr");

@@ -1,5 +1,7 @@
 // What a good run leaves behind: the AO file, the composite, the preview and the statistics.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/formats/png.h"
+#include "core/options/options.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
@@ -163,6 +165,30 @@ TEST_F(Composites, a_beauty_whose_alpha_is_0_everywhere_is_a_warning) {
   input.change("Combined.A", [](float) { return 0.f; });
   compute();
   EXPECT_THAT(done({"--composite", composite}).err, AllOf(HasSubstr("alpha is 0"), HasSubstr("[transparent-beauty]")));
+}
+
+TEST_F(Composites, the_help_of_an_option_says_exr_where_it_reads_no_other_picture) {
+  compute();
+  const std::string png = folder / "x.png";
+  const std::size_t pixels = kWallWindow.pixels();
+  const std::vector<float> colors(3 * pixels, 0.5f);
+  const auto bytes = encode_png("x", kWallWindow.width, kWallWindow.height, 3, colors);
+  write_bytes(png, {bytes.begin(), bytes.end()});
+  const auto says_exr = [](const char* key) {
+    const SettingRow& row = row_of_key(key);
+    return (row.value + row.sentence).find("EXR") != std::string::npos || row.value.find(".exr") != std::string::npos;
+  };
+  for (const char* key : {"beauty", "matte", "material-ao", "normal", "position", "albedo", "objects", "motion",
+                          "behind", "depth", "deep", "environment"}) {
+    const SettingRow& row = row_of_key(key);
+    const bool names_png = row.sentence.find("PNG") != row.sentence.npos;
+    const Options words =
+        row.is_only_key() ? Options{"--set", fmt::format("{}={}", key, png)} : Options{row.long_name(), png};
+    const std::string said = run(joined(words, {"--set", "composite-layers=rgba", "--composite", composite})).err;
+    const bool is_refused_as_png = said.find("deep data") != said.npos || said.find("takes an .exr") != said.npos ||
+                                   said.find("not an EXR") != said.npos;
+    EXPECT_EQ(is_refused_as_png, says_exr(key) && !names_png) << key << ": " << said;
+  }
 }
 
 TEST_F(Composites, what_inspect_proposes_for_a_beauty_without_parts_is_taken_by_strict) {
