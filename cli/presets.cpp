@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <set>
 #include <sstream>
 
@@ -163,7 +162,8 @@ PresetChain read_chain(const std::string& name) {
     presets.push_back({base, base, {}});
   }
   PresetChain chain;
-  for (const auto& preset : std::views::reverse(presets)) {
+  std::ranges::reverse(presets);
+  for (const auto& preset : presets) {
     chain.files.push_back(preset.file);
     std::ranges::copy(preset.values, std::back_inserter(chain.values));
   }

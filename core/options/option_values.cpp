@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <algorithm>
-#include <ranges>
 #include <set>
 
 #include "core/base/error.h"
@@ -205,7 +204,8 @@ Settings with_idle_values(const Settings& settings, const std::vector<OptionValu
   Settings whole = settings;
   std::set<const SettingRow*> known;
   std::size_t idle = 0;
-  for (const auto& value : std::views::reverse(values)) {
+  for (auto at = values.rbegin(); at != values.rend(); at++) {
+    const OptionValue& value = *at;
     if (!known.insert(value.row).second || value.row->is_given(whole)) continue;
     Settings more = whole;
     value.row->read(more, value.words);
