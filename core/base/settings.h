@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -94,7 +95,8 @@ struct InputSettings {
   std::optional<double> vertical_fov;     // the same over the height
   std::optional<double> focal, aperture;  // mm, > 0: focal length and width of the film back
   std::optional<double> ortho_width;      // scene units across the display window, > 0
-  std::vector<std::string> from_presets;  // options that presets set, long names; without effect, they are ignored
+  // options that presets set, by their long names, and the presets; without effect, they are ignored
+  std::map<std::string, std::string> from_presets;
 };
 
 /// The estimate of ambient occlusion. The defaults are the preset `standard`.

@@ -16,7 +16,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double near_of(DepthKind kind, const DepthRange& range) {
-  if (!range.near) fail(ErrorKind::usage, "{} depth needs the distance of the near plane: give --near", word_of(kind));
+  if (!range.near)
+    fail(ErrorKind::usage, "{} depth needs the distance of the near plane: give --near{}", word_of(kind),
+         range.far ? "" : ", and --far, which is inf where there is no far plane");
   return *range.near;
 }
 
@@ -39,7 +41,14 @@ void count_between(DepthMap& map, double near_value, double far_value, double fr
 
 /// Sets the map of a z-buffer. Depth is counted from the far plane, where perspective depth is densest: the difference
 /// is exact there, and 1 minus it would not be.
-void set_device(DepthMap& map, const DepthRange& range, bool orthographic, double scale) {
+void set_device(DepthMap& map, const DepthRange& range, const Camera& camera, double scale) {
+  const bool orthographic = camera.orthographic;
+  if (!range.near && camera.matrix_near)
+    fail(
+        ErrorKind::usage,
+        "device depth needs the distance of the near plane: give --near; the camera file's projection has it at {:.4g} "
+        "if its z is 0 to 1, and at about half of that if it is OpenGL's, -1 to 1",
+        *camera.matrix_near);
   const double n = near_of(DepthKind::device, range);
   if (!(n > 0) && !orthographic) fail(ErrorKind::usage, "device depth needs a near plane above 0, and --near is {}", n);
   const double f = far_of(DepthKind::device, range, !orthographic);
@@ -114,7 +123,7 @@ DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space,
         map.sky_above = 0;
       }
       break;
-    case DepthKind::device: set_device(map, range, camera.orthographic, scale); break;
+    case DepthKind::device: set_device(map, range, camera, scale); break;
     case DepthKind::normalized: set_normalized(map, range, scale, sky); break;
     case DepthKind::log: set_log(map, range, scale); break;
     case DepthKind::position: set_position(map, space, range.negative, camera, scale); break;

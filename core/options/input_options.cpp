@@ -121,7 +121,7 @@ void add_occluder_rows(std::vector<SettingRow>& rows) {
   file_or_objects(rows, "ignore", &S::ignore, &S::ignored_objects,
                   "these do not block, but what --behind or --deep show behind them; as occluders");
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
-      .text("objects", &S::objects, "FILE", "an EXR that tells the objects of occluders and ignore; else INPUT")
+      .text("objects", &S::objects, "FILE", "a picture that tells the objects of occluders and ignore; else INPUT")
       .names(FileRole::input)
       .idle(unless_objects);
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
@@ -136,20 +136,20 @@ void add_file_rows(std::vector<SettingRow>& rows) {
     return inputs.text(name, path, "FILE", sentence).names(FileRole::input);
   };
   file("--depth", &S::depth, "of the depth alone: EXR, DDS, PNG of 16 bits, TIFF").is_common = true;
-  file("--position", &S::position, "an EXR of the positions, instead of a depth");
+  file("--position", &S::position, "a picture of the positions, instead of a depth");
   inputs.text("--normal", &S::normal, "FILE|none", "of the normals alone: EXR, DDS, TIFF or PNG; none: made from depth")
       .names(FileRole::input, [](const std::string& text) { return lower_case(text) != "none"; })
       .is_common = true;
-  SettingRow& beauty = file("--beauty", &S::beauty, "an EXR of the beauty, and of its parts of light");
+  SettingRow& beauty = file("--beauty", &S::beauty, "a picture of the beauty, and of its parts of light");
   beauty.is_common = true;
   beauty.idle(unless_beauty_serves);
-  file("material-ao", &S::material_ao, "an EXR of the materials' own AO, multiplied in");
+  file("material-ao", &S::material_ao, "a picture of the materials' own AO, multiplied in");
   file("--matte", &S::matte, "where AO is wanted, as coverage from 0 to 1");
   add_occluder_rows(rows);
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input, true)
       .own(
           {"albedo", "FILE|NUMBER", "", "0 to 1",
-           "the diffuse colour, of all surfaces or in an EXR; else the beauty's"},
+           "the diffuse colour, of all surfaces or in a picture; else the beauty's"},
           [](const S& s) { return s.albedo_value ? fmt::format("{}", *s.albedo_value) : s.albedo; },
           [](S& s, const std::string& text) { return read_albedo(text, s); },
           "is neither a file nor a number from 0 to 1")

@@ -115,8 +115,8 @@ struct Trial {
   }
 };
 
-/// Fails where two values of a preset have an effect each, but none beside the other.
-void refuse_contradictions(const Trial& trial, const std::string& preset) {
+/// Says which of two values of a preset take each other's effect; "" where none do.
+std::string contradiction(const Trial& trial, const std::string& preset) {
   std::vector<bool> counts;
   for (const auto& value : trial.values) counts.push_back(value.preset == preset);
   const Words objections = trial.objections(counts);
@@ -125,9 +125,9 @@ void refuse_contradictions(const Trial& trial, const std::string& preset) {
       if (objections[i].empty() || objections[j].empty()) continue;
       const Words of_both = trial.objections(i, j);
       const bool have_none = !of_both[i].empty() && !of_both[j].empty();
-      if (have_none && trial.objections(i, i)[i].empty() && trial.objections(j, j)[j].empty())
-        fail(ErrorKind::usage, "{} (--preset): {}", preset, of_both[i]);
+      if (have_none && trial.objections(i, i)[i].empty() && trial.objections(j, j)[j].empty()) return of_both[i];
     }
+  return "";
 }
 
 /// Leaves out values of presets without effect, one after the other. A value that is left out may be the one beside
@@ -159,7 +159,9 @@ Settings with_values(const Settings& initial, std::vector<OptionValue> values, R
   std::set<std::string> presets;
   for (const auto& value : values)
     if (!value.is_typed()) presets.insert(value.preset);
-  for (const auto& preset : presets) refuse_contradictions(trial, preset);
+  for (const auto& preset : presets)
+    if (const std::string why = contradiction(trial, preset); !why.empty())
+      fail(ErrorKind::usage, "{} (--preset): {}", preset, why);
   const std::vector<bool> counts = with_effects(trial);
   const Words objections = trial.objections(counts);
   std::set<const SettingRow*> typed;
@@ -171,8 +173,47 @@ Settings with_values(const Settings& initial, std::vector<OptionValue> values, R
   Settings settings = with_some(initial, values, counts);
   settings.input.from_presets.clear();
   for (std::size_t i = 0; i < values.size(); i++)
-    if (counts[i] && !typed.contains(values[i].row)) settings.input.from_presets.push_back(values[i].row->long_name());
+    if (counts[i] && !typed.contains(values[i].row))
+      settings.input.from_presets[values[i].row->long_name()] = values[i].preset;
   return settings;
+}
+
+namespace {
+
+/// The settings that are no defaults.
+Values given_values(const Settings& settings) {
+  Values values;
+  for (const auto& row : option_table())
+    if (row.is_key() && row.is_given(settings)) values.push_back({&row, row.words(settings)});
+  return values;
+}
+
+/// Whether one preset may have all that is set, with no effect lost but those of `idle` values.
+bool is_one_preset(const Settings& settings, std::size_t idle) {
+  const Settings initial;
+  const Values values = given_values(settings);
+  const Trial trial{initial, values, Reader::run};
+  const Words objections = trial.objections(std::vector<bool>(values.size(), true));
+  const std::size_t without_effect = values.size() - std::size_t(std::ranges::count(objections, ""));
+  return without_effect <= idle && contradiction(trial, "").empty();
+}
+
+}  // namespace
+
+Settings with_idle_values(const Settings& settings, const std::vector<OptionValue>& values) {
+  Settings whole = settings;
+  std::set<const SettingRow*> known;
+  std::size_t idle = 0;
+  for (auto at = values.rbegin(); at != values.rend(); at++) {
+    const OptionValue& value = *at;
+    if (!known.insert(value.row).second || value.row->is_given(whole)) continue;
+    Settings more = whole;
+    value.row->read(more, value.words);
+    if (!value.row->is_given(more) || !is_one_preset(more, idle + 1)) continue;
+    whole = more;
+    idle++;
+  }
+  return whole;
 }
 
 // Contradictions.

@@ -9,6 +9,7 @@
 
 #include "core/base/text.h"
 #include "core/chain/results/outputs.h"
+#include "core/formats/color.h"
 #include "core/formats/sequence.h"
 #include "core/frame/pixels/radius.h"
 #include "core/frame/settle/settle.h"
@@ -369,10 +370,13 @@ std::string plan_text(FirstLook& look, bool is_wedge) {
   if (!plan.missing().empty())
     line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
   for (const auto& note : notes) line(level_of(note), line_of(note, ""));
+  for (const auto& file : plan.settings().preset_files) line("--preset", file);
   if (!is_wedge) refuse_overwriting(plan);
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
   require_endings(first.output);
+  if (shows_composite(first.output))
+    DisplayTransform(first.output.ocio, first.output.display, first.output.view_transform);
   for (const auto& row : file_rows()) {
     if (!row.is_of_frame || (is_wedge && row.role != FileRole::input)) continue;
     const auto of_first = row.files(first, row.role), of_last = row.files(last, row.role);

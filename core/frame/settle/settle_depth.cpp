@@ -31,8 +31,7 @@ Side side_of(std::vector<float> values) {
 /// Refuses options of the user for a range that depth of this kind lacks. Presets serve frames of every kind.
 void refuse_unused_range(const PlanesToSettle& planes) {
   auto unused = unused_range_options(planes.settings.depth_range, planes.reading.depth_kind);
-  const auto& left_out = planes.settings.from_presets;
-  std::erase_if(unused, [&](const auto& option) { return std::ranges::find(left_out, option) != left_out.end(); });
+  std::erase_if(unused, [&](const auto& option) { return planes.settings.from_presets.contains(option); });
   if (!unused.empty()) refuse_range_options(planes.path, unused, planes.reading.depth_kind);
 }
 
