@@ -277,6 +277,7 @@ Window picture_of(const Reading& reading, const Window& part) {
 void read_like(Reading& reading, const Meaning& settled) {
   const DepthRange own = reading.depth_range;
   static_cast<Meaning&>(reading) = settled;
+  if (reading.depth_kind == DepthKind::disparity) return;  // whose scale and shift are no camera's
   reading.depth_range.near = own.near;
   reading.depth_range.far = own.far;
 }

@@ -285,7 +285,12 @@ void check_disparity(const Settings& settings) {
     fail(ErrorKind::usage,
          "--near, --far, --set disparity-scale and --set disparity-shift: two of them say how disparity becomes depth; "
          "leave the others out");
-  disparity_of(range);
+  const Disparity said = disparity_of(range);
+  if ((input.around > 0 || input.around_all || input.accumulate > 0) && !(said.scale && said.shift))
+    fail(ErrorKind::usage,
+         "{}: disparities of several frames do not fit together by themselves: give the scale and the shift of all, by "
+         "--near and --far, or --set disparity-scale and --set disparity-shift",
+         input.accumulate > 0 ? "--accumulate" : "--around");
   if (range.disparity_scale || range.near || range.far) return;
   for (const auto& row : option_table()) {
     const bool is_length = row.unit.ends_with("scene units") || row.key() == "sky" || row.key() == "depth-scale";

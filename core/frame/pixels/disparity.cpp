@@ -79,11 +79,11 @@ class StretchFinder {
     const double before = disparity(x - dx, y - dy), after = disparity(x + dx, y + dy), middle = disparity(x, y);
     if (!(std::abs(before + after - 2 * middle) <= std::max(kBend * std::abs(after - before), 1.01 * step_at(middle))))
       return std::nullopt;
-    return Stretch{{before, after},
-                   {tangent_at(planes_.view, x - dx, y - dy), tangent_at(planes_.view, x + dx, y + dy)},
-                   here,
-                   std::size_t(y) * kBlocks / std::size_t(height) * kBlocks +
-                       std::size_t(x) * kBlocks / std::size_t(width)};
+    return Stretch{
+        {before, after},
+        {tangent_at(planes_.view, x - dx, y - dy), tangent_at(planes_.view, x + dx, y + dy)},
+        here,
+        std::size_t(y) * kBlocks / std::size_t(height) * kBlocks + std::size_t(x) * kBlocks / std::size_t(width)};
   }
 
   const NormalPlanes& planes_;
@@ -124,8 +124,7 @@ double shift_of(const std::vector<Say>& says, std::optional<std::size_t> without
 /// Twice the standard error of the shift, by leaving out each block of the picture.
 double error_of(const std::vector<Say>& says, double shift) {
   double squares = 0;
-  for (std::size_t block = 0; block < kBlocks * kBlocks; block++)
-    squares += std::pow(shift_of(says, block) - shift, 2);
+  for (std::size_t block = 0; block < kBlocks * kBlocks; block++) squares += std::pow(shift_of(says, block) - shift, 2);
   return 2 * std::sqrt(squares);
 }
 
@@ -140,19 +139,29 @@ double agreement_of(const std::vector<Say>& says, double shift) {
   return all > 0 ? 1 - wrong / all : 0;
 }
 
+/// What normals that are not those of the surfaces may move the shift by. Measured on six rendered scenes, with shading
+/// normals and rounded values: at most a quarter of the part that is not explained.
+double bias_of(const std::vector<Say>& says, double shift, double agreement) {
+  double sum = 0;
+  for (const auto& say : says) sum += std::abs(say.stretch->middle() - shift);
+  return 0.25 * (1 - agreement) * sum / double(says.size());
+}
+
 }  // namespace
 
 std::vector<ShiftScore> score_shifts(const NormalPlanes& planes, const Grain& grain) {
   const std::vector<Stretch> stretches = StretchFinder(planes, grain).all();
   std::vector<ShiftScore> scores;
   for (const NormalSpace space : {NormalSpace::world, NormalSpace::view})
-    for (const NormalFlips flips : {NormalFlips{}, NormalFlips{.y = true}, NormalFlips{.x = true}, NormalFlips{.z = true}}) {
+    for (const NormalFlips flips :
+         {NormalFlips{}, NormalFlips{.y = true}, NormalFlips{.x = true}, NormalFlips{.z = true}}) {
       if (space == NormalSpace::world && !planes.camera.view_from_world) continue;
       const auto says = says_of(stretches, view_from_normal(planes.camera, space, flips));
       if (says.size() < kLeastStretches) continue;
       const double shift = shift_of(says);
-      const double error = std::max(error_of(says, shift), grain.step);
-      scores.push_back({space, flips, shift, error, agreement_of(says, shift)});
+      const double agreement = agreement_of(says, shift);
+      const double error = std::max(error_of(says, shift), grain.step) + bias_of(says, shift, agreement);
+      scores.push_back({space, flips, shift, error, agreement});
     }
   std::ranges::stable_sort(scores, std::greater(), &ShiftScore::agreement);
   return scores;

@@ -96,6 +96,8 @@ Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& s
                  .begins_behind = begins_behind(reading, raw.depth),
                  .said_offset = said_offset(reading),
                  .overflow = overflow_of(reading, raw.depth)};
+  if (reading.depth_kind == DepthKind::disparity)
+    found.above_shift = seen.grain.median - reading.depth_range.disparity_shift.value_or(0);
   found.jitter = jitter_of(raw.depth, depth_map_of(reading), view_of(reading, raw.window), seen.grain);
   if (raw.window == frame.data && raw.depth.size() == raw.window.pixels())
     found.borders = borders_of(raw.depth, raw.window, depth_map_of(reading));
