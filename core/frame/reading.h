@@ -43,7 +43,8 @@ struct DepthPrecision {
 /// disparity d = a / z + b; device 1/z = 1/n - d (1/n - 1/f), of an orthographic camera z = n + d (f - n); position z =
 /// -(view z). `reversed` puts 1 - d for d, a device range of -1 to 1 (d + 1) / 2. Device, normalized and log depth is a
 /// surface only if it is strictly between 0 and 1; normalized depth may go on beyond its planes. Disparity is one only
-/// if it is above b, and a is 1 where nothing tells it. Fails with ErrorKind::usage where the kind needs a plane, a world matrix or a perspective that is not there.
+/// if it is above b, and a is 1 where nothing tells it. Fails with ErrorKind::usage where the kind needs a plane, a
+/// world matrix or a perspective that is not there.
 DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale,
                    double sky);
 

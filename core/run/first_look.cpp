@@ -148,8 +148,8 @@ bool FirstLook::has_camera(std::string& why_not) {
   }
 }
 
-/// The radii that a frame tells, of those settings; none where all is sky. Depth and camera alone decide: a fault of the
-/// beauty or of an output is found when the frame is computed.
+/// The radii that a frame tells, of those settings; none where all is sky. Depth and camera alone decide: a fault of
+/// the beauty or of an output is found when the frame is computed.
 std::vector<double> FirstLook::radii_of(int frame, const EstimatorSettings& estimator) {
   const InputSettings input = input_of(frame);
   const auto proposed = [&](FrameSource& source) {

@@ -139,8 +139,10 @@ TEST_F(Disparity, is_refused_where_nothing_tells_its_shift) {
   std::uniform_real_distribution<double> any(-1, 1);
   std::map<int, Vec3> normals;
   write(1, 0.2, 0, [&](const Hit& hit) {
-    return normals.try_emplace(int(3 * hit.position.x) + 100 * int(3 * hit.position.y),
-                               unit({any(random), any(random), any(random)})).first->second;
+    return normals
+        .try_emplace(int(3 * hit.position.x) + 100 * int(3 * hit.position.y),
+                     unit({any(random), any(random), any(random)}))
+        .first->second;
   });
   expect(Reply::refused, options);
 }
@@ -165,7 +167,8 @@ TEST_F(Disparity, with_a_shift_that_the_normals_speak_against_is_noted) {
 }
 
 TEST_F(Disparity, of_nothing_but_sky_is_sky) {
-  FrameFile file = file_of(rendering(), 0, [](const Hit&) { return 0; }, &world_normal);
+  FrameFile file = file_of(
+      rendering(), 0, [](const Hit&) { return 0; }, &world_normal);
   file.write(settings.input);
   give(camera);
   const FrameSource source = settled();
@@ -179,9 +182,8 @@ TEST_F(Disparity, of_a_sequence_has_one_shift_unless_a_frame_proves_another) {
   const auto read_after_first = [&] {
     FrameSource source = find_frame(settings, false, 0);
     const bool is_like = settle_like_or_alone(source, first, settings, 1 << 30);
-    EXPECT_EQ(is_like, !std::ranges::any_of(source.notes, [](const Note& note) {
-      return note.code == NoteCode::unusual_reading;
-    }));
+    EXPECT_EQ(is_like, !std::ranges::any_of(source.notes,
+                                            [](const Note& note) { return note.code == NoteCode::unusual_reading; }));
     return *source.reading.depth_range.disparity_shift;
   };
   const double shift = *first.reading.depth_range.disparity_shift;

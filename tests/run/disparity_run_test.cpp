@@ -16,7 +16,9 @@ class DisparityRun : public SequenceFolder {
   static Vec3 normal(const Hit& hit) { return hit.normal; }
   /// Frames with 3 / z + 0.7.
   void write_disparities(int first, int last) const {
-    write_frames(first, last, file_of(rendering(), 0.7f, [](const Hit& hit) { return 3 / hit.distance + 0.7; }, normal));
+    write_frames(first, last,
+                 file_of(
+                     rendering(), 0.7f, [](const Hit& hit) { return 3 / hit.distance + 0.7; }, normal));
   }
   std::vector<float> ao(int frame) const { return read_exr_image(output(frame)).pixels; }
 
@@ -47,14 +49,16 @@ TEST_F(DisparityRun, is_the_same_in_chunks_and_regions) {
 
 TEST_F(DisparityRun, takes_scene_units_only_with_a_scale) {
   write_disparities(1, 1);
-  for (const char* length : {"--radius 0.5", "--radius 5% --thickness 1", "--radius 5% --set fade-start=1 --set fade-end=2",
-                             "--radius 5% --sky 100", "--radius 5% --depth-scale 2"}) {
+  for (const char* length :
+       {"--radius 0.5", "--radius 5% --thickness 1", "--radius 5% --set fade-start=1 --set fade-end=2",
+        "--radius 5% --sky 100", "--radius 5% --depth-scale 2"}) {
     const Finished finished = run(said(length));
     EXPECT_EQ(finished.code, 2) << length;
     EXPECT_THAT(finished.err, AllOf(HasSubstr("no scene units"), HasSubstr("--set disparity-scale"))) << length;
   }
   EXPECT_THAT(run(said("--radius 0.5")).err, HasSubstr("in percent"));
-  for (const char* scale : {"--set disparity-scale=3", "--near 10", "--radius 5% --thickness infinite", "--radius auto"})
+  for (const char* scale :
+       {"--set disparity-scale=3", "--near 10", "--radius 5% --thickness infinite", "--radius auto"})
     done(said(scale));
   EXPECT_EQ(run(said("--near 1 --far 9 --set disparity-shift=0")).code, 2);
   const Finished around = run(said("--radius 5% --around 1"));
@@ -71,11 +75,10 @@ TEST_F(DisparityRun, without_normals_ends_as_an_input_that_lacks_something) {
 
 TEST_F(DisparityRun, is_told_by_inspect_with_its_error_and_a_radius_in_percent) {
   write_disparities(1, 1);
-  const Finished finished =
-      run_program(joined({"inspect", input(1), "--camera", camera}, said("")));
+  const Finished finished = run_program(joined({"inspect", input(1), "--camera", camera}, said("")));
   EXPECT_EQ(finished.code, 0) << finished;
-  EXPECT_THAT(finished.out, AllOf(HasSubstr("+-"), HasSubstr("AO is off by up to"), HasSubstr("--set disparity-shift=0."),
-                                  HasSubstr("--radius 10%")));
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("+-"), HasSubstr("AO is off by up to"),
+                                  HasSubstr("--set disparity-shift=0."), HasSubstr("--radius 10%")));
 }
 
 }  // namespace

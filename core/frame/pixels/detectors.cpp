@@ -121,8 +121,8 @@ Sentence jittered_depth(const Findings& f) {
       *f.jitter);
 }
 
-/// The error of AO by steps that are such a part of the value above a disparity's shift. Measured on six rendered scenes
-/// with 8 bits and half floats: a third of it to three times it.
+/// The error of AO by steps that are such a part of the value above a disparity's shift. Measured on six rendered
+/// scenes with 8 bits and half floats: a third of it to three times it.
 std::string ao_of_steps(double step) {
   constexpr double kOfRadius = 0.1;  // the radius, as a part of the median depth
   constexpr double kAoOfSteps = 0.75;
