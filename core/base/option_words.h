@@ -55,8 +55,8 @@ struct DepthRange {
   bool reversed = false;  // the near plane has the largest value
   DeviceRange device = DeviceRange::automatic;
   double log_constant = 1;  // C of z = ((1 + C far)^d - 1) / C, 1 / the file's units, > 0
-  // a and b of disparity d = a / z + b, a > 0; a in values times the file's units. Of a, b and the planes, at which d is
-  // 1 and 0, two say all
+  // a and b of disparity d = a / z + b, a > 0; a in values times the file's units. Of a, b and the planes, at which d
+  // is 1 and 0, two say all
   std::optional<double> disparity_scale = std::nullopt, disparity_shift = std::nullopt;
   double disparity_error = 0;  // values that are no more than this above b are as good as infinitely far
   // planar, ray and inverse depth: the values are below 0; view positions: their z is not as the camera's

@@ -43,10 +43,10 @@ class FirstLook {
   /// make no sense.
   MissingOptions missing_options();
 
-  /// Checks the settings, and puts the radii that a frame's depth tells (--radius auto, 5%) into those of the plan: the same
-  /// for every chunk of a sequence. Gives the notes on all frames. Fails on settings that contradict each other, as
-  /// notes_on_number() does, and with ErrorKind::input where no frame that is looked at shows a surface for the radius, or a warning
-  /// counts as an error.
+  /// Checks the settings, and puts the radii that a frame's depth tells (--radius auto, 5%) into those of the plan: the
+  /// same for every chunk of a sequence. Gives the notes on all frames. Fails on settings that contradict each other,
+  /// as notes_on_number() does, and with ErrorKind::input where no frame that is looked at shows a surface for the
+  /// radius, or a warning counts as an error.
   Notes prepare();
 
   /// Settles one frame, and all others are read in the same way. It is the first one that shows what files and options
