@@ -119,7 +119,7 @@ TEST_F(Disparity, finds_its_shift_by_normals_of_either_space) {
 }
 
 TEST_F(Disparity, of_8_bits_says_what_that_does_to_ao) {
-  write(2, 0.2, 1.0 / 255);
+  write(2.2, 0.2, 1.0 / 255);
   EXPECT_THAT(said(), ElementsAre(HasSubstr("disparity's shift"))) << "the normals need no doubt";
   const FrameSource source = settled();
   std::string text;
