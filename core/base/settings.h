@@ -102,8 +102,9 @@ struct InputSettings {
 /// The estimate of ambient occlusion. The defaults are the preset `standard`.
 struct EstimatorSettings {
   Estimator estimator = Estimator::gtao;
-  std::optional<double> radius;  // scene units, > 0; no default, since no number fits all scenes
-  bool radius_auto = false;      // instead: as core/frame/pixels/radius.h proposes
+  std::optional<double> radius;    // scene units, > 0; no default, since no number fits all scenes
+  bool radius_auto = false;        // instead: as core/frame/pixels/radius.h proposes
+  bool radius_in_medians = false;  // the radii are parts of the median depth until a frame of the run tells it
   // scene units, > 0: more scales. The AO is the mean of all: that is AO itself, with a falloff that drops by a step at
   // each radius
   std::vector<double> further_radii;

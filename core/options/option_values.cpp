@@ -12,6 +12,7 @@
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
 #include "core/frame/raw_plane.h"
+#include "core/frame/reading.h"
 #include "core/options/options.h"
 
 namespace alcove {
@@ -314,6 +315,35 @@ void check_numbers(const EstimatorSettings& e) {
     fail(ErrorKind::usage, "--set falloff-end={} is not above --set falloff-start={}", e.falloff_end, e.falloff_start);
 }
 
+/// Two numbers say all of a disparity. Without its scale there are neither scene units nor the file's.
+void check_disparity(const Settings& settings) {
+  const InputSettings& input = settings.input;
+  const DepthRange& range = input.depth_range;
+  if (input.depth_kind != DepthKind::disparity) return;
+  if (int(range.near.has_value()) + int(range.far.has_value()) + int(range.disparity_scale.has_value()) +
+          int(range.disparity_shift.has_value()) >
+      2)
+    fail(ErrorKind::usage,
+         "--near, --far, --set disparity-scale and --set disparity-shift: two of them say how disparity becomes depth; "
+         "leave the others out");
+  const Disparity said = disparity_of(range);
+  if ((input.around > 0 || input.around_all || input.accumulate > 0) && !(said.scale && said.shift))
+    fail(ErrorKind::usage,
+         "{}: disparities of several frames do not fit together by themselves: give the scale and the shift of all, by "
+         "--near and --far, or --set disparity-scale and --set disparity-shift",
+         input.accumulate > 0 ? "--accumulate" : "--around");
+  if (range.disparity_scale || range.near || range.far) return;
+  for (const auto& row : option_table()) {
+    const bool is_length = row.unit.ends_with("scene units") || row.key() == "sky" || row.key() == "depth-scale";
+    if (!is_length || !row.is_key() || !row.is_given(settings) || !number_of(row.words(settings).front())) continue;
+    fail(
+        ErrorKind::usage,
+        "{}: this disparity has no scene units, since nothing tells its scale: give {}--set disparity-scale, or --near "
+        "or --far, the distance of the value 1 or 0",
+        row.long_name(), row.key() == "radius" ? "--radius in percent of the median depth, as 5%, or " : "");
+  }
+}
+
 }  // namespace
 
 void check_settings(const Settings& settings) {
@@ -329,6 +359,7 @@ void check_settings(const Settings& settings) {
   check_hidden(settings);
   check_scales(settings);
   check_numbers(settings.estimator);
+  check_disparity(settings);
   if (settings.frames.chunk > settings.frames.chunks)
     fail(ErrorKind::usage, "--chunk {}/{}: there is no such chunk", settings.frames.chunk, settings.frames.chunks);
 }

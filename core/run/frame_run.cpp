@@ -282,7 +282,8 @@ class FrameRun {
   FrameSource open() {
     const Stopwatch reading;
     FrameSource source = run_.look.open(settings_, frame_);
-    if (run_.settled && settle_like(source, *run_.settled)) take_over_notes(source, *run_.settled);
+    if (run_.settled && settle_like_or_alone(source, *run_.settled, settings_.input, room_.bytes))
+      take_over_notes(source, *run_.settled);
     report_.read_ms += reading.ms();
     refuse_by_notes(source);
     return source;

@@ -87,7 +87,8 @@ TEST_F(CommandLine, an_input_without_a_command_is_run) {
 TEST_F(CommandLine, complaints_are_sentences_of_ours_and_name_the_nearest_words) {
   const std::string run = "run " + frame + " ";
   const std::pair<std::string, std::string> rows[] = {
-      {run + "--radius", "--radius needs a value: auto|NUMBER[,NUMBER...] (scene units, above 0 and at most 1e+18)"},
+      {run + "--radius",
+       "--radius needs a value: auto|NUMBER[%][,NUMBER[%]...] (scene units, above 0 and at most 1e+18)"},
       {run + "--layer=", "--layer needs a value: NAME"},
       {run + "--radius -1", "--radius: -1 is out of range: above 0 and at most 1e+18"},
       {run + "--slices 65", "--slices: 65 is out of range: 1 to 64"},

@@ -41,6 +41,8 @@ const std::vector<Case>& cases_without_effect() {
       {"--reversed-z", {"--depth-kind ray"}, "--depth-kind log"},
       {"--set device-range=-1..1", {"--depth-kind log"}, "--depth-kind device"},
       {"--set log-constant=2", {"--depth-kind device"}, "--depth-kind auto"},
+      {"--set disparity-scale=2", {"--depth-kind inverse"}, "--depth-kind disparity"},
+      {"--set disparity-shift=2", {"--depth-kind ray"}, "--depth-kind disparity"},
       {"--set position-space=view", {"--depth-kind planar"}, "--position p.exr"},
       {"--focal 35", {""}, "--aperture 36"},
       {"--aperture 36", {""}, "--focal 35"},

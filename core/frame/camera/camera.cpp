@@ -427,7 +427,8 @@ DepthKind depth_kind(const CameraFile& file) {
   const char* field = file.find("depth_kind") ? "depth_kind" : "depth";
   const std::string text = file.text(field);
   const DepthKind kind = meaning_of<DepthKind>(text);
-  if (text.empty() || (kind != DepthKind::automatic && kind != DepthKind::position)) return kind;
+  const bool needs_options = kind == DepthKind::position || kind == DepthKind::disparity;
+  if (text.empty() || (kind != DepthKind::automatic && !needs_options)) return kind;
   file.refuse(field, fmt::format("must begin with planar, ray, inverse, device, normalized or log, not \"{}\"", text));
 }
 

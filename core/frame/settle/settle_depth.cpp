@@ -97,7 +97,9 @@ void settle_depth(const PlanesToSettle& planes, const DepthFacts& facts) {
     DepthShape shape = shape_of(depth, view_of(planes.reading, planes.raw.window), sky, planes.seen.grain);
     planes.seen.depth_scores = std::move(shape.scores);
     planes.seen.curve = shape.curve;
-    settle_plane({planes, facts, values}, facts.is_kind_open);
+    const DepthSettlement depth(planes, facts, values);
+    if (planes.reading.depth_kind == DepthKind::disparity) settle_disparity(depth);
+    settle_plane(depth, facts.is_kind_open);
   }
   refuse_unused_range(planes);
 }
