@@ -16,6 +16,7 @@ struct RunOptions {
   Settings settings;
   std::vector<OptionValue> values;  // of presets and of the command line, which make the settings
   bool dry_run = false;
+  bool tells_presets = true;  // which files they are
 };
 
 /// Fills `options` from presets and arguments (argv without program and subcommand; later wins over earlier, arguments

@@ -140,8 +140,11 @@ WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::
     rest /= arguments[i].size();
     chosen.push_back(arguments[i][number / rest % arguments[i].size()]);
     const std::string value = chosen.back();
-    // A value that begins as an option does is joined to its own.
-    if (value.starts_with('-') && i > 0 && arguments[i - 1].size() == 1 && arguments[i - 1][0].starts_with("--")) {
+    // A value that begins as an option does is joined to its own. A flag holds its value already.
+    const auto awaits_value = [](const Words& words) {
+      return words.size() == 1 && words[0].starts_with("--") && words[0].find('=') == words[0].npos;
+    };
+    if (value.starts_with('-') && i > 0 && awaits_value(arguments[i - 1])) {
       chosen.pop_back();
       chosen.back() += "=" + value;
     }

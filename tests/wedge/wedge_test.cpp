@@ -105,6 +105,12 @@ TEST_F(Wedge, reads_the_frame_as_run_does) {
                              "0.5", "--radius", "1", "-o", page});
   ASSERT_FALSE(report.is_null());
   EXPECT_THAT(report["candidates"][0]["settings"], HasSubstr("--depth-channel 'far away' --depth-scale 0.5"));
+  const json strict =
+      shown(joined({frame, "--strict", "--no-skip"}, typed("--camera " + camera + " --radius 1 -o " + page)));
+  ASSERT_FALSE(strict.is_null());
+  EXPECT_THAT(strict["candidates"][0]["settings"],
+              AllOf(HasSubstr("--strict=true --camera"), HasSubstr("--no-skip=true --radius")));
+  expect_bits_of_commands(strict);
   const Finished plain =
       run_program({"run", frame, "--camera", camera, "--radius", "1", "-o", folder / "ao.exr", "--type", "float"});
   const Image ao = read_exr_image(folder / "ao.exr");
