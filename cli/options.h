@@ -65,6 +65,10 @@ struct PresetChain {
 /// build on themselves.
 PresetChain read_chain(const std::string& name);
 
+/// Fails with ErrorKind::usage where a relative name that an option gives would be taken for one of a sequence by the
+/// name of the folder that it lies in.
+void refuse_token_of_folder(const SettingRow& row, const std::string& word, const std::string& folder);
+
 /// Gives what a preset is for: the first sentence of the comment that its file begins with, "" without one.
 std::string preset_sentence(const std::string& text);
 
