@@ -181,6 +181,7 @@ void print_sequence(const CompareReport& report) {
                number(c.flip), optional_number(c.grain));
     sum += e.rmse;
   }
+  for (const auto& failed : report.failed) fmt::print("{:>{}} not compared\n", printable(failed.name), width);
   const auto part = std::ranges::find_if(report.frames, [](const auto& c) { return c.common.has_value(); });
   if (part != report.frames.end())
     fmt::print("the files' windows differ: compared what all have, in frame {} {}\n", part->name,

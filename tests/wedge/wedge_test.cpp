@@ -250,6 +250,15 @@ TEST_F(Wedge, that_fails_leaves_no_page_of_an_earlier_one_and_says_why) {
   EXPECT_FALSE(fs::exists(page) || fs::exists(sheet));
 }
 
+TEST_F(Wedge, without_room_is_refused_dry_as_well) {
+  FrameFile large = wall_frame({0, 0, 3840, 2160}, {0, 0, 3840, 2160});
+  large.write(frame);
+  write_bytes(camera, wall_camera({0, 0, 3840, 2160}).dump());
+  const Options little = of_frame("--radius 1 --memory 240M");
+  expect_refused(2, joined(little, {"--dry-run"}), {"whole", "--roi", "--memory"});
+  expect_refused(2, little, {"--memory"});
+}
+
 TEST_F(Wedge, may_be_tried_dry) {
   write_bytes(page, "of an earlier wedge");
   const Finished dry = run(of_frame("--radius 1,2 --set intensity=1,2 --dry-run"));
