@@ -199,14 +199,12 @@ void write_junit(const CompareReport& report, const std::string& path) {
   write_whole(path, compare_junit(report, path));
 }
 
-/// Removes the reports of an earlier comparison: where this one comes to no end, they would be taken for its verdict.
+/// Removes the reports of an earlier comparison.
 void remove_reports(const CompareArguments& arguments, const std::vector<CompareSettings>& frames) {
   std::vector<std::string> paths{arguments.report, arguments.junit};
   if (!arguments.junit.empty())
     for (const auto& frame : frames) paths.push_back(failure_path(arguments.junit, name_of(frame)));
-  std::error_code none;
-  for (const auto& path : paths)
-    if (!path.empty()) std::filesystem::remove(path, none);
+  remove_earlier(paths);
 }
 
 void print_report(const CompareReport& report, const CompareArguments& arguments,

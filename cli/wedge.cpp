@@ -264,10 +264,7 @@ int make(const Typed& typed, std::vector<WedgeLook> looks) {
     fmt::print("{}{}{}", wedge_text(looks), no_composite, no_composite.empty() ? "" : "\n");
     return 0;
   }
-  // Of an earlier wedge: where this one comes to no end, they would be taken for its looks.
-  std::error_code none;
-  for (const std::string& path : {typed.page, typed.sheet})
-    if (!path.empty()) std::filesystem::remove(path, none);
+  remove_earlier({typed.page, typed.sheet});
   make_wedge(looks, typed.page, typed.sheet);
   std::set<std::string> told;
   const auto tell = [&](const std::string& line) {

@@ -184,7 +184,12 @@ TEST_F(Composites, the_help_of_an_option_says_exr_where_it_reads_no_other_pictur
     const bool names_png = row.sentence.find("PNG") != row.sentence.npos;
     const Options words =
         row.is_only_key() ? Options{"--set", fmt::format("{}={}", key, png)} : Options{row.long_name(), png};
-    const std::string said = run(joined(words, {"--set", "composite-layers=rgba", "--composite", composite})).err;
+    const Options reader = row.key() == "albedo"    ? Options{"--set", "multi-bounce=true"}
+                           : row.key() == "objects" ? Options{"--set", "occluders=wall"}
+                           : row.key() == "motion"  ? Options{"--around", "1"}
+                                                    : Options();
+    const Options all = joined(joined(words, reader), {"--set", "composite-layers=rgba", "--composite", composite});
+    const std::string said = run(all).err;
     const bool is_refused_as_png = said.find("deep data") != said.npos || said.find("takes an .exr") != said.npos ||
                                    said.find("not an EXR") != said.npos;
     EXPECT_EQ(is_refused_as_png, says_exr(key) && !names_png) << key << ": " << said;
