@@ -249,7 +249,10 @@ int compare_command(const std::vector<std::string>& arguments) {
 
   const CompareReport report = compare_pictures(a.settings);
   if (!a.junit.empty()) write_junit(report, a.junit);
-  if (report.frames.empty()) fail_where_broken(report, {});
+  if (report.frames.empty()) {
+    if (a.json) fmt::print("{}\n", compare_json(report, {}));
+    fail_where_broken(report, {});
+  }
   const auto limits = checked_limits(report);
   print_report(report, a, limits);
   if (!a.report.empty()) {

@@ -673,6 +673,10 @@ TEST_F(Compare, a_frame_of_a_list_that_names_no_reference_fails_alone_and_is_in_
   EXPECT_THAT(finished.out, AllOf(HasSubstr("hall not compared\n"), HasSubstr("worst: frame yard")));
   EXPECT_THAT(finished.err, HasSubstr("frame hall has neither"));
   EXPECT_THAT(read_bytes(xml), AllOf(HasSubstr("name=\"yard\"></testcase>"), HasSubstr("frame hall has neither")));
+  write_bytes(list, "[[frame]]\nname = 'hall'\ninput = 'x'\n");
+  const json told = measured({folder / "{name}.exr", list}, 3);
+  EXPECT_EQ(told["failed"].size(), 1);
+  EXPECT_EQ(told["pass"], false);
 }
 
 TEST_F(Compare, junit_says_what_the_exit_code_says_of_holes) {

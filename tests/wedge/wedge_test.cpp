@@ -89,7 +89,9 @@ TEST_F(Wedge, estimates_once_for_looks_that_differ_in_their_shaping_alone) {
   ASSERT_EQ(report["rows"].size(), 8);
   EXPECT_EQ(estimates_of(report), 2);
   expect_bits_of_commands(report);
-  EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --set least=0,.2 --set gain=1,2 --set power=1,2"))), 1);
+  const json shapes = shown(of_frame("--radius auto --set least=0,.2 --set gain=1,2 --set power=1,2"));
+  EXPECT_EQ(estimates_of(shapes), 1);
+  expect_bits_of_commands(shapes);
   EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --set slices=2,4 --set intensity=1,2"))), 2);
   write_bytes(folder / "dark.toml", "intensity=2\n");
   EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --preset standard," + (folder / "dark.toml")))), 1);
