@@ -181,6 +181,7 @@ void print_sequence(const CompareReport& report) {
                number(c.flip), optional_number(c.grain));
     sum += e.rmse;
   }
+  for (const auto& failed : report.failed) fmt::print("{:>{}} not compared\n", printable(failed.name), width);
   const auto part = std::ranges::find_if(report.frames, [](const auto& c) { return c.common.has_value(); });
   if (part != report.frames.end())
     fmt::print("the files' windows differ: compared what all have, in frame {} {}\n", part->name,
@@ -198,14 +199,12 @@ void write_junit(const CompareReport& report, const std::string& path) {
   write_whole(path, compare_junit(report, path));
 }
 
-/// Removes the reports of an earlier comparison: where this one comes to no end, they would be taken for its verdict.
+/// Removes the reports of an earlier comparison.
 void remove_reports(const CompareArguments& arguments, const std::vector<CompareSettings>& frames) {
   std::vector<std::string> paths{arguments.report, arguments.junit};
   if (!arguments.junit.empty())
     for (const auto& frame : frames) paths.push_back(failure_path(arguments.junit, name_of(frame)));
-  std::error_code none;
-  for (const auto& path : paths)
-    if (!path.empty()) std::filesystem::remove(path, none);
+  remove_earlier(paths);
 }
 
 void print_report(const CompareReport& report, const CompareArguments& arguments,
@@ -250,7 +249,10 @@ int compare_command(const std::vector<std::string>& arguments) {
 
   const CompareReport report = compare_pictures(a.settings);
   if (!a.junit.empty()) write_junit(report, a.junit);
-  if (report.frames.empty()) fail_where_broken(report, {});
+  if (report.frames.empty()) {
+    if (a.json) fmt::print("{}\n", compare_json(report, {}));
+    fail_where_broken(report, {});
+  }
   const auto limits = checked_limits(report);
   print_report(report, a, limits);
   if (!a.report.empty()) {

@@ -230,6 +230,15 @@ void refuse_keys(const std::vector<std::string>& arguments) {
 
 namespace {
 
+/// Prints the settings as a preset, whose files have whole paths.
+void print_preset(const Settings& settings) {
+  for (const auto& row : option_table())
+    if (row.is_key())
+      for (const auto& word : row.words(settings))
+        if (row.names_file(word)) refuse_token_of_folder(row, word, std::filesystem::current_path().string());
+  fmt::print("{}", preset_text(settings));
+}
+
 /// Reads the command line; nothing where it asks for what is only printed.
 std::optional<TypedOptions> read_arguments(const Command& command, const std::vector<std::string>& arguments,
                                            RunOptions& options, Reader reader) {
@@ -248,7 +257,10 @@ std::optional<TypedOptions> read_arguments(const Command& command, const std::ve
   });
   if (!prints_config) return typed;
   const Settings whole = with_idle_values(options.settings, options.values);
-  fmt::print("{}", is_on(*typed, "--shareable") ? shareable_text(whole) : preset_text(whole));
+  if (is_on(*typed, "--shareable"))
+    fmt::print("{}", shareable_text(whole));
+  else
+    print_preset(whole);
   return std::nullopt;
 }
 

@@ -16,6 +16,7 @@ struct RunOptions {
   Settings settings;
   std::vector<OptionValue> values;  // of presets and of the command line, which make the settings
   bool dry_run = false;
+  bool tells_presets = true;  // which files they are
 };
 
 /// Fills `options` from presets and arguments (argv without program and subcommand; later wins over earlier, arguments
@@ -63,6 +64,10 @@ struct PresetChain {
 /// Reads a preset. Fails with ErrorKind::usage, naming preset and key, on keys that are no options, and on presets that
 /// build on themselves.
 PresetChain read_chain(const std::string& name);
+
+/// Fails with ErrorKind::usage where a relative name that an option gives would be taken for one of a sequence by the
+/// name of the folder that it lies in.
+void refuse_token_of_folder(const SettingRow& row, const std::string& word, const std::string& folder);
 
 /// Gives what a preset is for: the first sentence of the comment that its file begins with, "" without one.
 std::string preset_sentence(const std::string& text);

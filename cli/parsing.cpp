@@ -189,4 +189,10 @@ bool names_input(const std::string& word) {
   return std::ranges::find(kEndings, ending) != kEndings.end() || is_pattern(word);
 }
 
+void remove_earlier(const std::vector<std::string>& reports) {
+  std::error_code none;
+  for (const auto& path : reports)
+    if (!path.empty()) std::filesystem::remove(path, none);
+}
+
 }  // namespace alcove

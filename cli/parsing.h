@@ -65,4 +65,7 @@ std::string see_help(const std::string& command);
 /// Whether a word names an input: a file that is there, a name that ends as pictures do, or a pattern of such names.
 bool names_input(const std::string& word);
 
+/// Removes reports of an earlier command: where this one comes to no end, they would be taken for its own. "" is none.
+void remove_earlier(const std::vector<std::string>& reports);
+
 }  // namespace alcove

@@ -15,6 +15,7 @@
 #include "core/base/flat_toml.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
+#include "core/formats/sequence.h"
 #include "core/options/options.h"
 
 namespace alcove {
@@ -66,18 +67,35 @@ std::vector<std::string> files_of_name(const std::string& name) {
   return files;
 }
 
+[[noreturn]] void fail_unknown(const std::string& name, const std::vector<std::string>& names) {
+  std::vector<std::string> own = names;
+  std::erase_if(own, [](const auto& known) { return known.find('/') != known.npos; });
+  fail(ErrorKind::usage,
+       "there is no preset {}{}; there is {}, and alcove presets lists all; --preset takes one of them, or a TOML file",
+       name, suggestion(name, names), list_of(own));
+}
+
 /// The file that a preset builds on. A name leads past the preset itself: `draft` of a show builds on that of the
-/// program. Another word is a file beside the preset, or at a path of its own.
-std::string base_file(const std::string& file, const std::string& name) {
+/// program. Another word is a file beside the preset, or at a whole path.
+std::string base_file(const std::string& file, std::string name) {
+  if (files_of_name(name).empty()) {
+    const std::string beside = (fs::path(file).parent_path() / name).string();
+    if (is_file(beside)) return beside;
+    const auto names = preset_names();
+    const auto known = std::ranges::find(names, lower_case(name), lower_case);
+    if (known == names.end() && name.ends_with(".toml"))
+      fail(ErrorKind::usage, "there is no file {}, on which it builds", visible(beside));
+    if (known == names.end()) fail_unknown(name, names);
+    name = *known;
+  }
   const auto files = files_of_name(name);
   std::error_code error;
   const auto itself =
       std::ranges::find_if(files, [&](const auto& other) { return fs::equivalent(other, file, error); });
-  if (itself != files.end() && itself + 1 == files.end())
+  if (itself == files.end()) return files.front();
+  if (itself + 1 == files.end())
     fail(ErrorKind::usage, "it builds on itself: no folder after its own has a preset {}", name);
-  if (itself != files.end()) return *(itself + 1);
-  const std::string beside = (fs::path(file).parent_path() / name).string();
-  return files.empty() && is_file(beside) ? beside : preset_file(name);
+  return *(itself + 1);
 }
 
 /// A preset as it is named, and its file with the values in it.
@@ -88,8 +106,11 @@ struct ReadPreset {
 
 /// Files that a preset names lie beside it, as those of a list of frames do.
 void find_beside(const fs::path& preset, OptionValue& value) {
-  for (auto& word : value.words)
-    if (value.row->names_file(word)) word = (preset.parent_path() / word).string();
+  for (auto& word : value.words) {
+    if (!value.row->names_file(word)) continue;
+    refuse_token_of_folder(*value.row, word, preset.parent_path().string());
+    word = (preset.parent_path() / word).string();
+  }
 }
 
 /// Reads a preset, and tells what it builds on; "" for nothing.
@@ -137,11 +158,7 @@ std::string preset_file(const std::string& name) {
   if (is_file(name)) return name;
   if (const auto known = std::ranges::find(names, lower_case(name), lower_case); known != names.end())
     return files_of_name(*known).front();
-  std::vector<std::string> own = names;
-  std::erase_if(own, [](const auto& known) { return known.find('/') != known.npos; });
-  fail(ErrorKind::usage,
-       "there is no preset {}{}; there is {}, and alcove presets lists all; --preset takes one of them, or a TOML file",
-       name, suggestion(name, names), list_of(own));
+  fail_unknown(name, names);
 }
 
 std::vector<std::string> presets_of(const std::vector<std::string>& words) {
@@ -168,6 +185,16 @@ PresetChain read_chain(const std::string& name) {
     std::ranges::copy(preset.values, std::back_inserter(chain.values));
   }
   return chain;
+}
+
+void refuse_token_of_folder(const SettingRow& row, const std::string& word, const std::string& folder) {
+  if (fs::path(word).is_absolute() || is_file((fs::path(folder) / word).string())) return;
+  if (const auto pattern = frame_pattern((fs::path(folder) / "_").string()))
+    fail(
+        ErrorKind::usage,
+        "{} {}: a part of the folder {} is the place of a frame's number: rename the folder, or give the whole path of "
+        "a file",
+        row.long_name(), word, folder);
 }
 
 std::string project_file(const std::string& input) {

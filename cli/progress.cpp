@@ -30,8 +30,8 @@ std::string clock_text(double seconds) {
 
 }  // namespace
 
-Progress::Progress(const ProgressSettings& options, const std::string& log_json)
-    : options_(options), log_path_(log_json) {
+Progress::Progress(const ProgressSettings& options, const std::string& log_json, bool tells_presets)
+    : options_(options), tells_presets_(tells_presets), log_path_(log_json) {
   if (options_.kind == "auto") options_.kind = errors_go_to_terminal() ? "bar" : "plain";
 }
 
@@ -70,7 +70,7 @@ void Progress::begin(const RunReport& report, int frames) {
   log("begin", fmt::format("\"frames\":{},\"options\":\"{}\",\"presets\":{},\"notes\":{}", frames, report.options,
                            json_text(report.presets), notes_json(report.notes)));
   if (log_failure_) throw *log_failure_;  // before a frame has taken any time
-  say_presets(report.presets);
+  if (tells_presets_) say_presets(report.presets);
   note(report);
 }
 

@@ -23,7 +23,7 @@ class Progress {
   /// log_json names a file, or is - for the standard output, or is empty for no log. begin() fails with
   /// ErrorKind::output where the log cannot be written. If it breaks off later, end() fails, and the frames go on. All
   /// functions fail with ErrorKind::output where the standard output cannot be written.
-  Progress(const ProgressSettings& options, const std::string& log_json);
+  Progress(const ProgressSettings& options, const std::string& log_json, bool tells_presets = true);
 
   void begin(const RunReport& report, int frames);
   /// Says what is new in RunReport::notes.
@@ -57,6 +57,7 @@ class Progress {
   std::string rate_text() const;
 
   ProgressSettings options_;
+  bool tells_presets_;  // false where a run before has told of the same
   const std::string log_path_;
   std::unique_ptr<std::FILE, CloseFile> file_;
   std::FILE* log_ = nullptr;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -12,6 +13,7 @@
 #include "core/base/frame_list.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
+#include "core/formats/sequence.h"
 #include "core/frame/raw_plane.h"
 #include "core/options/files.h"
 #include "core/run/batch.h"
@@ -38,7 +40,8 @@ Words without_empty(const Words& arguments) {
 }
 
 /// Prints a line for each missing option, and the command that has all of them. Returns whether none is missing.
-bool has_all(FirstLook& look, const Settings& settings, const std::vector<std::string>& arguments) {
+/// `of_frame` begins messages on a frame of a list.
+bool has_all(FirstLook& look, const Settings& settings, const Words& arguments, const std::string& of_frame) {
   const MissingOptions missing = look.missing_options();
   if (!missing.any()) return true;
   std::string command = "alcove run";
@@ -49,7 +52,7 @@ bool has_all(FirstLook& look, const Settings& settings, const std::vector<std::s
   if (missing.lacks_matrix) command += " --normal none";
   if (missing.radius)
     command += " --radius " + (missing.proposed_radius ? fmt::format("{}", *missing.proposed_radius) : "auto");
-  print_error("alcove: error: missing:\n");
+  print_error("alcove: error: {}missing:\n", printable(of_frame));
   for (const auto& sentence : missing.sentences()) print_error("  {}\n", printable(sentence));
   print_error("such as:\n{}\n", printable(command));
   return false;
@@ -86,28 +89,33 @@ RunOptions options_of(const RunOptions& options, const ListedFrame& frame) {
   return own;
 }
 
-/// Adds the presets that give the options which a sentence names.
-std::string with_presets(std::string sentence, const Settings& settings) {
-  for (const auto& [option, preset] : settings.input.from_presets) {
-    const std::size_t at = sentence.find(option), end = at + option.size();
-    const bool is_named =
-        at != sentence.npos &&
-        (end == sentence.size() || (!std::isalnum((unsigned char)sentence[end]) && sentence[end] != '-'));
-    if (is_named) sentence += fmt::format("; {} is of {}", option, preset);
+/// Whether a sentence names an option, and not just one whose name begins alike.
+bool names_option(const std::string& sentence, const std::string& option) {
+  for (std::size_t at = sentence.find(option); at != sentence.npos; at = sentence.find(option, at + 1)) {
+    const std::size_t end = at + option.size();
+    if (end == sentence.size() || (!std::isalnum((unsigned char)sentence[end]) && sentence[end] != '-')) return true;
   }
-  return sentence;
+  return false;
+}
+
+/// Adds the presets that give the options which a sentence names.
+std::string with_presets(const std::string& sentence, const Settings& settings) {
+  std::string text = sentence;
+  for (const auto& [option, preset] : settings.input.from_presets)
+    if (names_option(sentence, option)) text += fmt::format("; {} is of {}", option, preset);
+  return text;
 }
 
 /// Computes the frames of one input. Gives the exit code.
-int run_input(const RunOptions& options, const Words& arguments) {
+int run_input(const RunOptions& options, const Words& arguments, const std::string& of_frame) {
   FirstLook look(options.settings);
-  if (!has_all(look, options.settings, arguments)) return int(ErrorKind::usage);
+  if (!has_all(look, options.settings, arguments, of_frame)) return int(ErrorKind::usage);
   if (options.dry_run) {
     fmt::print("{}", plan_text(look));
     return 0;
   }
   catch_ending_signals();
-  Progress progress(options.settings.progress, options.settings.output.log_json);
+  Progress progress(options.settings.progress, options.settings.output.log_json, options.tells_presets);
   std::optional<Error> failure;
   const RunReport report = run_frames(look, {[&](const RunReport& begun, int frames) { progress.begin(begun, frames); },
                                              [&](const RunReport& noted) { progress.note(noted); },
@@ -121,19 +129,21 @@ int run_input(const RunOptions& options, const Words& arguments) {
   if (report.stop && !report.is_sequence) throw *report.stop;
   // Of a sequence each failure was told of with its frame.
   if (failure && !report.is_sequence)
-    print_error("alcove: error: {}\n", printable(with_presets(failure->what(), options.settings)));
-  if (report.stop && report.failed == 0) print_error("alcove: error: {}\n", printable(report.stop->what()));
+    print_error("alcove: error: {}{}\n", printable(of_frame),
+                printable(with_presets(failure->what(), options.settings)));
+  if (report.stop && report.failed == 0)
+    print_error("alcove: error: {}{}\n", printable(of_frame), printable(report.stop->what()));
   if (report.stop) return int(report.stop->kind());
   if (caught_signal()) return 128 + caught_signal();
   return report.failed ? int(ErrorKind::some_frames_failed) : 0;
 }
 
-/// The same, with the presets in the sentence of an Error.
-int run_named(const RunOptions& options, const Words& arguments) {
+/// The same, with the frame and the presets in the sentence of an Error.
+int run_named(const RunOptions& options, const Words& arguments, const std::string& of_frame = "") {
   try {
-    return run_input(options, arguments);
+    return run_input(options, arguments, of_frame);
   } catch (const Error& error) {
-    fail(error.kind(), "{}", with_presets(error.what(), options.settings));
+    fail(error.kind(), "{}{}", of_frame, with_presets(error.what(), options.settings));
   }
 }
 
@@ -169,36 +179,56 @@ void require_inputs(const ListedRun& run) {
       require_readable(file.path, ("frame " + run.name + "'s").c_str(), file.option.c_str());
 }
 
-/// Leaves out frames of which an input is missing, and tells whether one has failed by it: unless the settings leave
-/// such frames out, they are an error before any work, or with --keep-going frames that fail.
+/// Whether a frame's own INPUT is there, or one of a pattern.
+bool has_input(const ListedRun& run) {
+  const std::string& input = run.options.settings.input.input;
+  std::error_code none;
+  if (std::filesystem::exists(input, none)) return true;
+  const auto pattern = frame_pattern(input);
+  try {
+    return pattern && !frames_on_disk(*pattern, "INPUT").empty();
+  } catch (const Error&) {  // not even a folder
+    return false;
+  }
+}
+
+/// Leaves out frames of which an input is missing, and tells whether one has failed by it. That is an error before any
+/// work, or with --keep-going a frame that fails. Only a frame's own INPUT may be missing, where the settings say so.
 bool leave_out_missing(std::vector<ListedRun>& runs, const FrameSettings& frames) {
-  const bool is_error = frames.missing == Missing::error;
+  bool has_failed = false;
   const auto leaves_out = [&](const ListedRun& run) {
     try {
       require_inputs(run);
       return false;
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::input || (is_error && !frames.keep_going)) throw;
-      print_error("alcove: {}frame {} is left out: {}\n", is_error ? "error: " : "", printable(run.name),
+      const bool may_be_missing = frames.missing == Missing::skip && !has_input(run);
+      if (error.kind() != ErrorKind::input || !(may_be_missing || frames.keep_going)) throw;
+      print_error("alcove: {}frame {} is left out: {}\n", may_be_missing ? "" : "error: ", printable(run.name),
                   printable(error.what()));
+      has_failed |= !may_be_missing;
       return true;
     }
   };
-  return std::erase_if(runs, leaves_out) > 0 && is_error;
+  std::erase_if(runs, leaves_out);
+  return has_failed;
 }
+
+/// Whether an exit code is of one frame alone, so that others may do.
+bool is_of_frame(int code) { return code == int(ErrorKind::input) || code == int(ErrorKind::some_frames_failed); }
 
 /// Computes a frame of a list as by a command of its own. Gives the exit code.
 int run_listed(const ListedRun& run, const Words& arguments, bool keeps_going) {
   try {
-    return run_named(run.options, arguments);
+    return run_named(run.options, arguments, "frame " + run.name + ": ");
   } catch (const Error& error) {
-    if (!keeps_going) throw;
-    print_error("alcove: error: frame {}: {}\n", printable(run.name), printable(error.what()));
+    if (!keeps_going || !is_of_frame(int(error.kind()))) throw;
+    print_error("alcove: error: {}\n", printable(error.what()));
     return int(error.kind());
   }
 }
 
-/// Computes the frames of a list. The first that fails ends it, unless the settings say to go on.
+/// Computes the frames of a list. The first that fails ends it, unless the settings say to go on; what is wrong with
+/// settings, outputs or the device ends it always.
 int run_list(const RunOptions& options, const Words& arguments) {
   const FrameSettings& frames = options.settings.frames;
   std::vector<ListedRun> runs;
@@ -206,9 +236,12 @@ int run_list(const RunOptions& options, const Words& arguments) {
     runs.push_back({frame.name, options_of(options, frame)});
   require_places(options.settings, runs);
   bool has_failed = leave_out_missing(runs, frames);
-  for (const auto& run : runs) {
+  if (runs.empty() && !has_failed)
+    fail(ErrorKind::input, "{}: the input of each frame is missing", options.settings.input.input);
+  for (auto& run : runs) {
+    run.options.tells_presets = &run == &runs.front();
     const int code = run_listed(run, arguments, frames.keep_going);
-    if (code && (!frames.keep_going || caught_signal())) return code;
+    if (code && (!frames.keep_going || caught_signal() || !is_of_frame(code))) return code;
     has_failed |= code != 0;
   }
   return has_failed ? int(ErrorKind::some_frames_failed) : 0;

@@ -140,8 +140,11 @@ WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::
     rest /= arguments[i].size();
     chosen.push_back(arguments[i][number / rest % arguments[i].size()]);
     const std::string value = chosen.back();
-    // A value that begins as an option does is joined to its own.
-    if (value.starts_with('-') && i > 0 && arguments[i - 1].size() == 1 && arguments[i - 1][0].starts_with("--")) {
+    // A value that begins as an option does is joined to its own. A flag holds its value already.
+    const auto awaits_value = [](const Words& words) {
+      return words.size() == 1 && words[0].starts_with("--") && words[0].find('=') == words[0].npos;
+    };
+    if (value.starts_with('-') && i > 0 && awaits_value(arguments[i - 1])) {
       chosen.pop_back();
       chosen.back() += "=" + value;
     }
@@ -261,10 +264,7 @@ int make(const Typed& typed, std::vector<WedgeLook> looks) {
     fmt::print("{}{}{}", wedge_text(looks), no_composite, no_composite.empty() ? "" : "\n");
     return 0;
   }
-  // Of an earlier wedge: where this one comes to no end, they would be taken for its looks.
-  std::error_code none;
-  for (const std::string& path : {typed.page, typed.sheet})
-    if (!path.empty()) std::filesystem::remove(path, none);
+  remove_earlier({typed.page, typed.sheet});
   make_wedge(looks, typed.page, typed.sheet);
   std::set<std::string> told;
   const auto tell = [&](const std::string& line) {

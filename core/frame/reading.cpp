@@ -43,12 +43,12 @@ void count_between(DepthMap& map, double near_value, double far_value, double fr
 /// is exact there, and 1 minus it would not be.
 void set_device(DepthMap& map, const DepthRange& range, const Camera& camera, double scale) {
   const bool orthographic = camera.orthographic;
-  if (!range.near && camera.matrix_near)
-    fail(
-        ErrorKind::usage,
-        "device depth needs the distance of the near plane: give --near; the camera file's projection has it at {:.4g} "
-        "if its z is 0 to 1, and at about half of that if it is OpenGL's, -1 to 1",
-        *camera.matrix_near);
+  if (!range.near && camera.matrix_near_opengl)
+    fail(ErrorKind::usage,
+         "device depth needs the distance of the near plane: give --near, or --set device-range; the camera file's "
+         "projection has it at {:.4g} if its z is 0 to 1 (device-range=0..1), and at {:.4g} if it is OpenGL's "
+         "(device-range=-1..1)",
+         *camera.matrix_near, *camera.matrix_near_opengl);
   const double n = near_of(DepthKind::device, range);
   if (!(n > 0) && !orthographic) fail(ErrorKind::usage, "device depth needs a near plane above 0, and --near is {}", n);
   const double f = far_of(DepthKind::device, range, !orthographic);

@@ -478,7 +478,7 @@ CompareReport compare_sequence(const CompareSettings& settings) {
 
 namespace {
 
-/// The settings of each frame of a list.
+/// The settings of each frame of a list; "" is the reference of one that has none.
 std::vector<CompareSettings> settings_of_list(const CompareSettings& settings) {
   const auto frames = read_frame_list(settings.reference, "REFERENCE");
   if (frames.size() > 1 && settings.result.find(kNamePlace) == settings.result.npos)
@@ -488,10 +488,8 @@ std::vector<CompareSettings> settings_of_list(const CompareSettings& settings) {
     CompareSettings& here = all.emplace_back(settings);
     for (auto* path : files_of(here)) *path = with_name(*path, frame.name);
     const auto& references = frame.compared_with();
-    if (references.empty())
-      fail(ErrorKind::input, "{}: frame {} has neither \"reference\" nor \"truth\"", settings.reference, frame.name);
     here.name = frame.name;
-    here.reference = references.front();
+    here.reference = references.empty() ? "" : references.front();
     if (references.size() > 1) here.reference_b = references.back();
     here.limits = with_limits(settings.limits, frame.limits);
   }
@@ -501,6 +499,11 @@ std::vector<CompareSettings> settings_of_list(const CompareSettings& settings) {
 CompareReport compare_list(const CompareSettings& settings) {
   CompareReport report{.result = settings.result, .reference = settings.reference, .is_list = true};
   for (const auto& here : settings_of_list(settings)) {
+    if (here.reference.empty()) {
+      add_failed(report, here,
+                 fmt::format("{}: frame {} has neither \"reference\" nor \"truth\"", settings.reference, here.name));
+      continue;
+    }
     const auto planes = planes_or_failure(report, here);
     if (!planes) continue;
     report.frames.push_back(measure(here, *planes, 0));

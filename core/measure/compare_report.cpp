@@ -272,14 +272,16 @@ std::vector<std::string> broken_limits(const std::vector<CheckedLimit>& limits) 
 }
 
 std::string compare_json(const CompareReport& report, const std::vector<CheckedLimit>& limits) {
-  Json json = {{"result", report.result}, {"reference", report.reference}, {"channels", report.frames[0].channels}};
-  if (report.has_several()) {
+  const bool has_frames = !report.frames.empty();
+  Json json = {{"result", report.result}, {"reference", report.reference}, {"channels", Json::array()}};
+  if (has_frames) json["channels"] = report.frames[0].channels;
+  if (has_frames && report.has_several()) {
     add_worst_measures(json, report);
     const auto& worst = worst_frame(report);
     json["worst"] = {{"frame", id_of(worst, report)}, {"rmse", worst.errors.rmse}};
     json["mean"] = mean_json(report);
     if (report.is_sequence) json["flicker"] = number(report.flicker);
-  } else {
+  } else if (has_frames) {
     add_measures(json, report.frames[0]);
     add_parts(json, report.frames[0]);
   }

@@ -418,9 +418,11 @@ std::string plan_text(FirstLook& look, bool is_wedge) {
   const std::uint64_t memory = of_frames.host_bytes;
   line("size", to_string(written_picture(source)));
   const WindowLimits limits = limits_of(first, of_frames, frame);
-  const std::string at_once = bytes <= memory ? at_once_text(host, plan, source, first, wanted)
-                              : is_wedge      ? "too little, for a wedge needs it whole: give a part by --roi"
-                                              : tiles_text(source, first, limits);
+  if (is_wedge && bytes > memory)
+    limits.refuse(fmt::format("{}: a wedge needs a frame whole: give a part by --roi", source.depth_path()),
+                  source.reading.data);
+  const std::string at_once =
+      bytes <= memory ? at_once_text(host, plan, source, first, wanted) : tiles_text(source, first, limits);
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
   const std::string needs = is_wedge ? "" : needs_text(source, first, limits, plan.is_sequence());
   if (!needs.empty()) line("--memory", needs);

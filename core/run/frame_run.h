@@ -66,7 +66,7 @@ class FrameTally {
 
 /// The device time of a look: a run with it alone takes the sum.
 struct LookTime {
-  double estimate_ms = 0;  // of what all looks share
+  double estimate_ms = 0;  // of what all looks share, with the passes of other frames
   double own_ms = 0;
 };
 /// Takes the results of the look of that number, over a window.

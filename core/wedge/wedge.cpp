@@ -78,14 +78,18 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<WedgeLook>& lo
   return groups;
 }
 
+/// The settings of a look that is computed for a page, which also takes its depth.
+Settings with_planes_of_page(Settings settings) {
+  settings.output.aovs = "ao,depth";
+  return settings;
+}
+
 /// The looks of one frame after the other.
 class WedgeMaker {
  public:
   WedgeMaker(std::vector<WedgeLook>& looks, bool has_page) : looks_(looks), has_page_(has_page) {
     for (auto& look : looks_) {
-      Settings settings = look.settings;
-      settings.output.aovs = "ao,depth";
-      firsts_.emplace_back(settings);
+      firsts_.emplace_back(with_planes_of_page(look.settings));
       add_new(look.notes, firsts_.back().prepare());
     }
     set_exr_threads(core_count());
@@ -254,7 +258,7 @@ void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const st
 }
 
 std::string wedge_text(const std::vector<WedgeLook>& looks) {
-  FirstLook first(looks.front().settings);
+  FirstLook first(with_planes_of_page(looks.front().settings));
   const std::size_t estimates = groups_of(looks).size();
   const InputSettings& input = looks.front().settings.input;
   const bool takes_from_others = input.accumulate > 0 || takes_others(input);

@@ -220,6 +220,38 @@ TEST_F(CommandLine, a_preset_that_names_its_own_name_builds_on_the_next_of_that_
   EXPECT_THAT(printed(), AllOf(HasSubstr("intensity=0.5\n"), HasSubstr("power=2\n"), HasSubstr("search=\"quick\"")));
 }
 
+TEST_F(CommandLine, the_base_of_a_preset_lies_beside_it_and_not_where_the_command_runs) {
+  fs::create_directories(folder / "show");
+  fs::create_directories(folder / "work");
+  write_bytes(folder / "work/base.toml", "intensity = 0.5\n");
+  write_bytes(folder / "show/look.toml", "preset = \"base.toml\"\n");
+  const auto printed = [&](const std::string& preset) {
+    return run_program({"run", frame, "--print-config", "--preset", preset},
+                       {.folder = folder / "work", .environment = {{"ALCOVE_PRESET_PATH", folder / "show"}}});
+  };
+  test::expect_refused(printed(folder / "show/look.toml"), 2, {"show/base.toml", "--preset"});
+  write_bytes(folder / "show/look.toml", "preset = '" + folder / "work/base.toml" + "'\n");
+  EXPECT_THAT(printed("look").out, HasSubstr("intensity=0.5\n")) << "a whole path";
+  write_bytes(folder / "show/draft.toml", "intensity = 0.5\npreset = \"Draft\"\n");
+  EXPECT_THAT(printed("draft").out, AllOf(HasSubstr("intensity=0.5\n"), HasSubstr("search=\"quick\"\n")));
+}
+
+TEST_F(CommandLine, a_folder_that_looks_like_a_pattern_makes_none_of_a_file) {
+  for (const std::string name : {"a#b", "v%04d"}) {
+    fs::create_directories(folder / name);
+    write_bytes(folder / (name + "/look.toml"), "output = \"ao.exr\"\n");
+    const Finished preset = run_program({"run", frame, "--preset", folder / (name + "/look.toml"), "--print-config"});
+    test::expect_refused(preset, 2, {"--output ao.exr", name, "rename"});
+    const Options words{"run", frame, "-o", "ao.####.exr", "--print-config"};
+    test::expect_refused(run_program(words, {.folder = folder / name}), 2, {"--output ao.####.exr", name, "rename"});
+  }
+}
+
+TEST_F(CommandLine, a_printed_path_leads_through_the_same_links) {
+  EXPECT_THAT(run_program({"run", frame, "--camera", "l/../cam.json", "--print-config"}, {.folder = folder.path()}).out,
+              HasSubstr("/l/../cam.json\""));
+}
+
 TEST_F(CommandLine, a_wedge_writes_over_no_preset_that_another_one_builds_on) {
   write_bytes(folder / "base.html", "intensity = 0.5\n");
   write_bytes(folder / "look.toml", "preset = \"base.html\"\n");

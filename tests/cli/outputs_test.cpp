@@ -184,7 +184,12 @@ TEST_F(Composites, the_help_of_an_option_says_exr_where_it_reads_no_other_pictur
     const bool names_png = row.sentence.find("PNG") != row.sentence.npos;
     const Options words =
         row.is_only_key() ? Options{"--set", fmt::format("{}={}", key, png)} : Options{row.long_name(), png};
-    const std::string said = run(joined(words, {"--set", "composite-layers=rgba", "--composite", composite})).err;
+    const Options reader = row.key() == "albedo"    ? Options{"--set", "multi-bounce=true"}
+                           : row.key() == "objects" ? Options{"--set", "occluders=wall"}
+                           : row.key() == "motion"  ? Options{"--around", "1"}
+                                                    : Options();
+    const Options all = joined(joined(words, reader), {"--set", "composite-layers=rgba", "--composite", composite});
+    const std::string said = run(all).err;
     const bool is_refused_as_png = said.find("deep data") != said.npos || said.find("takes an .exr") != said.npos ||
                                    said.find("not an EXR") != said.npos;
     EXPECT_EQ(is_refused_as_png, says_exr(key) && !names_png) << key << ": " << said;
@@ -274,6 +279,58 @@ TEST_F(Composites, a_list_with_a_bad_frame_ends_before_any_work_or_goes_on_where
   EXPECT_TRUE(fs::exists(good));
   write_bytes(list, entry("shot", folder / "bad.####.exr") + entry("bad.0001", frame));
   test::expect_refused(run_list({}), 2, {"--output of frame bad.0001", "bad.0001.exr"});
+}
+
+TEST_F(Composites, of_a_list_only_the_input_of_a_frame_may_be_missing) {
+  compute();
+  const std::string list = folder / "list.toml", good = folder / "good.exr";
+  const auto entry = [&](const std::string& name, const std::string& file, const std::string& camera_file) {
+    return "[[frame]]\nname = '" + name + "'\ninput = '" + file + "'\ncamera = '" + folder / camera_file +
+           "'\nradius = 1\n";
+  };
+  const auto run_list = [&](const Options& more) {
+    fs::remove(good);
+    return run_program(joined({"run", list, "-o", folder / "{name}.exr", "--set", "missing=skip"}, more));
+  };
+  write_bytes(list, entry("misspelt", frame, "camrea.json") + entry("good", frame, "camera.json"));
+  test::expect_refused(run_list({}), 3, {"misspelt", "camrea.json"});
+  EXPECT_EQ(run_list({"--keep-going"}).code, 1);
+  EXPECT_TRUE(fs::exists(good));
+  write_bytes(list, entry("good", frame, "camera.json"));
+  test::expect_refused(run_list({"--beauty", folder / "lost.exr", "--composite", folder / "{name}.c.exr"}), 3,
+                       {"lost.exr"});
+  write_bytes(list, entry("lost", folder / "in.lost.exr", "camera.json"));
+  const Finished all_lost = run_list({});
+  EXPECT_EQ(all_lost.code, 3) << all_lost;
+  EXPECT_THAT(all_lost.err, HasSubstr("list.toml: the input of each frame is missing"));
+}
+
+TEST_F(Composites, what_is_no_frames_fault_ends_a_list_at_once) {
+  compute();
+  const std::string list = folder / "list.toml", settings = folder / "look.toml";
+  const auto entry = [&](const std::string& name, const std::string& radius) {
+    return "[[frame]]\nname = '" + name + "'\ninput = '" + frame + "'\ncamera = '" + folder / "camera.json" + "'\n" +
+           radius;
+  };
+  write_bytes(list, entry("a", "radius = 1\n") + entry("b", "radius = 1\n"));
+  const auto run_list = [&](const Options& more) { return run_program(joined({"run", list, "--keep-going"}, more)); };
+  write_bytes(folder / "file", "");
+  const Finished unwritable = run_list({"-o", folder / "file/{name}.exr"});
+  EXPECT_EQ(unwritable.code, 4) << unwritable;
+  EXPECT_THAT(unwritable.err, AllOf(HasSubstr("frame a"), Not(HasSubstr("frame b"))));
+  const Finished no_device = run_list({"-o", folder / "{name}.exr", "--device", "none such"});
+  EXPECT_EQ(no_device.code, 5) << no_device;
+  EXPECT_THAT(no_device.err, AllOf(HasSubstr("frame a"), Not(HasSubstr("frame b"))));
+  write_bytes(settings, "slices = 2\n");
+  const Finished told = run_list({"-o", folder / "{name}.exr", "--preset", settings});
+  EXPECT_EQ(told.code, 0) << told;
+  const std::size_t first = told.err.find("settings of");
+  EXPECT_NE(first, std::string::npos) << told;
+  EXPECT_EQ(told.err.find("settings of", first + 1), std::string::npos) << told;
+  write_bytes(list, entry("a", "radius = 1\n") + entry("b", ""));
+  const Finished lacks = run_list({"-o", folder / "{name}.exr"});
+  EXPECT_EQ(lacks.code, 2) << lacks;
+  EXPECT_THAT(lacks.err, HasSubstr("frame b: missing:"));
 }
 
 TEST_F(Composites, a_dry_run_refuses_a_display_configuration_that_is_not_there) {

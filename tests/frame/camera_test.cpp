@@ -127,9 +127,9 @@ TEST_F(CameraFiles, a_lens_beside_a_matrix_is_that_of_the_matrix) {
   }
 }
 
-TEST_F(CameraFiles, planes_of_a_matrix_are_those_of_the_depth_where_only_one_range_has_such_a_matrix) {
+TEST_F(CameraFiles, planes_of_a_reversed_matrix_are_those_of_the_depth) {
   const double infinity = std::numeric_limits<double>::infinity();
-  const auto expect_planes = [&](const json& third, int side, int up, double near, double far, bool reversed) {
+  const auto expect_planes = [&](const json& third, int side, int up, double near, double far) {
     const Camera camera = read(game_camera({{2, 0, 0, 0}, {0, 3 * up, 0, 0}, third, {0, 0, side, 0}}));
     ASSERT_TRUE(camera.near && camera.far) << third;
     EXPECT_NEAR(*camera.near, near, 1e-9);
@@ -137,21 +137,29 @@ TEST_F(CameraFiles, planes_of_a_matrix_are_those_of_the_depth_where_only_one_ran
       EXPECT_EQ(*camera.far, far);
     else
       EXPECT_NEAR(*camera.far, far, 1e-6);
-    EXPECT_EQ(camera.reversed_z, reversed);
+    EXPECT_TRUE(camera.reversed_z);
   };
   const double near = 0.5, far = 200, scale = far / (far - near);
-  expect_planes({0, 0, scale, -near * scale}, 1, 1, near, far, false);      // Direct3D
-  expect_planes({0, 0, -scale, -near * scale}, -1, -1, near, far, false);   // Vulkan
-  expect_planes({0, 0, 1, -near}, 1, 1, near, infinity, false);             // without a far plane
-  expect_planes({0, 0, 0, near}, 1, 1, near, infinity, true);               // Unreal
-  expect_planes({0, 0, 0, near}, -1, 1, near, infinity, true);              // the same along -z
-  expect_planes({0, 0, 1 - scale, near * scale}, 1, 1, near, far, true);    // reversed
-  expect_planes({0, 0, scale - 1, near * scale}, -1, -1, near, far, true);  // of Vulkan
-  const json opengl = {{2, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, -1.005, -1.0025}, {0, 0, -1, 0}};
-  EXPECT_FALSE(read(game_camera(opengl)).near) << "may be 0 to 1 or -1 to 1";
+  expect_planes({0, 0, 0, near}, 1, 1, near, infinity);               // Unreal
+  expect_planes({0, 0, 0, near}, -1, 1, near, infinity);              // the same along -z
+  expect_planes({0, 0, 1 - scale, near * scale}, 1, 1, near, far);    // reversed
+  expect_planes({0, 0, scale - 1, near * scale}, -1, -1, near, far);  // of Vulkan
   json said = game_camera({{2, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 0, 0.5}, {0, 0, 1, 0}});
   said["near"] = 2;
   EXPECT_EQ(read(said).near, 2) << "what the file says wins";
+}
+
+// Also one that looks along +z, or whose y points down, may be of OpenGL's depth.
+TEST_F(CameraFiles, a_matrix_that_is_not_reversed_has_two_near_planes) {
+  const double near = 0.5, far = 200, scale = far / (far - near);
+  for (const auto& [up, side] : {std::pair(1, -1), {1, 1}, {-1, -1}}) {
+    const json third = {0, 0, side * scale, -near * scale};
+    const Camera camera = read(game_camera({{2, 0, 0, 0}, {0, 3 * up, 0, 0}, third, {0, 0, side, 0}}));
+    EXPECT_FALSE(camera.near || camera.far || camera.reversed_z) << third;
+    EXPECT_NEAR(camera.matrix_near.value(), near, 1e-9);
+    EXPECT_NEAR(camera.matrix_near_opengl.value(), near * scale / (scale + 1), 1e-9);
+    EXPECT_NEAR(camera.matrix_far.value(), far, 1e-6);
+  }
 }
 
 TEST_F(CameraFiles, a_matrix_that_is_no_upright_lens_is_refused) {
@@ -169,6 +177,29 @@ TEST_F(CameraFiles, a_matrix_that_is_no_upright_lens_is_refused) {
   expect_refused(game_camera(mirrored).dump(), "turns or mirrors");
   expect_refused(game_camera(rows).dump(), "4 rows of 4");
   expect_refused(game_camera(flat).dump(), "sees nothing");
+}
+
+TEST_F(CameraFiles, a_lens_beside_a_matrix_that_shows_none_is_taken) {
+  const json lens{{"fx", 64}, {"fy", 54}, {"cx", 24}, {"cy", 27}};
+  const json reversed = {{2, 0, 0.25, 0}, {0, 3, 0, 0}, {0, 0, 0, 0.5}, {0, 0, -1, 0}};
+  json mirrored = reversed, oblique = reversed, transposed = reversed;
+  mirrored[0][0] = -2, oblique[2][0] = 0.1;
+  for (std::size_t i = 0; i < 4; i++)
+    for (std::size_t j = 0; j < 4; j++) transposed[i][j] = reversed[j][i];
+  for (const json& matrix : {mirrored, oblique, transposed}) {
+    json fields = game_camera(matrix);
+    fields.update(lens);
+    const Camera camera = read(fields);
+    expect_near(camera, 64, 54, 24, 27);
+    EXPECT_EQ(camera.near, matrix == mirrored ? std::optional(0.5) : std::nullopt) << matrix << " tells no depth";
+  }
+}
+
+TEST_F(CameraFiles, a_matrix_may_be_rounded) {
+  const json rounded = {{2, 1e-9, 0.25, -1e-9}, {1e-9, 3, 0, 0}, {1e-9, 0, 0, 0.5}, {1e-9, 0, -1, 1e-9}};
+  const Camera camera = read(game_camera(rounded));
+  expect_near(camera, 64, 54, 24, 18);
+  EXPECT_EQ(camera.near, 0.5);
 }
 
 TEST_F(CameraFiles, a_left_handed_camera_space_is_turned_to_look_along_minus_z) {

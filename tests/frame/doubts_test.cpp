@@ -241,12 +241,24 @@ TEST_F(Doubts, the_near_plane_of_a_matrix_is_doubted_until_an_option_says_it) {
   settings.depth_range = {};
   settings.depth_range.device = DeviceRange::zero_to_one;
   expect(Reply::silent);
-  give({{"projection", matrix}, {"far", "inf"}, {"depth_kind", "device"}});
-  expect(Reply::usage, {"--near", "at 2 if its z is 0 to 1", "OpenGL"});
-  const json direct3d = game_matrix(camera_of(shot()), {0, 0, 1, -1}, 1);
-  give({{"projection", direct3d}, {"camera_space", "right-handed"}, {"depth_kind", "device"}});
   settings.depth_range = {};
-  expect(Reply::silent);
+  give({{"projection", matrix}, {"far", "inf"}, {"depth_kind", "device"}});
+  expect(Reply::usage, {"--near", "at 2 if its z is 0 to 1", "at 1 if it is OpenGL's", "device-range=-1..1"});
+}
+
+TEST_F(Doubts, planes_of_a_matrix_are_those_of_the_range_that_is_said) {
+  for (const int side : {1, -1}) {
+    // A near plane at 1 and no far plane: from 0, as Direct3D and Vulkan have it, and from -1.
+    for (const int low : {0, -1}) {
+      const json matrix = game_matrix(camera_of(shot()), {0, 0, side, low - 1}, side);
+      give({{"projection", matrix}, {"camera_space", "right-handed"}, {"depth_kind", "device"}});
+      write_depth([&](double z) { return 1 - (1 - low) / z; }, 1);
+      settings.depth_range.device = low ? DeviceRange::minus_one_to_one : DeviceRange::zero_to_one;
+      EXPECT_NEAR(settled().reading.depth_range.near.value(), 1, 1e-9);
+      settings.depth_range = {};
+      expect(Reply::usage, {"--near", "--set device-range"});
+    }
+  }
 }
 
 // Cameras.

@@ -662,6 +662,23 @@ TEST_F(Compare, a_frame_of_a_list_without_its_reference_is_an_error_of_its_own) 
   EXPECT_EQ(shown_in(read_bytes(page))["title"], "2 frames against list.toml") << "and no place for names";
 }
 
+TEST_F(Compare, a_frame_of_a_list_that_names_no_reference_fails_alone_and_is_in_the_table) {
+  const std::string list = folder / "list.toml", xml = folder / "j.xml";
+  for (const char* name : {"hall.exr", "yard.exr"}) exr(name, {{"Y", ramp}});
+  write_bytes(list,
+              "[[frame]]\nname = 'hall'\ninput = 'x'\n"
+              "[[frame]]\nname = 'yard'\ninput = 'x'\nreference = 'hall.exr'\n");
+  const Finished finished = compare({folder / "{name}.exr", list, "--junit", xml});
+  EXPECT_EQ(finished.code, 3);
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("hall not compared\n"), HasSubstr("worst: frame yard")));
+  EXPECT_THAT(finished.err, HasSubstr("frame hall has neither"));
+  EXPECT_THAT(read_bytes(xml), AllOf(HasSubstr("name=\"yard\"></testcase>"), HasSubstr("frame hall has neither")));
+  write_bytes(list, "[[frame]]\nname = 'hall'\ninput = 'x'\n");
+  const json told = measured({folder / "{name}.exr", list}, 3);
+  EXPECT_EQ(told["failed"].size(), 1);
+  EXPECT_EQ(told["pass"], false);
+}
+
 TEST_F(Compare, junit_says_what_the_exit_code_says_of_holes) {
   Plane hole = ramp;
   hole[7] = kNan;

@@ -89,7 +89,9 @@ TEST_F(Wedge, estimates_once_for_looks_that_differ_in_their_shaping_alone) {
   ASSERT_EQ(report["rows"].size(), 8);
   EXPECT_EQ(estimates_of(report), 2);
   expect_bits_of_commands(report);
-  EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --set least=0,.2 --set gain=1,2 --set power=1,2"))), 1);
+  const json shapes = shown(of_frame("--radius auto --set least=0,.2 --set gain=1,2 --set power=1,2"));
+  EXPECT_EQ(estimates_of(shapes), 1);
+  expect_bits_of_commands(shapes);
   EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --set slices=2,4 --set intensity=1,2"))), 2);
   write_bytes(folder / "dark.toml", "intensity=2\n");
   EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --preset standard," + (folder / "dark.toml")))), 1);
@@ -105,6 +107,12 @@ TEST_F(Wedge, reads_the_frame_as_run_does) {
                              "0.5", "--radius", "1", "-o", page});
   ASSERT_FALSE(report.is_null());
   EXPECT_THAT(report["candidates"][0]["settings"], HasSubstr("--depth-channel 'far away' --depth-scale 0.5"));
+  const json strict =
+      shown(joined({frame, "--strict", "--no-skip"}, typed("--camera " + camera + " --radius 1 -o " + page)));
+  ASSERT_FALSE(strict.is_null());
+  EXPECT_THAT(strict["candidates"][0]["settings"],
+              AllOf(HasSubstr("--strict=true --camera"), HasSubstr("--no-skip=true --radius")));
+  expect_bits_of_commands(strict);
   const Finished plain =
       run_program({"run", frame, "--camera", camera, "--radius", "1", "-o", folder / "ao.exr", "--type", "float"});
   const Image ao = read_exr_image(folder / "ao.exr");
@@ -242,6 +250,15 @@ TEST_F(Wedge, that_fails_leaves_no_page_of_an_earlier_one_and_says_why) {
   EXPECT_EQ(failed.code, 2) << failed;
   EXPECT_THAT(failed.err, AllOf(HasSubstr("at least --memory"), Not(HasSubstr("beauty"))));
   EXPECT_FALSE(fs::exists(page) || fs::exists(sheet));
+}
+
+TEST_F(Wedge, without_room_is_refused_dry_as_well) {
+  FrameFile large = wall_frame({0, 0, 3840, 2160}, {0, 0, 3840, 2160});
+  large.write(frame);
+  write_bytes(camera, wall_camera({0, 0, 3840, 2160}).dump());
+  const Options little = of_frame("--radius 1 --memory 240M");
+  expect_refused(2, joined(little, {"--dry-run"}), {"whole", "--roi", "--memory"});
+  expect_refused(2, little, {"--memory"});
 }
 
 TEST_F(Wedge, may_be_tried_dry) {

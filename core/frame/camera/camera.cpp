@@ -310,67 +310,73 @@ std::optional<double> clip_plane(const CameraFile& file, const char* field) {
   return file.positive(field);
 }
 
+constexpr double kMatrixRounding = 1e-6;
+
+bool is_about(double value, double other) { return std::abs(value - other) < kMatrixRounding; }
+
+/// Whether a projection matrix divides by nothing, as an orthographic one.
+bool is_affine(const Rows4& m) { return is_about(m[3][3], 1); }
+
 /// Tells the projection by its word, or by the last row of the matrix that games have: 0 0 0 1 divides by nothing.
 bool is_orthographic(const CameraFile& file) {
-  if (const auto matrix = file.rows("projection")) return (*matrix)[3][3] == 1;
+  if (const auto matrix = file.rows("projection")) return is_affine(*matrix);
   const std::string projection = file.text("projection");
   if (!projection.empty() && projection != "perspective" && projection != "orthographic")
     file.refuse("projection", fmt::format("must be perspective or orthographic, not \"{}\"", projection));
   return projection == "orthographic";
 }
 
-/// Gives the depth where a projection to 0..1, not reversed, has z = 0: -B / A of its third row A z + B.
-std::optional<double> matrix_near(const CameraFile& file) {
-  const auto matrix = file.rows("projection");
-  if (!matrix) return std::nullopt;
-  const double near = std::abs((*matrix)[2][3] / (*matrix)[2][2]);
-  return near > 0 && std::isfinite(near) ? std::optional(near) : std::nullopt;
+/// Says why a projection matrix is none for column vectors whose z is a depth; "" for one that is.
+std::string why_no_depth(const Rows4& m) {
+  const auto ends_in = [&](double z, double w) {
+    return is_about(m[3][0], 0) && is_about(m[3][1], 0) && is_about(m[3][2], z) && is_about(m[3][3], w);
+  };
+  if (!ends_in(-1, 0) && !ends_in(1, 0) && !ends_in(0, 1))
+    return "has none of the last rows 0 0 -1 0, 0 0 1 0 and 0 0 0 1 of those for column vectors: transpose one for row "
+           "vectors";
+  const std::size_t zero = is_affine(m) ? 2 : 3;
+  const bool has_zeros =
+      is_about(m[2][0], 0) && is_about(m[2][1], 0) && is_about(m[0][zero], 0) && is_about(m[1][zero], 0);
+  return has_zeros ? ""
+                   : "has numbers where a matrix for column vectors has zeros: transpose one for row vectors; one with "
+                     "an oblique near plane tells no depth";
 }
 
-/// The planes of a z-buffer.
-struct ClipPlanes {
-  double near, far;
-  bool reversed;
-};
+/// The same of one that also shows the picture as it is.
+std::string why_not_upright(const Rows4& m) {
+  const bool is_upright = is_about(m[0][1], 0) && is_about(m[1][0], 0) && m[0][0] > 0 && m[1][1] != 0;
+  const std::string why = why_no_depth(m);
+  return !why.empty() || is_upright ? why : "turns or mirrors the picture: give fx, fy, cx and cy instead";
+}
 
-/// Gives the planes of a matrix that can be of one range of depth only. At the distance d, depth is a + B / d. It falls
-/// with the distance where it is reversed, from 1 to 0. Else it is 0 to 1 of a camera that looks along +z or a picture
-/// whose y points down, as Direct3D and Vulkan have them; OpenGL's is -1 to 1, which its matrix shares with others.
-std::optional<ClipPlanes> planes_of_matrix(const CameraFile& file) {
+/// Takes the planes of the z-buffer out of a matrix, where the file does not say them. At the distance d, depth is
+/// a + b / d. It falls with the distance where it is reversed, from 1 to 0. Else nothing in a matrix tells whether its
+/// depth begins at 0 or, as OpenGL's, at -1: camera.h has both.
+void read_planes_of_matrix(const CameraFile& file, Camera& camera) {
   const auto matrix = file.rows("projection");
-  if (!matrix || (*matrix)[3][3] == 1) return std::nullopt;
+  if (!matrix || !why_no_depth(*matrix).empty()) return;
   const Rows4& m = *matrix;
-  constexpr double kRounding = 1e-6, kMostReversed = 0.5;
+  const double zero = std::abs(m[2][3] / m[2][2]);
+  if (zero > 0 && std::isfinite(zero)) camera.matrix_near = zero;
+  if (camera.orthographic) return;
+  constexpr double kMostReversed = 0.5;
   const double a = m[2][2] * m[3][2], b = m[2][3], infinity = std::numeric_limits<double>::infinity();
-  if (b > 0 && std::abs(a) < kMostReversed) return ClipPlanes{b / (1 - a), a < -kRounding ? -b / a : infinity, true};
-  const bool is_from_zero = m[3][2] > 0 || m[1][1] < 0;
-  if (!is_from_zero || b >= 0 || a < 1 - kRounding) return std::nullopt;
-  return ClipPlanes{-b / a, a > 1 + kRounding ? b / (1 - a) : infinity, false};
-}
-
-/// Fails unless a projection matrix is for column vectors and neither turns nor mirrors the picture.
-void require_upright(const CameraFile& file, const Rows4& m) {
-  constexpr double kRounding = 1e-6;  // a distance stands in this place of a matrix for row vectors
-  const bool divides = m[3][0] == 0 && m[3][1] == 0 && std::abs(std::abs(m[3][2]) - 1) < kRounding && m[3][3] == 0;
-  if (!divides && m[3] != Row4{0, 0, 0, 1})
-    file.refuse("projection",
-                "has none of the last rows 0 0 -1 0, 0 0 1 0 and 0 0 0 1 of those for column vectors: transpose one "
-                "for row vectors");
-  const bool is_affine = m[3][3] == 1;
-  if (m[2][0] != 0 || m[2][1] != 0 || m[0][is_affine ? 2 : 3] != 0 || m[1][is_affine ? 2 : 3] != 0)
-    file.refuse("projection",
-                "has numbers where a matrix for column vectors has zeros: transpose one for row vectors; one with an "
-                "oblique near plane tells no depth");
-  if (m[0][1] != 0 || m[1][0] != 0 || m[0][0] <= 0 || m[1][1] == 0)
-    file.refuse("projection", "turns or mirrors the picture: give fx, fy, cx and cy instead");
+  if (b < 0 && a > 1 - kMatrixRounding) {
+    camera.matrix_near_opengl = -b / (a + 1);
+    camera.matrix_far = a > 1 + kMatrixRounding ? b / (1 - a) : infinity;
+  }
+  const bool is_reversed = b > 0 && std::abs(a) < kMostReversed;
+  if (!is_reversed || camera.near || camera.far || file.find("reversed_z")) return;
+  camera.near = b / (1 - a);
+  camera.far = a < -kMatrixRounding ? -b / a : infinity;
+  camera.reversed_z = true;
 }
 
 /// Takes the lens of a file without fx, fy, cx and cy out of the matrix that games have. Its y points down the picture
 /// where it is Vulkan's, and its camera looks along +z where the last row is 0 0 1 0.
 void read_lens_of_matrix(const CameraFile& file, const Rows4& m, Camera& camera) {
-  require_upright(file, m);
-  const bool is_affine = m[3][3] == 1;
-  const std::size_t shift = is_affine ? 3 : 2;
+  if (const std::string why = why_not_upright(m); !why.empty()) file.refuse("projection", why);
+  const std::size_t shift = is_affine(m) ? 3 : 2;
   const double side = m[3][2] < 0 ? -1 : 1, up = m[1][1] > 0 ? 1 : -1;
   camera.fx = 0.5 * camera.width * m[0][0];
   camera.fy = 0.5 * camera.height * std::abs(m[1][1]);
@@ -379,11 +385,12 @@ void read_lens_of_matrix(const CameraFile& file, const Rows4& m, Camera& camera)
   if (!is_scale(camera.fx) || !is_scale(camera.fy) || std::abs(camera.cx) > kMostCenter ||
       std::abs(camera.cy) > kMostCenter)
     file.refuse("projection", "sees nothing");
-  if (!is_affine && !file.find("camera_space")) camera.left_handed = side > 0;
+  if (!is_affine(m) && !file.find("camera_space")) camera.left_handed = side > 0;
 }
 
-/// Fails where a matrix shows another lens than fx, fy, cx and cy.
+/// Fails where a matrix shows another lens than fx, fy, cx and cy. One that is not upright shows none.
 void require_same_lens(const CameraFile& file, const Rows4& m, const Camera& camera) {
+  if (!why_not_upright(m).empty()) return;
   Camera by_matrix = camera;
   read_lens_of_matrix(file, m, by_matrix);
   constexpr double kSame = 0.01, kSamePixels = 1;  // matrices are rounded, and jitter by a part of a pixel
@@ -489,14 +496,8 @@ Camera camera_in(CameraFile file, int frame, const std::string& view) {
   read_view_from_world(file, camera);
   camera.near = clip_plane(file, "near");
   camera.far = clip_plane(file, "far");
-  camera.matrix_near = matrix_near(file);
   camera.reversed_z = truth(file, "reversed_z");
-  const auto planes = planes_of_matrix(file);
-  if (planes && !camera.near && !camera.far && !file.find("reversed_z")) {
-    camera.near = planes->near;
-    camera.far = planes->far;
-    camera.reversed_z = planes->reversed;
-  }
+  read_planes_of_matrix(file, camera);
   camera.depth_kind = depth_kind(file);
   camera.normal_space = normal_space(file);
   camera.normal_encoding = normal_encoding(file);

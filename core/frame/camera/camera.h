@@ -34,6 +34,8 @@ struct Camera {
   bool reversed_z = false;
   // The distance at which the source's projection matrix has depth 0, if its z is the depth itself.
   std::optional<double> matrix_near;
+  // The same at depth -1, where OpenGL's begins, and 1; none where the matrix is reversed or orthographic.
+  std::optional<double> matrix_near_opengl, matrix_far;
   DepthKind depth_kind = DepthKind::automatic;  // of the frame, as its source says; automatic: it does not
   NormalSpace normal_space = NormalSpace::automatic;
   NormalEncoding normal_encoding = NormalEncoding::automatic;

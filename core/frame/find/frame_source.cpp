@@ -441,6 +441,23 @@ void find_camera(FrameSource& source, const ChannelSearch& search, const InputSe
   note_scaled_camera(source, settings.camera);
 }
 
+/// The range of depth by settings, else by the camera, else by rules. The planes of a matrix that is not reversed are
+/// those of the range that the settings say.
+DepthRange range_of(const DepthRange& said, const Camera& camera, const DepthRange& of_rules) {
+  DepthRange range = said;
+  range.reversed = said.reversed || camera.reversed_z || of_rules.reversed;
+  const bool takes_matrix = camera.matrix_far && said.device != DeviceRange::automatic && !range.reversed;
+  const auto first = [](auto one, auto other) { return one ? one : other; };
+  if (takes_matrix) {
+    const bool is_opengl = said.device == DeviceRange::minus_one_to_one;
+    range.near = first(range.near, first(camera.near, is_opengl ? camera.matrix_near_opengl : camera.matrix_near));
+    range.far = first(range.far, first(camera.far, camera.matrix_far));
+  }
+  range.near = first(range.near, first(camera.near, of_rules.near));
+  range.far = first(range.far, first(camera.far, of_rules.far));
+  return range;
+}
+
 /// Takes the meaning of depth and normals from settings, camera and rules; the rest is open.
 void find_meaning(FrameSource& source, const InputSettings& settings) {
   const InputRules& rules = *source.program.rules;
@@ -462,13 +479,7 @@ void find_meaning(FrameSource& source, const InputSettings& settings) {
       source.channels[RawPlane::depth].size() == 3
           ? DepthKind::position
           : decided(settings.depth_kind, source.reading.camera.depth_kind, source.program.depth_kind);
-  source.reading.depth_range = settings.depth_range;
-  if (!source.reading.depth_range.near)
-    source.reading.depth_range.near = source.reading.camera.near ? source.reading.camera.near : rules.depth_range.near;
-  if (!source.reading.depth_range.far)
-    source.reading.depth_range.far = source.reading.camera.far ? source.reading.camera.far : rules.depth_range.far;
-  source.reading.depth_range.reversed =
-      settings.depth_range.reversed || source.reading.camera.reversed_z || rules.depth_range.reversed;
+  source.reading.depth_range = range_of(settings.depth_range, source.reading.camera, rules.depth_range);
   source.reading.position_space = settings.position_space != PositionSpace::automatic ? settings.position_space
                                   : source.reading.camera.view_from_world             ? PositionSpace::world
                                                                                       : PositionSpace::view;
