@@ -68,10 +68,11 @@ int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
   return occluders + (tells && settings.hidden > 0 ? kEndsReach + kEndsBeyond : 0);
 }
 
-/// The width, in radii, from which a run that begins within reach of a receiver is as good as endless. It is more than
-/// the sphere's 2, since exact.comp rounds widths by up to 3 %. Where surfaces are completed, a run is half as thick as
-/// wide, and it may begin so far beyond the reach as a surface goes on, which is 3 radii in complete.comp.
-double widest_run(const EstimatorSettings& settings) { return completes(settings) ? 3 + 4.2 : 2.1; }
+/// The width, in radii, from which a run that begins within reach of a receiver is as good as endless: with `auto` more
+/// of it adds nothing to its thickness, and nothing else is told by its other end. It is a little more than 4 radii,
+/// twice the width from which runs level off, since exact.comp rounds. Where surfaces are completed, a run is half as
+/// thick as wide, and it may begin so far beyond the reach as a surface goes on, which is 3 radii in complete.comp.
+double widest_run(const EstimatorSettings& settings) { return completes(settings) ? 3 + 8.4 : 4.2; }
 
 /// How many pixels the image of a sphere reaches from the image of its centre, on one axis. Centres are no nearer than
 /// `nearest`, and no farther off axis than `tangent`.
