@@ -345,7 +345,8 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
         reach = sine < 1 && forward > 0 ? sine * pixels / forward : INFINITY;
       }
       const Side side{
-          tangent, tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels, reach};
+          tangent, tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels,
+          reach};
       Blocked::Transfer transfer;
       if (with_transfer)
         transfer = [&](double from, double to) { return transfer_between(from, to, side.gamma, tangent, v); };

@@ -17,7 +17,7 @@ constexpr double kThicknessOfCut = 0.5;
 struct ReferenceSample {
   int x = 0, y = 0;  // its pixel
   Vector position;
-  Vector normal;  // unit; of the first surface, where the thickness goes by the width
+  Vector normal;         // unit; of the first surface, where the thickness goes by the width
   double depth = 0;      // 0: no surface; for the first surface: sky
   double thickness = 0;  // scene units, infinite allowed
   bool closes = false;   // it closes the solid of the surface before it in its pixel
@@ -34,7 +34,7 @@ struct ReferenceReceiver {
 
 /// A side of a slice at a receiver.
 struct ReferenceSide {
-  Vector tangent;             // unit, across the eye's ray
+  Vector tangent;           // unit, across the eye's ray
   Vector along_t, along_v;  // in-slice coordinates of an offset, moved into the slice parallel to the tangent plane
   double gamma;
   double step_x, step_y;  // pixels per step; the longer component is +-1

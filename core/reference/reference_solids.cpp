@@ -17,16 +17,16 @@ constexpr double kPlaneOff = 0.5;   // px: the most from each other's planes
 constexpr double kPlaneSlope = 200;
 
 // Parallel faces before each other are two: bars of a railing, not books on a shelf.
-constexpr double kParallelSlope = 1;   // px: nearer together they are one
-constexpr double kParallelOff = 1.5;   // px, and
+constexpr double kParallelSlope = 1;      // px: nearer together they are one
+constexpr double kParallelOff = 1.5;      // px, and
 constexpr double kParallelApart = 0.125;  // radii: the least from each other's planes
 
 // An edge between two faces of which the farther one recedes.
-constexpr double kEdgeSteps = 1.05;      // within so many it comes to the depth of the nearer one
-constexpr double kEdgeFacing = -0.01;    // more edge-on its plane tells nothing
-constexpr double kFlatDot = 0.9995;      // the least of normals of one flat face
-constexpr double kFlatOff = 0.25;        // px from each other's planes
-constexpr double kClearEdge = 0.8;       // the dot of normals that differ clearly
+constexpr double kEdgeSteps = 1.05;    // within so many it comes to the depth of the nearer one
+constexpr double kEdgeFacing = -0.01;  // more edge-on its plane tells nothing
+constexpr double kFlatDot = 0.9995;    // the least of normals of one flat face
+constexpr double kFlatOff = 0.25;      // px from each other's planes
+constexpr double kClearEdge = 0.8;     // the dot of normals that differ clearly
 
 /// Of the width so many radii count, or of what begins flat.
 constexpr double kWidest = 2, kWidestFlat = 4;
@@ -110,14 +110,15 @@ ReferenceSample ReferenceSolids::first_beside(const ReferenceLine& line, int sam
   return scene_.inside(x, y) ? sample_of(scene_, x, y, 0) : ReferenceSample{};
 }
 
-bool ReferenceSolids::is_flat(const ReferenceSample& a, const ReferenceSample& b, const ReferenceSample& c) const {
-  return are_coplanar(a, b, kFlatDot, kFlatOff) && are_coplanar(a, c, kFlatDot, kFlatOff);
+bool ReferenceSolids::is_flat(const ReferenceLine& line, int a, int b, int c) const {
+  return has_normals(line, a, b) && has_normals(line, a, c) && are_coplanar(line[a], line[b], kFlatDot, kFlatOff) &&
+         are_coplanar(line[a], line[c], kFlatDot, kFlatOff);
 }
 
 double ReferenceSolids::widest(const ReferenceLine& line, int first) const {
   const int second = line[first].farther;
   const int third = second < 0 ? -1 : line[second].farther;
-  const bool flat = third >= 0 && guesses(line) && is_flat(line[first], line[second], line[third]);
+  const bool flat = third >= 0 && is_flat(line, first, second, third);
   return (flat ? kWidestFlat : kWidest) * settings_.radius;
 }
 
@@ -134,7 +135,7 @@ double ReferenceSolids::by_width(const ReferenceLine& line, const std::vector<in
   const bool cut = line.at_border && line.step_of(run.back()) + 1 == line.steps();
   if (!cut || settings_.complete == Completion::none) return thickness;
   const std::size_t n = run.size();
-  const bool flat = n > 2 && guesses(line) && is_flat(line[run[n - 1]], line[run[n - 2]], line[run[n - 3]]);
+  const bool flat = n > 2 && is_flat(line, run[n - 1], run[n - 2], run[n - 3]);
   return std::max(thickness, (flat ? kThicknessOfFlatCut : kThicknessOfCut) * settings_.radius);
 }
 
@@ -145,13 +146,12 @@ bool ReferenceSolids::hides(const ReferenceLine& line, int first) const {
 }
 
 Vector ReferenceSolids::in_slice(Vector normal) const {
-  const Vector projected =
-      dot(normal, side_.tangent) * side_.tangent + dot(normal, receiver_.eye) * receiver_.eye;
+  const Vector projected = dot(normal, side_.tangent) * side_.tangent + dot(normal, receiver_.eye) * receiver_.eye;
   return length(projected) > 1e-6 ? normalized(projected) : receiver_.eye;
 }
 
 bool ReferenceSolids::mirrors(const ReferenceLine& line, const std::vector<int>& run) const {
-  if (int(run.size()) < kRoundSamples || !hides(line, run[0])) return false;
+  if (int(run.size()) < kRoundSamples || !has_normals(line, run[0], run[2]) || !hides(line, run[0])) return false;
   const ReferenceSample& outline = line[run[0]];
   const Vector away = -1 * scene_.toward_eye(outline.position);
   return -dot(in_slice(outline.normal), away) < kRoundFacing && dot(outline.normal, line[run[2]].normal) < kRoundDot;
@@ -179,18 +179,18 @@ bool ReferenceSolids::is_long(const ReferenceLine& line, const std::vector<int>&
 void ReferenceSolids::thicken(ReferenceLine& line, const std::vector<int>& run) const {
   const double width = by_width(line, run);
   for (const int i : run) line[i].thickness = width;
-  if (!guesses(line)) return;
   const bool mirrored = mirrors(line, run), reaches = !is_long(line, run);
   const double pixel = pixels_at(line[run[0]].depth), outline = distance_from_eye(line[run[0]]);
   for (const int i : run)
-    line[i].thickness = mirrored  ? std::max(2 * (outline - distance_from_eye(line[i])), pixel)
-                        : reaches ? std::max(width, reaches_back(line, i, run))
-                                  : width;
+    line[i].thickness = mirrored ? std::max(2 * (outline - distance_from_eye(line[i])), pixel)
+                        : reaches && has_normals(line, i, i) ? std::max(width, reaches_back(line, i, run))
+                                                             : width;
   close(line, run);
 }
 
 void ReferenceSolids::close(ReferenceLine& line, const std::vector<int>& run) const {
-  if (run.size() < 3 || !hides(line, run[0])) return;
+  if (run.size() < 3 || !has_normals(line, run[0], run[1]) || !has_normals(line, run[0], run[2])) return;
+  if (!hides(line, run[0])) return;
   const ReferenceSample& end = line[run[0]];
   if (std::min(dot(end.normal, line[run[1]].normal), dot(end.normal, line[run[2]].normal)) < kClosingDot) return;
   const Vector from = end.position - receiver_.position;

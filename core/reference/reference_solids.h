@@ -19,9 +19,6 @@ class ReferenceSolids {
   /// Whether two samples of neighbouring steps, the nearer step first, are one surface. is_own: it is the receiver's.
   bool connect(const ReferenceLine& line, int a, int b, bool is_own) const;
 
-  /// Whether guesses of what lies behind surfaces hold: not where that is known.
-  static bool guesses(const ReferenceLine& line) { return line.surfaces == 1; }
-
   /// The width that counts at most of the run that begins with a sample, in scene units.
   double widest(const ReferenceLine& line, int first) const;
 
@@ -38,8 +35,8 @@ class ReferenceSolids {
   bool comes_to(const ReferenceSample& far, const ReferenceSample& near) const;
   /// The first surface of the pixel one step from a sample, away from the receiver (way 1) or towards it (-1).
   ReferenceSample first_beside(const ReferenceLine& line, int sample, int way) const;
-  /// Whether a run, or what is left of one, begins flat: three samples in one plane.
-  bool is_flat(const ReferenceSample& a, const ReferenceSample& b, const ReferenceSample& c) const;
+  /// Whether three samples are first surfaces, and in one plane.
+  bool is_flat(const ReferenceLine& line, int a, int b, int c) const;
   bool hides(const ReferenceLine& line, int first) const;
   double pixels_at(double depth) const;
   double distance_from_eye(const ReferenceSample& sample) const;

@@ -91,12 +91,13 @@ const float kTouches = 1e-3;
 
 /// A walk from vertex to vertex of one side.
 struct Walk {
-  vec2 last;        // the vertex before, in (across, toward)
-  bool starts;      // there is none yet
-  bool is_own;      // the run is the receiver's own surface
-  bool is_rest;     // the run is what the receiver's own surface is not sure to go on with
-  float thickness;  // scene units, of the vertex before
-  float change;     // of the thickness up to the next vertex
+  vec2 last;             // the vertex before, in (across, toward)
+  bool starts;           // there is none yet
+  bool is_own;           // the run is the receiver's own surface
+  bool is_rest;          // the run is what the receiver's own surface is not sure to go on with
+  float last_thickness;  // scene units, at the last vertex
+  float thickness;       // of the vertex before
+  float change;          // of the thickness up to the next vertex
 };
 
 /// A piece of the profile, in (across, toward).
@@ -192,14 +193,14 @@ struct Search {
   // unit normal of the eye's ray that touches the sphere of the radius, in (across, toward): what is further along it
   // is beyond the sphere
   vec2 leaving;
-  vec2 normal;                     // the normal's projection, in (across, toward)
-  float lowest;                    // slope_of() where blocking begins
-  float least_height, least_rise;  // of what blocks: see clearance.glsl
-  int from;                        // the receiver's step
-  int step;                        // of columns, to that side
+  vec2 normal;                       // the normal's projection, in (across, toward)
+  float lowest;                      // slope_of() where blocking begins
+  float least_height, least_rise;    // of what blocks: see clearance.glsl
+  int from;                          // the receiver's step
+  int step;                          // of columns, to that side
   uint begins, last, apart, closes;  // the flags of vertices to that side
-  float shift;                     // of the sectors' boundaries, in [0, 1): see sectors.glsl
-  float unit;                      // scene units: a power of two near the receiver's depth
+  float shift;                       // of the sectors' boundaries, in [0, 1): see sectors.glsl
+  float unit;                        // scene units: a power of two near the receiver's depth
 };
 
 /// One side of a receiver's line: what all steps of its search share.
@@ -416,10 +417,16 @@ float thickness_at(Search search, int at) {
   return known > 0.0 ? known : min(params.thickness, kNone);
 }
 
+/// The thickness of a whole run at a vertex of it. Where the receiver's own run may end, the vertex before tells it.
+float whole_thickness_at(Search search, int at) {
+  while ((mark[at] & search.apart) != 0u && (mark[at] & search.begins) == 0u) at -= search.step;
+  return thickness_at(search, at);
+}
+
 /// A walk that comes to the vertex at an index from the one before, where there are several. A run that passes behind
 /// the receiver is cut beside the eye's ray.
 void come_to(inout Walk walk, Context c, int at, vec2 place, bool begins) {
-  const float here = thickness_at(c.search, at);
+  const float here = begins ? thickness_at(c.search, at) : whole_thickness_at(c.search, at);
   walk.thickness = here;
   walk.change = 0.0;
   if (!walk.starts && !begins) {
@@ -428,7 +435,7 @@ void come_to(inout Walk walk, Context c, int at, vec2 place, bool begins) {
     const float least = kBesideReceiver * place.x;
     const bool is_behind = both((from_step - c.search.from) * c.search.step <= 0, from.x < least);
     const float part = is_behind ? (place.x - least) / (place.x - from.x) : 1.0;
-    const float last = thickness_at(c.search, before), change = here - last;
+    const float last = whole_thickness_at(c.search, before), change = here - last;
     walk.last = is_behind ? place + part * (from - place) : from;
     walk.thickness = is_behind ? here - part * change : last;
     walk.change = is_behind ? part * change : change;
@@ -511,7 +518,7 @@ void add_border(inout Found found, Context c) {
   const float first = float(border + c.plane.origin);
   const float whole = kReachBeyond * params.radius / (plane.step * (perspective ? c.z : 1.0));
   const float rest = min(whole - float(abs(border - c.search.from)), kMostBeyond);
-  Walk walk = Walk(vec2(0), false, false, false, 0.0, 0.0);
+  Walk walk = Walk(vec2(0), false, false, false, 0.0, 0.0, 0.0);
   float last_z = kSkyDepth, last_at = first;
   vec2 last = vec2(0), start = vec2(0);
   // Whether a step lies within the sphere's image is the same at any depth.
@@ -552,12 +559,12 @@ BlockedArcs arcs_of(Context c, Found found) {
 }
 
 /// 7. The thickness from the last vertex to this one. What is left of a run has one thickness.
-void thicken(inout Walk walk, Search search, int at, uint marked, bool begins) {
-  const float last = walk.thickness + walk.change;
-  const bool changes = !walk.is_rest && (marked & search.apart) == 0u;
-  const float here = begins || changes ? thickness_at(search, at) : last;
-  walk.thickness = begins ? here : last;
+void thicken(inout Walk walk, Search search, int at, bool begins) {
+  if (walk.is_rest && !begins) return;
+  const float here = begins ? thickness_at(search, at) : whole_thickness_at(search, at);
+  walk.thickness = begins ? here : walk.last_thickness;
   walk.change = here - walk.thickness;
+  walk.last_thickness = here;
 }
 
 /// 7. Adds the hidden face that closes a solid behind a vertex, across its own face.
@@ -577,7 +584,7 @@ BlockedArcs blocked_by_one(Context c) {
   const uint first = first_column(search, c.row + search.from);
   const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
   Found found = Found(nothing, nothing);
-  Walk walk = Walk(vec2(0), true, true, false, params.thickness, 0.0);
+  Walk walk = Walk(vec2(0), true, true, false, params.thickness, params.thickness, 0.0);
   int at = c.row + int(first), last = -1;
   bool goes = first != kNoVertex;
   if (goes) {
@@ -591,7 +598,7 @@ BlockedArcs blocked_by_one(Context c) {
       const Corner corner = corner_at(c, at, to, z, begins);
       walk.is_rest = begins ? !begins_run : walk.is_rest;
       walk.is_own = begins ? false : walk.is_own;
-      if (params.thickness == 0.0) thicken(walk, search, at, marked, begins);
+      if (params.thickness == 0.0) thicken(walk, search, at, begins);
       const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
       add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0);
       if (begins_run && (marked & search.closes) != 0u) add_closing(found, walk, c, corner, at, to, z);
@@ -620,8 +627,9 @@ BlockedArcs blocked_by_several(Context c) {
   }
   const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
   Found found = Found(nothing, nothing);
-  Walk walk = Walk(vec2(0), true, true, false, params.thickness, 0.0);
-  bool is_own = true, starts = true;                    // the walk along the receiver's own slot
+  Walk walk = Walk(vec2(0), true, true, false, params.thickness, params.thickness, 0.0);
+  bool is_own = true, starts = true, rests = false;     // the walk along the receiver's own slot
+  float rest = 0.0;                                     // its thickness, where the own run has ended
   int last = next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
   if (goes) {
     do {
@@ -645,9 +653,19 @@ BlockedArcs blocked_by_several(Context c) {
       walk.starts = i == c.slot && starts;
       starts = i == c.slot ? false : starts;
       come_to(walk, c, at, corner.place, begins);
+      if (i == c.slot && begins) {
+        rests = is_parted;
+        rest = walk.thickness;
+      }
+      if (i == c.slot && rests) {
+        walk.thickness = rest;
+        walk.change = 0.0;
+      }
       const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
       // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
       if (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0 || twin_goes_on);
+      if (!is_unseen && (marked & search.begins) != 0u && (marked & search.closes) != 0u)
+        add_closing(found, walk, c, corner, at, to, z);
       if (is_unseen || is_twin) last = unseen_at;
       go_to(next, search, i, at + search.step, ends_at(marked, corner, search));
       if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));

@@ -19,6 +19,7 @@ ALCOVE_CONSTANT uint kVertexApartAgainst = 32;
 // A hidden face closes the run's solid here, where one looks along the line; and against it.
 ALCOVE_CONSTANT uint kVertexCloses = 64;
 ALCOVE_CONSTANT uint kVertexClosesAgainst = 128;
+ALCOVE_CONSTANT uint kVertexHidden = 256;  // it is not of the first surface of its pixel
 ALCOVE_CONSTANT uint kNoVertex = 0xffff;
 
 ALCOVE_CONSTANT int kSlopeBits = 14;  // so that products with 100,000 pixels are no larger than an int
@@ -44,9 +45,9 @@ struct ProfileParams {
   float widest;
   // scene units: a run that the image's border cuts is taken to be at least so thick, and twice that where it is flat
   float least_at_border;
-  float radius;           // scene units: of the sphere beyond which nothing blocks
-  uint solids;            // 1: by the rules of solids.glsl; 0: depth alone tells surfaces apart
-  uint slot;              // planes of what comes out before that of the first slot
+  float radius;  // scene units: of the sphere beyond which nothing blocks
+  uint solids;   // 1: by the rules of solids.glsl; 0: depth alone tells surfaces apart
+  uint slot;     // planes of what comes out before that of the first slot
 };
 
 ALCOVE_CONSTANT uint kCompleteGroup = 32;  // lines of a workgroup

@@ -80,10 +80,10 @@ struct Step {
   int at;  // the step
   bool is_surface;
   bool is_first;  // the first surface of its pixel
-  float z;      // planar depth on the line itself
-  float value;  // value_of() it
-  vec2 place;   // in the plane of the line
-  float known;  // scene units: how thick the surface's solid is here, along the eye's ray; below 0: not known
+  float z;        // planar depth on the line itself
+  float value;    // value_of() it
+  vec2 place;     // in the plane of the line
+  float known;    // scene units: how thick the surface's solid is here, along the eye's ray; below 0: not known
 };
 
 /// A line's profile so far, and the run that its last step is in.
@@ -258,7 +258,7 @@ Link link_of(View view, Lines lines, ivec2 steps, int line, Step last, Step here
 /// 3. Puts a vertex at a step; strokes go on from it.
 void emit_vertex(inout Run run, Step s) {
   vertex[run.row + run.next] = s.z;
-  mark[run.row + run.next] = uint(s.at) << 16;
+  mark[run.row + run.next] = uint(s.at) << 16 | (s.is_first ? 0u : kVertexHidden);
   solid[run.row + run.next] = s.known < 0.0 ? 0u : pack_thickness(s.known, s.known);
   neighbor[run.row + s.at] = columns(run.next == run.begin ? -1 : run.next - 1, run.next + 1);
   run.anchor = s.at;
@@ -283,7 +283,7 @@ struct End {
 /// The end of a run at step s, which goes on from there `inward` (1 or -1), of `count` steps in all.
 End end_of(View view, Lines lines, LinePlane plane, ivec2 steps, int line, Step s, int inward, int count) {
   End end = End(s.place, pixels_of(view, s.z), false, false, false);
-  if (params.solids == 0u || kSurfaces > 1u || count < 3) return end;
+  if (params.solids == 0u || !s.is_first || count < 3) return end;
   const Facet a = facet_at(view, lines, line, s.at), b = facet_at(view, lines, line, s.at + inward);
   const Facet c = facet_at(view, lines, line, s.at + 2 * inward);
   const int before = s.at - inward;
@@ -330,20 +330,20 @@ float thickness_at(View view, float by_width, float by_back, End end, vec2 place
 
 /// Gives all vertices of a run their thickness, where it is not known.
 void thicken_run(Run run, View view, Lines lines, LinePlane plane, int line, Extent e, vec2 by_width) {
-  const bool reaches = params.solids != 0u && kSurfaces == 1u && e.is_short && run.first < run.next - 1;
+  const bool reaches = params.solids != 0u && e.is_short && run.first < run.next - 1;
   for (int column = run.first; column < run.next; column++) {
     const int at = run.row + column, step = int(mark[at] >> 16);
     const vec2 place = place_at(view, plane, float(step), vertex[at]);
     float back = 0.0;
-    if (reaches) {
-      const vec2 n = in_plane(view, plane,
-                              unpack_normal(normal[index_at(view, lines, step, line + shift_at(lines, step))]));
+    if (reaches && (mark[at] & kVertexHidden) == 0u) {
+      const vec2 n =
+          in_plane(view, plane, unpack_normal(normal[index_at(view, lines, step, line + shift_at(lines, step))]));
       back = clamp(max(back_at(view, place, n, e.first.place), back_at(view, place, n, e.last.place)), 0.0,
                    kFarthestBack * params.radius);
     }
     const uint packed = pack_thickness(thickness_at(view, by_width.x, back, e.first, place),
                                        thickness_at(view, by_width.y, back, e.last, place));
-    if (kSurfaces == 1u || solid[at] == 0u) solid[at] = packed;
+    if (solid[at] == 0u) solid[at] = packed;
   }
 }
 
