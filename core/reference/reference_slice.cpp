@@ -26,8 +26,8 @@ bool goes_on(const ReferenceSolids& solids, const ReferenceSettings& settings, c
     const int index = step * line.surfaces + k;
     const ReferenceSample& sample = line[index];
     const int first = firsts[std::size_t(index)];
-    if (settings.thickness == ThicknessRule::width && sample.nearer >= 0 &&
-        length(sample.position - line[first].position) * settings.width_share <= solids.widest(line, first))
+    // The step that ends the line is not kept, so that the one before it must be long already.
+    if (settings.thickness == ThicknessRule::width && sample.nearer >= 0 && !solids.is_long(line, first, sample.nearer))
       return true;
   }
   return completes_behind(settings) && line.at(step, 0).depth > 0 && step <= kFarReach * side.reach + 1;

@@ -170,16 +170,15 @@ double ReferenceSolids::reaches_back(const ReferenceLine& line, int i, const std
   return std::min(farthest, kFarthestBack * settings_.radius);
 }
 
-/// Whether a run is so long that no more of its width counts: where it ends is another part of the scene.
-bool ReferenceSolids::is_long(const ReferenceLine& line, const std::vector<int>& run) const {
-  const double chord = length(line[run.back()].position - line[run.front()].position);
+bool ReferenceSolids::is_long(const ReferenceLine& line, int first, int last) const {
+  const double chord = length(line[last].position - line[first].position);
   return settings_.width_share * chord > kWidestFlat * settings_.radius;
 }
 
 void ReferenceSolids::thicken(ReferenceLine& line, const std::vector<int>& run) const {
   const double width = by_width(line, run);
   for (const int i : run) line[i].thickness = width;
-  const bool mirrored = mirrors(line, run), reaches = !is_long(line, run);
+  const bool mirrored = mirrors(line, run), reaches = !is_long(line, run.front(), run.back());
   const double pixel = pixels_at(line[run[0]].depth), outline = distance_from_eye(line[run[0]]);
   for (const int i : run)
     line[i].thickness = mirrored ? std::max(2 * (outline - distance_from_eye(line[i])), pixel)
@@ -190,7 +189,7 @@ void ReferenceSolids::thicken(ReferenceLine& line, const std::vector<int>& run) 
 
 void ReferenceSolids::close(ReferenceLine& line, const std::vector<int>& run) const {
   if (run.size() < 3 || !has_normals(line, run[0], run[1]) || !has_normals(line, run[0], run[2])) return;
-  if (!hides(line, run[0])) return;
+  if (line.step_of(run[0]) > side_.reach + 1 || !hides(line, run[0])) return;
   const ReferenceSample& end = line[run[0]];
   if (std::min(dot(end.normal, line[run[1]].normal), dot(end.normal, line[run[2]].normal)) < kClosingDot) return;
   const Vector from = end.position - receiver_.position;

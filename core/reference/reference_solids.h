@@ -19,8 +19,8 @@ class ReferenceSolids {
   /// Whether two samples of neighbouring steps, the nearer step first, are one surface. is_own: it is the receiver's.
   bool connect(const ReferenceLine& line, int a, int b, bool is_own) const;
 
-  /// The width that counts at most of the run that begins with a sample, in scene units.
-  double widest(const ReferenceLine& line, int first) const;
+  /// Whether a run that holds two samples is so long that no more of its width counts, and its other end tells nothing.
+  bool is_long(const ReferenceLine& line, int first, int last) const;
 
   /// Sets the thickness of the samples of a run that is not the receiver's, by its width and by how far back it is seen
   /// to reach, and adds the hidden face that closes it towards the receiver.
@@ -41,10 +41,11 @@ class ReferenceSolids {
   double pixels_at(double depth) const;
   double distance_from_eye(const ReferenceSample& sample) const;
   Vector in_slice(Vector normal) const;
+  /// The width that counts at most of the run that begins with a sample, in scene units.
+  double widest(const ReferenceLine& line, int first) const;
   bool mirrors(const ReferenceLine& line, const std::vector<int>& run) const;
   double by_width(const ReferenceLine& line, const std::vector<int>& run) const;
   double reaches_back(const ReferenceLine& line, int i, const std::vector<int>& run) const;
-  bool is_long(const ReferenceLine& line, const std::vector<int>& run) const;
   void close(ReferenceLine& line, const std::vector<int>& run) const;
 
   const ReferenceScene& scene_;

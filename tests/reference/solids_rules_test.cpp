@@ -202,8 +202,7 @@ bool is_below_box(const Hit& hit) { return hit.primitive == 0 && hit.position.x 
 
 TEST(Solids, a_box_above_the_floor_shades_what_is_below_it) {
   const Vec3 eye{6, 0, 2.2}, target{0, 0, 0.3};
-  for (const Shot& shot :
-       {Shot::perspective(eye, target, 42, 160, 112), Shot::orthographic(eye, target, 5, 160, 112)})
+  for (const Shot& shot : {Shot::perspective(eye, target, 42, 160, 112), Shot::orthographic(eye, target, 5, 160, 112)})
     for (const double height : {0.2, 0.5}) {
       const Means below = means_of(box_above_floor(1, 0.35, height), shot, is_below_box, 4);
       EXPECT_NEAR(below.ao, below.truth, 0.03) << height;
@@ -227,9 +226,8 @@ TEST(Solids, a_ball_above_a_floor_goes_back_as_it_comes_forward) {
     for (const double eye : {3.0, 1.0}) {
       const Scene scene{{kFloor, Sphere{.center = {0, 0, height}, .radius = 0.5}}};
       const Means beside =
-          means_of(scene, Shot::perspective({5, 0, eye}, {0, 0, 0.3}, 40, 160, 112), [](const Hit& hit) {
-            return hit.primitive == 0 && std::hypot(hit.position.x, hit.position.y) < 1;
-          });
+          means_of(scene, Shot::perspective({5, 0, eye}, {0, 0, 0.3}, 40, 160, 112),
+                   [](const Hit& hit) { return hit.primitive == 0 && std::hypot(hit.position.x, hit.position.y) < 1; });
       EXPECT_LE(beside.error, 0.055) << height << ", " << eye;
     }
 }
@@ -260,11 +258,11 @@ TEST(Solids, a_hole_three_radii_deep_is_dark) {
 
 TEST(Solids, a_recess_has_the_jamb_that_is_hidden) {
   constexpr double kDepth = 0.5;
-  const Scene recess{
-      {parallelogram({0, 0.4, -5}, {0, 6, 0}, {0, 0, 10}), parallelogram({0, -6, -5}, {0, 5.6, 0}, {0, 0, 10}),
-       parallelogram({-kDepth, -0.4, -5}, {0, 0.8, 0}, {0, 0, 10}),
-       parallelogram({-kDepth, 0.4, -5}, {kDepth, 0, 0}, {0, 0, 10}),
-       parallelogram({-kDepth, -0.4, -5}, {kDepth, 0, 0}, {0, 0, 10})}};
+  const Scene recess{{parallelogram({0, 0.4, -5}, {0, 6, 0}, {0, 0, 10}),
+                      parallelogram({0, -6, -5}, {0, 5.6, 0}, {0, 0, 10}),
+                      parallelogram({-kDepth, -0.4, -5}, {0, 0.8, 0}, {0, 0, 10}),
+                      parallelogram({-kDepth, 0.4, -5}, {kDepth, 0, 0}, {0, 0, 10}),
+                      parallelogram({-kDepth, -0.4, -5}, {kDepth, 0, 0}, {0, 0, 10})}};
   for (const double y : {3.0, 1.5}) {
     const auto is_back = [](const Hit& hit) { return hit.primitive == 2 && std::abs(hit.position.z) < 1; };
     EXPECT_LE(means_of(recess, Shot::perspective({5, y, 0}, {0, 0, 0}, 40, 200, 100), is_back, 4).error, 0.012) << y;
@@ -286,10 +284,9 @@ TEST(Solids, bars_of_a_railing_that_hide_each_other_are_many) {
 // It is too dark, as by any guess that it is a solid.
 TEST(Solids, a_curved_sheet_is_taken_for_a_solid) {
   const Scene scene{{kFloor, Sphere{.center = {0, 0, 0.2}, .radius = 0.7, .axis = {0, 0, 1}, .cos_half_angle = 0.2}}};
-  const Means beside =
-      means_of(scene, Shot::perspective({5, 0, 2}, {0, 0, 0.3}, 40, 160, 112), [](const Hit& hit) {
-        return hit.primitive == 0 && std::hypot(hit.position.x, hit.position.y) < 1.2;
-      });
+  const Means beside = means_of(scene, Shot::perspective({5, 0, 2}, {0, 0, 0.3}, 40, 160, 112), [](const Hit& hit) {
+    return hit.primitive == 0 && std::hypot(hit.position.x, hit.position.y) < 1.2;
+  });
   EXPECT_LT(beside.ao, beside.truth);
   EXPECT_LE(beside.error, 0.08);
 }
