@@ -174,8 +174,7 @@ float change_across(View view, Lines lines, int rows, int column, int across, in
   }
   const float other = depth_like(view, index_at(view, lines, column, beside), nearest);
   const bool known = other < kSkyDepth && beside != across;
-  const float slope = params.solids != 0u ? kOwnSlope / kRunSlope : 1.0;
-  const bool same = known && connected(perspective, slope * view.tangent_per_pixel.x, nearest, other);
+  const bool same = known && connected(perspective, view.tangent_per_pixel.x, nearest, other);
   float change = same ? value_of(perspective, other) - value_of(perspective, nearest) : 0.0;
   if (!same && nearest < kSkyDepth)
     change = change_behind(view, lines, rows, column, across, side, nearest, other, known);
