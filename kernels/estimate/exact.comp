@@ -558,10 +558,11 @@ BlockedArcs arcs_of(Context c, Found found) {
                      kOrder > 0u ? moments_of(c.side, c.search, found.all) : mat2(0));
 }
 
-/// 7. The thickness from the last vertex to this one. What is left of a run has one thickness.
-void thicken(inout Walk walk, Search search, int at, bool begins) {
-  if (walk.is_rest && !begins) return;
-  const float here = begins ? thickness_at(search, at) : whole_thickness_at(search, at);
+/// 7. The thickness from the last vertex to this one. What is left of a run has one thickness; and the vertex where that
+/// begins has no thickness of the whole run.
+void thicken(inout Walk walk, Search search, int at, uint marked, bool begins) {
+  const bool changes = begins || !walk.is_rest && (marked & search.apart) == 0u;
+  const float here = changes ? thickness_at(search, at) : walk.last_thickness;
   walk.thickness = begins ? here : walk.last_thickness;
   walk.change = here - walk.thickness;
   walk.last_thickness = here;
@@ -598,7 +599,7 @@ BlockedArcs blocked_by_one(Context c) {
       const Corner corner = corner_at(c, at, to, z, begins);
       walk.is_rest = begins ? !begins_run : walk.is_rest;
       walk.is_own = begins ? false : walk.is_own;
-      if (params.thickness == 0.0) thicken(walk, search, at, begins);
+      if (params.thickness == 0.0 && !walk.is_own) thicken(walk, search, at, marked, begins);
       const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
       add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0);
       if (begins_run && (marked & search.closes) != 0u) add_closing(found, walk, c, corner, at, to, z);

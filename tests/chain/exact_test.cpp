@@ -101,7 +101,7 @@ TEST(Exact, the_last_bit_of_the_depth_decides_nothing) {
     for (std::size_t i = 0; i < frame.depth.size(); i++)
       if (frame.depth[i] < kSky) frame.depth[i] = std::nextafter(frame.depth[i], i * i % 7 < 4 ? 0.0F : kSky);
     const Difference d = difference(ao, ao_of(frame, test::exact(0.6)));
-    EXPECT_LE(d.rmse, 4e-5) << place(d, frame);
+    EXPECT_LE(d.rmse, 5e-5) << place(d, frame);
   }
 }
 
