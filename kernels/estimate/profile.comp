@@ -92,7 +92,6 @@ struct Run {
   int next;            // column of the next vertex
   bool is_open;        // whether the last step is in a run
   bool is_pending;     // whether the last step is in it without being a vertex
-  bool is_parted;      // whether the receiver's own surface may end within it
   int first;           // column of the run's first vertex
   Step start;          // the run's first step
   int anchor;          // step of the last vertex
@@ -270,38 +269,49 @@ void emit_vertex(inout Run run, Step s) {
   run.next++;
 }
 
+/// A vertex, once its run is closed.
+struct Corner {
+  int index, step;
+  uint marked;
+  float z;
+  vec2 place;
+};
+
+Corner corner_at(View view, LinePlane plane, int index) {
+  const uint marked = mark[index];
+  const int step = int(marked >> 16);
+  const float z = vertex[index];
+  return Corner(index, step, marked, z, place_at(view, plane, float(step), z));
+}
+
 /// One end of a run, as one sees it who looks at it from beyond that end.
 struct End {
   vec2 place;
   float pixel;
+  bool is_cut;    // by the image's border
   bool is_flat;
   bool is_round;  // the solid's back mirrors its front
   bool closes;    // a hidden face goes back from it
 };
 
-/// The end of a run at step s, which goes on from there `inward` (1 or -1), of `count` steps in all.
-End end_of(View view, Lines lines, LinePlane plane, ivec2 steps, int line, Step s, int inward, int count) {
-  End end = End(s.place, pixels_of(view, s.z), false, false, false);
-  if (params.solids == 0u || !s.is_first || count < 3) return end;
-  const Facet a = facet_at(view, lines, line, s.at), b = facet_at(view, lines, line, s.at + inward);
-  const Facet c = facet_at(view, lines, line, s.at + 2 * inward);
-  const int before = s.at - inward;
-  bool hides = before >= steps.x && before < steps.y;
-  if (hides) hides = depth[index_at(view, lines, before, line + shift_at(lines, before))] > a.z;
-  const vec2 away = view.orthographic == 0 ? normalize(s.place) : vec2(0, 1);
+/// The end of a run at a corner, from which it goes on `inward` (1 or -1) for `count` steps in all.
+End end_of(View view, Lines lines, LinePlane plane, ivec2 steps, int line, Corner corner, int inward, int count) {
+  const int at = corner.step, last = steps.y - 1, before = at - inward;
+  End end = End(corner.place, pixels_of(view, corner.z), at == (inward > 0 ? steps.x : last), false, false, false);
+  const Facet a = facet_at(view, lines, line, at);
+  const Facet b = facet_at(view, lines, line, clamp(at + inward, steps.x, last));
+  const Facet c = facet_at(view, lines, line, clamp(at + 2 * inward, steps.x, last));
+  const bool is_known = params.solids != 0u && (corner.marked & kVertexHidden) == 0u && count > 2;
+  const int hidden_at = clamp(before, steps.x, last);
+  const float deeper = depth[index_at(view, lines, hidden_at, line + shift_at(lines, hidden_at))];
+  const bool hides = is_known && before == hidden_at && deeper > a.z;
+  const vec2 away = view.orthographic == 0 ? normalize(corner.place) : vec2(0, 1);
   const bool grazes = -dot(in_plane(view, plane, a.normal), away) < kRoundFacing;
-  end.is_flat = are_flat(view, a, b, c);
+  end.is_flat = is_known && are_flat(view, a, b, c);
   end.is_round = hides && grazes && count >= kRoundPixels && dot(a.normal, c.normal) < kRoundDot;
   end.closes = hides && min(dot(a.normal, b.normal), dot(a.normal, c.normal)) >= kClosingDot;
   return end;
 }
-
-/// Of a run.
-struct Extent {
-  End first, last;
-  float width;    // from outer edge to outer edge
-  bool is_short;  // more of its width would count
-};
 
 /// 2. How thick a run is by its width, in scene units, where one sees it from beyond one of its ends. is_cut: the
 /// image's border cuts it, so that its width is not known, at an end that is flat or not.
@@ -327,59 +337,71 @@ float thickness_at(View view, float by_width, float by_back, End end, vec2 place
   return end.is_round ? mirrored : max(by_width, by_back);
 }
 
-/// Gives all vertices of a run their thickness, where it is not known.
-void thicken_run(Run run, View view, Lines lines, LinePlane plane, int line, Extent e, vec2 by_width) {
-  const bool reaches = params.solids != 0u && e.is_short && run.first < run.next - 1;
-  for (int column = run.first; column < run.next; column++) {
-    const int at = run.row + column, step = int(mark[at] >> 16);
-    const vec2 place = place_at(view, plane, float(step), vertex[at]);
-    float back = 0.0;
-    if (reaches && (mark[at] & kVertexHidden) == 0u) {
-      const vec2 n =
-          in_plane(view, plane, unpack_normal(normal[index_at(view, lines, step, line + shift_at(lines, step))]));
-      back = clamp(max(back_at(view, place, n, e.first.place), back_at(view, place, n, e.last.place)), 0.0,
-                   kFarthestBack * params.radius);
-    }
-    const uint packed = pack_thickness(thickness_at(view, by_width.x, back, e.first, place),
-                                       thickness_at(view, by_width.y, back, e.last, place));
-    if (solid[at] == 0u) solid[at] = packed;
-  }
+/// Of a run, as one sees it from beyond either end.
+struct Solidity {
+  End first, last;
+  vec2 by_width;  // thickness
+  bool reaches;   // how far back it is seen to go tells, too
+};
+
+Solidity solidity_of(View view, Lines lines, LinePlane plane, ivec2 steps, int line, Corner first, Corner last) {
+  const int count = last.step - first.step + 1;
+  Solidity s;
+  s.first = end_of(view, lines, plane, steps, line, first, 1, count);
+  s.last = end_of(view, lines, plane, steps, line, last, -1, count);
+  const float pixel = min(s.first.pixel, s.last.pixel), width = length(last.place - first.place) + pixel;
+  const bool is_cut = s.first.is_cut || s.last.is_cut;
+  const bool is_cut_flat = s.first.is_cut && s.first.is_flat || s.last.is_cut && s.last.is_flat;
+  s.by_width = vec2(thickness_by_width(width, pixel, s.first.is_flat, is_cut, is_cut_flat),
+                    thickness_by_width(width, pixel, s.last.is_flat, is_cut, is_cut_flat));
+  s.reaches = params.solids != 0u && count > 1 && params.depth_per_width * width < 2.0 * params.widest;
+  return s;
 }
 
-/// Gives the vertices from which a run goes on apart from the receiver's own the thickness of that part of it.
-void thicken_parts(Run run, View view, LinePlane plane, Extent e, bool is_cut) {
-  for (int column = run.first; column < run.next; column++) {
-    const int at = run.row + column;
-    const vec2 place = place_at(view, plane, float(mark[at] >> 16), vertex[at]);
-    const float pixel = e.first.pixel;
-    const float along = thickness_by_width(length(e.last.place - place) + pixel, pixel, false, is_cut, false);
-    const float against = thickness_by_width(length(e.first.place - place) + pixel, pixel, false, is_cut, false);
-    const uint parts = pack_thickness(along, against);
-    if ((mark[at] & kVertexApart) != 0u) solid[at] = solid[at] & ~0xffffu | parts & 0xffffu;
-    if ((mark[at] & kVertexApartAgainst) != 0u) solid[at] = solid[at] & 0xffffu | parts & ~0xffffu;
-  }
+/// How far back a run is solid at a corner.
+uint thickness_of(View view, Lines lines, LinePlane plane, int line, Solidity s, Corner corner) {
+  const int pixel = index_at(view, lines, corner.step, line + shift_at(lines, corner.step));
+  const vec2 n = in_plane(view, plane, unpack_normal(normal[pixel]));
+  const float seen = max(back_at(view, corner.place, n, s.first.place), back_at(view, corner.place, n, s.last.place));
+  const bool reaches = s.reaches && (corner.marked & kVertexHidden) == 0u;
+  const float back = reaches ? clamp(seen, 0.0, kFarthestBack * params.radius) : 0.0;
+  return pack_thickness(thickness_at(view, s.by_width.x, back, s.first, corner.place),
+                        thickness_at(view, s.by_width.y, back, s.last, corner.place));
 }
 
-/// 2. Marks the first and the last vertex of a run that ends at its step `last`, the last that has a vertex.
-void close_run(inout Run run, View view, Lines lines, LinePlane plane, ivec2 steps, int line, Step last) {
-  const int count = last.at - run.start.at + 1;
-  Extent e;
-  e.first = end_of(view, lines, plane, steps, line, run.start, 1, count);
-  e.last = end_of(view, lines, plane, steps, line, last, -1, count);
-  const float pixel = min(e.first.pixel, e.last.pixel);
-  e.width = length(last.place - run.start.place) + pixel;
-  e.is_short = params.depth_per_width * e.width < 2.0 * params.widest;
-  const bool cut_first = run.start.at == steps.x, cut_last = last.at == steps.y - 1;
-  const bool is_cut = cut_first || cut_last;
-  const bool is_cut_flat = cut_first && e.first.is_flat || cut_last && e.last.is_flat;
-  const vec2 by_width = vec2(thickness_by_width(e.width, pixel, e.first.is_flat, is_cut, is_cut_flat),
-                             thickness_by_width(e.width, pixel, e.last.is_flat, is_cut, is_cut_flat));
-  thicken_run(run, view, lines, plane, line, e, by_width);
-  if (run.is_parted) thicken_parts(run, view, plane, e, is_cut);
-  const bool is_one = run.first == run.next - 1;
-  mark[run.row + run.first] |= kVertexBegins | (is_one ? kVertexEnds : 0u) | (e.first.closes ? kVertexCloses : 0u) |
-                               (run.first == run.begin ? kVertexFirst : 0u);
-  mark[run.row + run.next - 1] |= kVertexEnds | (e.last.closes ? kVertexClosesAgainst : 0u);
+/// The same of the part of a run from a corner on.
+uint thickness_of_part(Solidity s, Corner corner) {
+  const vec2 widths = vec2(length(s.last.place - corner.place), length(s.first.place - corner.place)) + s.first.pixel;
+  const bool is_cut = s.first.is_cut || s.last.is_cut;
+  return pack_thickness(thickness_by_width(widths.x, s.first.pixel, false, is_cut, false),
+                        thickness_by_width(widths.y, s.first.pixel, false, is_cut, false));
+}
+
+/// 2. Gives all vertices of a slot's profile their thickness, where it is not known. This follows the profile, since a
+/// driver may take its time for all steps though few end a run.
+void thicken(Run run, View view, Lines lines, LinePlane plane, ivec2 steps, int line) {
+  Solidity s;
+  int column = run.begin;
+  if (column < run.next) do {
+      const Corner corner = corner_at(view, plane, run.row + column);
+      if ((corner.marked & kVertexBegins) != 0u) {
+        int last = corner.index;
+        while ((mark[last] & kVertexEnds) == 0u) last++;
+        s = solidity_of(view, lines, plane, steps, line, corner, corner_at(view, plane, last));
+        mark[corner.index] |= s.first.closes ? kVertexCloses : 0u;
+        mark[last] |= s.last.closes ? kVertexClosesAgainst : 0u;
+      }
+      const uint whole = thickness_of(view, lines, plane, line, s, corner), part = thickness_of_part(s, corner);
+      const uint along = (corner.marked & kVertexApart) != 0u ? part : whole;
+      const uint against = (corner.marked & kVertexApartAgainst) != 0u ? part : whole;
+      if (solid[corner.index] == 0u) solid[corner.index] = along & 0xffffu | against & ~0xffffu;
+    } while (++column < run.next);
+}
+
+/// Marks the first and the last vertex of a run that ends.
+void close_run(inout Run run) {
+  mark[run.row + run.first] |= kVertexBegins | (run.first == run.begin ? kVertexFirst : 0u);
+  mark[run.row + run.next - 1] |= kVertexEnds;
   run.is_open = false;
 }
 
@@ -398,7 +420,6 @@ void begin_run(inout Run run, Step start) {
   run.first = run.next;
   run.start = start;
   run.is_open = true;
-  run.is_parted = false;
   emit_vertex(run, start);
 }
 
@@ -411,7 +432,6 @@ bool fits_thickness(Run run, Step here) {
 
 /// Ends the receiver's own run between the last vertex and a step of it, which becomes the next one.
 void part_own(inout Run run, Step here) {
-  run.is_parted = true;
   mark[run.row + run.next - 1] |= kVertexApartAgainst;
   emit_vertex(run, here);
   mark[run.row + run.next - 1] |= kVertexApart;
@@ -433,7 +453,7 @@ void draw(inout Run run, View view, Lines lines, LinePlane plane, ivec2 steps, i
     emit_vertex(run, last);
     run.is_pending = false;
   }
-  if (run.is_open && !goes_on) close_run(run, view, lines, plane, steps, line, last);
+  if (run.is_open && !goes_on) close_run(run);
   if (here.is_surface && !goes_on) begin_run(run, here);
   if (goes_on) {
     const float reach = tolerance * (perspective ? here.value : 1.0);
@@ -518,7 +538,7 @@ void main() {
     lasts[slot] = none;
     const int first = int(params.slot + slot) * extent.x * extent.y + row;
     runs[slot] =
-        Run(first, steps.x, steps.x, false, false, false, steps.x, none, 0, 0.0, 0.0, 0.0, steps.x, -1.0, 0.0, 0.0);
+        Run(first, steps.x, steps.x, false, false, steps.x, none, 0, 0.0, 0.0, 0.0, steps.x, -1.0, 0.0, 0.0);
   }
   int t = steps.x;
   do {
@@ -545,5 +565,8 @@ void main() {
       lasts[slot] = here[slot];
     }
   } while (++t <= steps.y);
-  for (uint slot = 0u; slot < kSlots; slot++) finish(runs[slot], steps);
+  for (uint slot = 0u; slot < kSlots; slot++) {
+    finish(runs[slot], steps);
+    thicken(runs[slot], view, lines, plane, steps, line);
+  }
 }
