@@ -568,15 +568,17 @@ void thicken(inout Walk walk, Search search, int at, uint marked, bool begins) {
   walk.last_thickness = here;
 }
 
-/// 7. Adds the hidden face that closes a solid behind a vertex, across its own face.
-void add_closing(inout Found found, Walk walk, Context c, Corner corner, int at, int step, float z) {
+/// 7. Where a hidden face closes the solid behind the vertex that begins a run, across its own face: the stroke from the
+/// face's end to the vertex, which has the whole thickness. What is behind both hangs together there, so it is one
+/// stroke.
+void close_solid(inout Walk walk, inout Stroke stroke, Context c, Corner corner, int step, float z, bool closes) {
   const int pixel = index_at(c.view, c.lines, step, c.line + shift_at(c.lines, step));
   const vec2 n = in_plane(c.view, c.plane, unpack_normal(normal[pixel]));
-  const vec2 end = place_at(c.view, c.plane, float(step), z) - thickness_at(c.search, at) * n;
-  const Stroke face = with_unseen(Stroke(corner.place, corner.place), true, from_receiver(c, end));
-  walk.thickness = walk.change = 0.0;
-  if (kTellsApart) block(found.seen, walk, c, face, corner, false);
-  block(found.all, walk, c, face, corner, false);
+  const vec2 end = from_receiver(c, place_at(c.view, c.plane, float(step), z) - walk.thickness * n);
+  const Stroke face = with_unseen(stroke, true, end);
+  stroke.from = closes ? face.from : stroke.from;
+  walk.change = closes ? walk.thickness : walk.change;
+  walk.thickness = closes ? 0.0 : walk.thickness;
 }
 
 /// 3. Where the line has one profile: a walk along it.
@@ -600,9 +602,9 @@ BlockedArcs blocked_by_one(Context c) {
       walk.is_rest = begins ? !begins_run : walk.is_rest;
       walk.is_own = begins ? false : walk.is_own;
       if (params.thickness == 0.0 && !walk.is_own) thicken(walk, search, at, marked, begins);
-      const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+      Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+      close_solid(walk, stroke, c, corner, to, z, begins_run && (marked & search.closes) != 0u);
       add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0);
-      if (begins_run && (marked & search.closes) != 0u) add_closing(found, walk, c, corner, at, to, z);
       goes = !ends_at(marked, corner, search);
       walk.last = corner.place;
       walk.starts = false;
@@ -662,11 +664,11 @@ BlockedArcs blocked_by_several(Context c) {
         walk.thickness = rest;
         walk.change = 0.0;
       }
-      const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+      Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+      const bool begins_run = begins && !is_parted;
+      close_solid(walk, stroke, c, corner, to, z, begins_run && (marked & search.closes) != 0u);
       // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
       if (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0 || twin_goes_on);
-      if (!is_unseen && (marked & search.begins) != 0u && (marked & search.closes) != 0u)
-        add_closing(found, walk, c, corner, at, to, z);
       if (is_unseen || is_twin) last = unseen_at;
       go_to(next, search, i, at + search.step, ends_at(marked, corner, search));
       if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));
