@@ -24,8 +24,8 @@
 //  6. Every stroke is cut to the part within the sphere. A stroke before the sphere blocks by the part of its solid
 //     within the sphere.
 //  7. A stroke blocks from its front to its back, which lies as far along the eye's ray as its run is solid there
-//     (profile.comp). What goes on from the receiver is its own surface: it blocks all below its horizon. Behind the end
-//     of a run a hidden face may close its solid.
+//     (profile.comp). What goes on from the receiver is its own surface: it blocks all below its horizon. Behind a
+//     run's end a hidden face may close its solid.
 //  8. What is blocked is a union of intervals. It is exact for what joins the horizon; all others are counted in 24
 //     sectors (sectors.glsl). Its arcs are integrated in closed form (slice.glsl).
 //  9. The result is 1 - (sum of blocked arcs) / (sum of whole arcs).
@@ -143,16 +143,17 @@ vec2 depths_of(vec2 front, float eye_distance, float thickness, float radius_sq,
 /// scene's numbers are large. So `along` is divided by a power of two near the receiver's depth, and t is multiplied by
 /// it, which changes no bit.
 Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
-  const vec2 from = stroke.from, along = (1.0 / unit) * (stroke.to - stroke.from);
-  const float a = dot(along, along);
-  const float middle = dot(from, along);
-  const float beside = from.x * along.y - from.y * along.x;
-  const float inside_sq = a * radius_sq - beside * beside;
-  const float inside = sqrt(max(inside_sq, 0.0));
-  const float scale = 1.0 / a;
-  const float enters = max((-middle - inside) * scale, 0.0);
-  const float leaves = min((inside - middle) * scale, unit);
-  return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
+  precise const vec2 from = stroke.from, along = (1.0 / unit) * (stroke.to - stroke.from);
+  precise const float a = dot(along, along);
+  precise const float middle = dot(from, along);
+  precise const float beside = from.x * along.y - from.y * along.x;
+  precise const float inside_sq = a * radius_sq - beside * beside;
+  precise const float inside = sqrt(max(inside_sq, 0.0));
+  precise const float scale = 1.0 / a;
+  precise const float enters = max((-middle - inside) * scale, 0.0);
+  precise const float leaves = min((inside - middle) * scale, unit);
+  precise const vec2 near = from + enters * along, far = from + leaves * along;
+  return Clipped(near, far, both(inside_sq > 0.0, enters <= leaves));
 }
 
 /// The largest power of two that is not above a depth.
@@ -163,8 +164,9 @@ float power_of_two(float z) { return uintBitsToFloat(floatBitsToUint(clamp(z, 1e
 /// alone, as a stroke that is short.
 Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
   const float next_pixel = min(kShortStroke, 1.0 / float(steps));
-  const vec2 onward = walk.starts ? next_pixel * place : walk.last;
-  return Stroke(begins ? kShortStroke * place : onward, place);
+  // Not contracted with what follows, which rounds otherwise where a line has several profiles.
+  precise const vec2 from = (begins ? kShortStroke : next_pixel) * place;
+  return Stroke(begins || walk.starts ? from : walk.last, place);
 }
 
 /// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
@@ -250,8 +252,9 @@ struct Corner {
 
 /// A place in the plane of the line, as seen from the receiver.
 vec2 from_receiver(Context c, vec2 place) {
-  const vec2 offset = place - c.point.place;
-  return vec2(dot(offset, c.search.across), dot(offset, c.point.eye));
+  precise const vec2 offset = place - c.point.place;
+  precise const vec2 seen = vec2(dot(offset, c.search.across), dot(offset, c.point.eye));
+  return seen;
 }
 
 Corner corner_at(Context c, int at, int step, float z, bool toward) {
@@ -558,8 +561,8 @@ BlockedArcs arcs_of(Context c, Found found) {
                      kOrder > 0u ? moments_of(c.side, c.search, found.all) : mat2(0));
 }
 
-/// 7. The thickness from the last vertex to this one. What is left of a run has one thickness; and the vertex where that
-/// begins has no thickness of the whole run.
+/// 7. The thickness from the last vertex to this one. What is left of a run has one thickness, and the vertex where it
+/// begins knows none of the whole run.
 void thicken(inout Walk walk, Search search, int at, uint marked, bool begins) {
   const bool changes = begins || !walk.is_rest && (marked & search.apart) == 0u;
   const float here = changes ? thickness_at(search, at) : walk.last_thickness;
@@ -568,17 +571,15 @@ void thicken(inout Walk walk, Search search, int at, uint marked, bool begins) {
   walk.last_thickness = here;
 }
 
-/// 7. Where a hidden face closes the solid behind the vertex that begins a run, across its own face: the stroke from the
-/// face's end to the vertex, which has the whole thickness. What is behind both hangs together there, so it is one
-/// stroke.
-void close_solid(inout Walk walk, inout Stroke stroke, Context c, Corner corner, int step, float z, bool closes) {
+/// 7. Where a hidden face closes the solid behind the vertex that begins a run, across its own face, the stroke from the
+/// face's end to the vertex, which has the whole thickness: what is behind both hangs together there.
+void close_solid(inout Walk walk, inout Stroke stroke, Context c, int step) {
   const int pixel = index_at(c.view, c.lines, step, c.line + shift_at(c.lines, step));
   const vec2 n = in_plane(c.view, c.plane, unpack_normal(normal[pixel]));
-  const vec2 end = from_receiver(c, place_at(c.view, c.plane, float(step), z) - walk.thickness * n);
-  const Stroke face = with_unseen(stroke, true, end);
-  stroke.from = closes ? face.from : stroke.from;
-  walk.change = closes ? walk.thickness : walk.change;
-  walk.thickness = closes ? 0.0 : walk.thickness;
+  const vec2 back = vec2(dot(n, c.search.across), dot(n, c.point.eye));
+  stroke.from = with_unseen(stroke, true, stroke.to - walk.thickness * back).from;
+  walk.change = walk.thickness;
+  walk.thickness = 0.0;
 }
 
 /// 3. Where the line has one profile: a walk along it.
@@ -603,7 +604,7 @@ BlockedArcs blocked_by_one(Context c) {
       walk.is_own = begins ? false : walk.is_own;
       if (params.thickness == 0.0 && !walk.is_own) thicken(walk, search, at, marked, begins);
       Stroke stroke = stroke_to(corner.place, walk, begins, steps);
-      close_solid(walk, stroke, c, corner, to, z, begins_run && (marked & search.closes) != 0u);
+      if (begins_run && (marked & search.closes) != 0u) close_solid(walk, stroke, c, to);
       add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0);
       goes = !ends_at(marked, corner, search);
       walk.last = corner.place;
@@ -666,7 +667,7 @@ BlockedArcs blocked_by_several(Context c) {
       }
       Stroke stroke = stroke_to(corner.place, walk, begins, steps);
       const bool begins_run = begins && !is_parted;
-      close_solid(walk, stroke, c, corner, to, z, begins_run && (marked & search.closes) != 0u);
+      if (begins_run && (marked & search.closes) != 0u) close_solid(walk, stroke, c, to);
       // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
       if (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0 || twin_goes_on);
       if (is_unseen || is_twin) last = unseen_at;

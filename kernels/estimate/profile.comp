@@ -288,7 +288,7 @@ Corner corner_at(View view, LinePlane plane, int index) {
 struct End {
   vec2 place;
   float pixel;
-  bool is_cut;    // by the image's border
+  bool is_cut;  // by the image's border
   bool is_flat;
   bool is_round;  // the solid's back mirrors its front
   bool closes;    // a hidden face goes back from it
@@ -537,8 +537,7 @@ void main() {
   for (uint slot = 0u; slot < kSlots; slot++) {
     lasts[slot] = none;
     const int first = int(params.slot + slot) * extent.x * extent.y + row;
-    runs[slot] =
-        Run(first, steps.x, steps.x, false, false, steps.x, none, 0, 0.0, 0.0, 0.0, steps.x, -1.0, 0.0, 0.0);
+    runs[slot] = Run(first, steps.x, steps.x, false, false, steps.x, none, 0, 0.0, 0.0, 0.0, steps.x, -1.0, 0.0, 0.0);
   }
   int t = steps.x;
   do {

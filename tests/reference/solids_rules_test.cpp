@@ -1,5 +1,5 @@
-// What is one surface, and how far back it is solid: each rule of the CPU reference by itself along one line, and scenes
-// whose truth rays tell.
+// What is one surface, and how far back it is solid: each rule of the CPU reference by itself along one line, and
+// scenes whose truth rays tell.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reference/reference.h"
 #include "core/reference/reference_slice.h"
