@@ -20,7 +20,7 @@ namespace {
 /// Keeps the sentence, for which there may be no memory either.
 void keep_error(alcove_session& handle, const char* text) noexcept {
   try {
-    handle.error = text;
+    handle.error = alcove::in_library_words(text);
   } catch (...) {
     handle.error.clear();
   }

@@ -8,32 +8,33 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/frame/evidence.h"
-#include "core/frame/radius.h"
-#include "core/frame/settle.h"
+#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/radius.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/depth_settlement.h"
+#include "core/frame/settle/precision.h"
 
 namespace alcove {
 namespace {
 
 constexpr double kUnit = 0.9, kFew = 0.5;  // shares of normals of unit length that tell an encoding
-constexpr double kFarOff = 2;              // px, of the median position from its pixel
 constexpr std::size_t kStep = 16;          // one pixel of so many is looked at
 
-void check_depth(const Reading& reading, std::span<const float> depth, const View& view) {
-  if (reading.depth_kind == DepthKind::position) {
-    const auto error = reprojection_error(depth, reading.position_space, false, reading.camera, view);
-    if (error && *error > kFarOff)
-      fail(ErrorKind::input,
-           "position: half of the positions are more than {:.3g} px from their pixels, or behind the camera, which "
-           "looks along -z: check --set position-space and the camera",
-           *error);
-    return;
-  }
+/// Refuses values that are no depth of their kind at all.
+void check_depth(const Reading& reading, std::span<const float> depth) {
   const auto is_surface = [&](float z) { return z > 0 && z < reading.sky; };
   const auto is_negative = [](float z) { return std::isfinite(z) && z < 0; };
   if (is_distance(reading.depth_kind) && std::ranges::none_of(depth, is_surface) &&
       std::ranges::any_of(depth, is_negative))
     fail(ErrorKind::input, "depth: all surfaces have negative values: distances are positive, so give -depth");
+  const auto is_fraction = [](float z) { return z > -1 && z < 1 && z != 0; };
+  const auto is_beyond = [](float z) { return std::isfinite(z) && z > 1; };
+  if (is_between_planes(reading.depth_kind) && std::ranges::none_of(depth, is_fraction) &&
+      std::ranges::any_of(depth, is_beyond))
+    fail(ErrorKind::input,
+         "depth: {} depth lies within 0 to 1, and no value does: divide integers by their largest one",
+         word_of(reading.depth_kind));
 }
 
 std::string text_of(const NormalScore& score) {
@@ -70,19 +71,31 @@ void check_normals(const Reading& reading, const HostPlanes& planes, Notes& note
 
 }  // namespace
 
-Notes check_planes(const Reading& reading, const HostPlanes& planes, const EstimatorSettings& settings) {
-  const View view = view_of(reading.camera, reading.data, reading.display);
-  const auto depth = planes[RawPlane::depth];
-  check_depth(reading, depth, view);
+Notes check_planes(Reading& reading, const HostPlanes& planes, const InputSettings& settings) {
+  const auto depth = planes[RawPlane::depth], normal = planes[RawPlane::normal];
+  const std::string name = reading.depth_kind == DepthKind::position ? "position" : "depth";
+  check_depth(reading, depth);
+  const RawPart raw{reading.data, depth, normal};
   Notes notes;
-  if (!planes[RawPlane::normal].empty()) check_normals(reading, planes, notes);
-  if (settings.radius) {
-    DepthSample sample;
-    sample.add(view, depth_map_of(reading), depth_precision_of(reading), depth);
-    const auto radii = radii_of(settings);
-    add_new(notes, sample.notes(radii.front(), radii.back(), reading.data.width, reading.data.height));
-  }
+  Evidence seen;
+  DepthFacts said;
+  said.program.rules = &input_rules("generic");
+  said.said_by = "--depth-kind, the camera or default";
+  seen.grain = measure_rounding(reading, raw.window, depth, name);
+  settle_depth({reading, notes, settings, raw, seen, name}, said);
+  if (!normal.empty()) check_normals(reading, planes, notes);
+  add_new(notes, overflown_depth(reading, depth, name));
+  add_new(notes, detected(findings_of(reading, raw, seen, name, true)));
+  measure_levels(reading, depth);
   return notes;
+}
+
+Notes check_radius(const Reading& reading, std::span<const float> depth, const EstimatorSettings& settings) {
+  if (!settings.radius) return {};
+  DepthSample sample;
+  sample.add(view_of(reading, reading.data), depth_map_of(reading), depth_precision_of(reading), depth);
+  const auto radii = radii_of(settings);
+  return sample.notes(radii.front(), radii.back(), reading.data.width, reading.data.height);
 }
 
 }  // namespace alcove

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "core/base/error.h"
@@ -16,6 +17,8 @@ namespace alcove {
 namespace {
 
 constexpr int kMostSide = 1 << 24, kMostComponents = 64;
+// Bytes. By the largest side, and three times that, it is a ptrdiff_t still.
+constexpr std::ptrdiff_t kMostStride = std::numeric_limits<std::ptrdiff_t>::max() / kMostSide / 4;
 
 std::size_t bytes_of(int type) { return type == ALCOVE_HALF ? 2 : 4; }
 
@@ -54,6 +57,11 @@ void check_layout(const std::string& name, const alcove_layout& layout) {
          layout.height, layout.components);
   if (layout.type != ALCOVE_FLOAT && layout.type != ALCOVE_HALF)
     fail(ErrorKind::usage, "{}: a plane of type {}, which is neither ALCOVE_FLOAT nor ALCOVE_HALF", name, layout.type);
+  const auto is_endless = [](std::ptrdiff_t stride) { return stride < -kMostStride || stride > kMostStride; };
+  if (is_endless(layout.component_stride) || is_endless(layout.pixel_stride) || is_endless(strides_of(layout).row))
+    fail(ErrorKind::usage,
+         "{}: strides of {}, {} and {} bytes from component, pixel and row to the next: beyond memory", name,
+         layout.component_stride, layout.pixel_stride, layout.row_stride);
   // From the shortest stride on, each must reach beyond all that lies within it.
   const Strides strides = strides_of(layout);
   std::array<std::pair<std::int64_t, int>, 3> steps{
@@ -75,13 +83,13 @@ std::vector<float> planes_from(const void* data, const alcove_layout& layout) {
   std::vector<float> planes(width * std::size_t(layout.height) * std::size_t(layout.components));
   for_rows(static_cast<const std::byte*>(data), layout,
            [&](std::size_t place, const std::byte* from, std::ptrdiff_t stride) {
-             for (float& value : std::span(planes).subspan(place, width)) {
+             for (std::size_t x = 0; x < width; x++) {
+               const std::byte* const at = from + std::ptrdiff_t(x) * stride;
                std::uint16_t half = 0;
                if (layout.type == ALCOVE_FLOAT)
-                 std::memcpy(&value, from, sizeof value);
+                 std::memcpy(&planes[place + x], at, sizeof(float));
                else
-                 std::memcpy(&half, from, sizeof half), value = from_half(half);
-               from += stride;
+                 std::memcpy(&half, at, sizeof half), planes[place + x] = from_half(half);
              }
            });
   return planes;
@@ -90,13 +98,14 @@ std::vector<float> planes_from(const void* data, const alcove_layout& layout) {
 void planes_to(std::span<const float> planes, void* data, const alcove_layout& layout) {
   const auto width = std::size_t(layout.width);
   for_rows(static_cast<std::byte*>(data), layout, [&](std::size_t place, std::byte* to, std::ptrdiff_t stride) {
-    for (const float value : planes.subspan(place, width)) {
+    for (std::size_t x = 0; x < width; x++) {
+      std::byte* const at = to + std::ptrdiff_t(x) * stride;
+      const float value = planes[place + x];
       const std::uint16_t half = layout.type == ALCOVE_FLOAT ? std::uint16_t(0) : to_half(value);
       if (layout.type == ALCOVE_FLOAT)
-        std::memcpy(to, &value, sizeof value);
+        std::memcpy(at, &value, sizeof value);
       else
-        std::memcpy(to, &half, sizeof half);
-      to += stride;
+        std::memcpy(at, &half, sizeof half);
     }
   });
 }

@@ -9,24 +9,10 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/frame/radius.h"
+#include "core/frame/pixels/radius.h"
 
 namespace alcove {
 namespace {
-
-/// The row of a setting that the library takes, with or without two dashes.
-const SettingRow& row_of(const std::string& option) {
-  const std::string key = option.starts_with("--") ? option.substr(2) : option;
-  std::vector<std::string> keys;
-  for (const auto& row : option_table())
-    if (row.in_library) keys.push_back(row.key());
-  const auto row = std::ranges::find(option_table(), key, &SettingRow::key);
-  if (row == option_table().end()) fail(ErrorKind::usage, "there is no option {}{}", key, suggestion(key, keys));
-  if (key == "preset") fail(ErrorKind::usage, "preset is no option here: alcove_preset() takes presets");
-  if (!row->in_library)
-    fail(ErrorKind::usage, "{} is of files: the library takes planes, and alcove run takes files", key);
-  return *row;
-}
 
 /// Values in 0 to 1 throughout are 0.5 + 0.5 n, as they are where frames are read from files.
 bool is_unorm(const std::vector<float>& values) {
@@ -66,7 +52,25 @@ const PlaneFacts& facts_of_plane(const std::string& name) {
   fail(ErrorKind::usage, "there is no plane {}{}; there is {}", name, suggestion(name, names), list_of(names));
 }
 
+/// The row of a setting that the library takes, with or without two dashes.
+const SettingRow& row_of(const std::string& option) {
+  const std::string key = option.starts_with("--") ? option.substr(2) : option;
+  std::vector<std::string> keys;
+  for (const auto& row : option_table())
+    if (row.in_library) keys.push_back(row.key());
+  const auto row = std::ranges::find(option_table(), key, &SettingRow::key);
+  if (row == option_table().end()) fail(ErrorKind::usage, "there is no option {}{}", key, suggestion(key, keys));
+  if (row->in_library) return *row;
+  if (is_plane(key)) fail(ErrorKind::usage, "{} is a plane: alcove_plane() takes it", key);
+  if (key == "camera" || key == "preset") fail(ErrorKind::usage, "{} is no option: alcove_{}() takes it", key, key);
+  fail(ErrorKind::usage, "{} is not available in the library", key);
+}
+
 }  // namespace
+
+bool is_plane(std::string_view name) {
+  return std::ranges::find(kPlanes, name, &PlaneFacts::name) != std::end(kPlanes);
+}
 
 void Session::set(const std::string& option, const char* value) {
   const SettingRow& row = row_of(option);
@@ -199,8 +203,6 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
   reading.camera = camera_by(settings, reading.data, frame);
   reading.depth_kind =
       has_position() ? DepthKind::position : decided(input.depth_kind, reading.camera.depth_kind, DepthKind::planar);
-  if (const auto unused = unused_range_options(input.depth_range, reading.depth_kind); !unused.empty())
-    refuse_range_options(has_position() ? "position" : "depth", unused, reading.depth_kind);
   reading.depth_range = input.depth_range;
   if (!reading.depth_range.near) reading.depth_range.near = reading.camera.near;
   if (!reading.depth_range.far) reading.depth_range.far = reading.camera.far;
@@ -212,7 +214,6 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
   reading.depth_scale = input.depth_scale;
   reading.sky = input.sky;
   reading.depth_is_half = first.is_half;
-  if (is_between_planes(reading.depth_kind)) reading.depth_step = step_of(first.values);
   read_normals(reading, settings);
   const auto& kinds = input.behind_kinds;
   for (const auto& plane : given("behind")) {
@@ -250,18 +251,24 @@ void Session::run(int frame) {
   results_.clear();
   notes_.clear();
   Settings all = settings();
-  const Reading reading = reading_by(all, frame);
-  if (all.estimator.radius_auto) {
-    all.estimator.radius = proposed_radius(reading.camera, median_depth(reading, depth().values));
-    if (!all.estimator.radius) all.estimator.radius = 1;  // there is no surface, and no AO to compute
-  }
+  Reading reading = reading_by(all, frame);
   if (all.output.aov_space == NormalSpace::world && !reading.camera.view_from_world)
     fail(ErrorKind::usage, "--set aov-space=world needs a camera with world_to_camera");
   if (all.output.multi_bounce && given("albedo").empty() && !all.input.albedo_value)
     fail(ErrorKind::usage, "--set multi-bounce needs the plane albedo, or a number for --set albedo");
+  std::vector<float> behind;
+  const HostPlanes planes = planes_over(reading.data, behind);
+  Notes notes = check_planes(reading, planes, all.input);
+  if (all.estimator.radius_auto) {
+    all.estimator.radius = proposed_radius(reading.camera, median_depth(reading, depth().values));
+    if (!all.estimator.radius) all.estimator.radius = 1;  // there is no surface, and no AO to compute
+  }
+  add_new(notes, check_radius(reading, planes[RawPlane::depth], all.estimator));
+  std::string sentences;
+  for (const auto& note : notes) sentences += (sentences.empty() ? "" : "\n") + in_library_words(note.text);
   open_device(all.device);
   try {
-    compute(all, reading, frame);
+    compute(all, reading, planes, frame);
   } catch (const gpu::DeviceLost&) {
     close_device();
     throw;
@@ -269,22 +276,25 @@ void Session::run(int frame) {
     gpu_->abandon();
     throw;
   }
+  notes_ = std::move(sentences);
 }
 
-void Session::compute(const Settings& settings, Reading reading, int frame) {
+HostPlanes Session::planes_over(const Window& data, std::vector<float>& behind) const {
   HostPlanes planes;
-  std::vector<float> behind;  // all of them, one behind the other
   for (const auto& facts : kPlanes)
     for (const auto& plane : given(facts.name)) {
-      if (plane.width != reading.data.width || plane.height != reading.data.height)
+      if (plane.width != data.width || plane.height != data.height)
         fail(ErrorKind::input, "{} has {} x {} pixels, and the depth {} x {}",
-             std::string(kRawPlanes[std::size_t(facts.plane)].name).substr(4), plane.width, plane.height,
-             reading.data.width, reading.data.height);
+             std::string(kRawPlanes[std::size_t(facts.plane)].name).substr(4), plane.width, plane.height, data.width,
+             data.height);
       planes[facts.plane] = plane.values;
       if (facts.plane == RawPlane::behind) behind.insert(behind.end(), plane.values.begin(), plane.values.end());
     }
   planes[RawPlane::behind] = behind;
-  const Notes notes = check_planes(reading, planes, settings.estimator);
+  return planes;
+}
+
+void Session::compute(const Settings& settings, const Reading& reading, const HostPlanes& planes, int frame) {
   FrameInputs inputs = upload(*gpu_, reading, planes, frame);
   inputs.albedo_value = settings.input.albedo_value.value_or(0);
   if (in_world(reading.camera, settings.output)) inputs.aov_from_view = transposed(*reading.camera.view_from_world);
@@ -295,7 +305,6 @@ void Session::compute(const Settings& settings, Reading reading, int frame) {
     fail(ErrorKind::device, "the validation layer has {} messages", device_->validation_messages() - messages);
   radius_ = settings.estimator.radius;
   note_results(outputs, settings, reading.data.width, reading.data.height);
-  for (const auto& note : notes) notes_ += (notes_.empty() ? "" : "\n") + note.text;
 }
 
 void Session::note_results(const FrameOutputs& outputs, const Settings& settings, int width, int height) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "api/alcove/alcove.h"
@@ -36,10 +37,21 @@ std::vector<float> planes_from(const void* data, const alcove_layout& layout);
 /// to even.
 void planes_to(std::span<const float> planes, void* data, const alcove_layout& layout);
 
-/// Checks a part of the pixels. Fails with ErrorKind::input if every depth is negative, if positions do not lie on the
-/// rays of their pixels, and if the normals, by their reading, are not those of the depth. Gives sentences about
-/// doubts: normals that may not be those of the depth, and radii that do not suit the frame.
-Notes check_planes(const Reading& reading, const HostPlanes& planes, const EstimatorSettings& settings);
+/// Whether a plane has that name.
+bool is_plane(std::string_view name);
+
+/// The sentence with 'key' for each option --key: the core writes for the command line. Options that the library does
+/// not take are marked.
+std::string in_library_words(std::string_view sentence);
+
+/// Looks at the pixels as at those of files, and takes down in `reading` what they show. Fails with ErrorKind::input if
+/// depth cannot be of its kind or is too coarse for AO, if positions do not lie on the rays of their pixels, and if the
+/// normals, by their reading, are not those of the depth; with ErrorKind::usage on options that have no effect on depth
+/// of its kind. Gives sentences about doubts.
+Notes check_planes(Reading& reading, const HostPlanes& planes, const InputSettings& settings);
+
+/// Gives sentences about radii that do not suit the depth.
+Notes check_radius(const Reading& reading, std::span<const float> depth, const EstimatorSettings& settings);
 
 /// A session behind the C functions, which api/alcove/alcove.h describes. Failures are an Error.
 class Session {
@@ -74,7 +86,9 @@ class Session {
   void read_normals(Reading& reading, const Settings& settings) const;
   void close_device();
   void open_device(const DeviceSettings& settings);
-  void compute(const Settings& settings, Reading reading, int frame);
+  /// The planes of the frame; those behind each other are in `behind`.
+  HostPlanes planes_over(const Window& data, std::vector<float>& behind) const;
+  void compute(const Settings& settings, const Reading& reading, const HostPlanes& planes, int frame);
   void note_results(const FrameOutputs& outputs, const Settings& settings, int width, int height);
 
   std::vector<OptionValue> values_;                           // typed ones, each option once

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/gpu/device.h"
+#include "core/options/files.h"
 #include "core/options/options.h"
 
 namespace alcove {
@@ -28,8 +29,10 @@ CommandOf<BenchArguments> bench_syntax() {
   CommandOf<BenchArguments> command{"alcove bench",
                                     "Measures device time against error for the candidates of a suite.\n\n"
                                     "Example:\n  alcove bench examples/bench/suite.toml --report bench.html\n"};
-  OptionGroup(command.rows, "", Effect::none)
-      .text("SUITE", &S::suite, "", "a suite file (TOML); all but --stability needs one");
+  OptionGroup suites(command.rows, "", Effect::none);
+  suites.text("SUITE", &S::suite, "", "a suite file (TOML); all but --stability needs one")
+      .names(FileRole::input)
+      .is_of_frame = false;
   OptionGroup options(command.rows, "Options", Effect::none);
   // A count of 0 stands for "not given", and no default is shown for it.
   const auto count = [&](const char* name, int BenchArguments::*value, const Range& range, const char* sentence) {
@@ -42,14 +45,18 @@ CommandOf<BenchArguments> bench_syntax() {
   count("--repeats", &S::repeats, between(1, 1000), "timed runs, instead of the suite's");
   count("--reference-slices", &S::reference_slices, between(0, 1024),
         "of the CPU reference, instead of the suite's; 0: none");
-  options.text("--json", &S::json, "FILE.json", "write all numbers");
-  options.text("--csv", &S::csv, "FILE.csv", "write a line for every candidate and frame");
-  options.text("--report", &S::report, "FILE.html", "write a self-contained page with chart, table and pictures");
-  options.text("--limits", &S::limits, "FILE.toml",
-               "a TOML file of largest errors; one that is exceeded ends with exit code 6");
-  options.text("--yardstick", &S::yardstick, "PROGRAM",
-               "a program that times a unit of work, run between the candidates as PROGRAM FRAME CAMERA RADIUS RUNS; "
-               "it prints \"median X ms\"");
+  const auto file = [&](const char* name, std::string S::*path, const char* value, const char* sentence,
+                        FileRole role) { options.text(name, path, value, sentence).names(role).is_of_frame = false; };
+  file("--json", &S::json, "FILE.json", "write all numbers", FileRole::report);
+  file("--csv", &S::csv, "FILE.csv", "write a line for every candidate and frame", FileRole::report);
+  file("--report", &S::report, "FILE.html", "write a self-contained page with chart, table and pictures",
+       FileRole::report);
+  file("--limits", &S::limits, "FILE.toml", "a TOML file of largest errors; one that is exceeded ends with exit code 6",
+       FileRole::input);
+  file("--yardstick", &S::yardstick, "PROGRAM",
+       "a program that times a unit of work, run between the candidates as PROGRAM FRAME CAMERA RADIUS RUNS; it prints "
+       "\"median X ms\"",
+       FileRole::input);
   options.text("--device", within(&S::device, &gpu::DeviceOptions::choice), "auto|cpu|INDEX|NAME|UUID",
                "as for alcove run");
   options.flag("--require-gpu", within(&S::device, &gpu::DeviceOptions::require_gpu),
@@ -101,6 +108,22 @@ Settings settings_of(const SuiteCandidate& candidate, const SuiteFrame& frame, c
   return settings;
 }
 
+/// Refuses to write over what is read: files of options, and of the suite.
+void check_reports(const BenchArguments& arguments, const std::vector<RowOf<BenchArguments>>& rows,
+                   const Suite& suite) {
+  FileUses uses;
+  for (const auto& file : files_of(rows, arguments, FileRole::input)) uses.add_input(file);
+  for (const auto& frame : suite.frames)
+    for (const auto& path : frame.files()) uses.add_input({"SUITE", path});
+  for (const auto& candidate : suite.candidates)
+    for (const auto& file : files_of(settings_of(candidate, suite.frames.front(), arguments.suite), FileRole::input))
+      uses.add_input(file);
+  for (const auto& file : files_of(rows, arguments, FileRole::report)) {
+    uses.add_output(file);
+    require_writable(file.path, file.option.c_str());
+  }
+}
+
 std::vector<BenchCandidate> candidates_of(const Suite& suite, const std::string& path) {
   std::vector<BenchCandidate> candidates;
   for (const auto& candidate : suite.candidates) {
@@ -133,8 +156,6 @@ void write(const std::string& path, const std::string& text) {
 }
 
 int report_stability(const BenchArguments& a) {
-  for (const auto& [path, option] : {std::pair(&a.json, "--json"), std::pair(&a.report, "--report")})
-    if (!path->empty()) require_writable(*path, option);
   gpu::Device device(a.device);
   const StabilityReport report = run_stability(device, [&](const std::string& line) {
     if (!a.quiet) print_error("{}\n", line);
@@ -150,25 +171,17 @@ int report_stability(const BenchArguments& a) {
 Command describe_bench() { return bench_syntax().shown(); }
 
 int bench_command(const std::vector<std::string>& arguments) {
-  const auto parsed = bench_syntax().parse(arguments);
+  const auto syntax = bench_syntax();
+  const auto parsed = syntax.parse(arguments);
   if (!parsed) return 0;
   const BenchArguments& a = *parsed;
   check_purpose(a);
+  check_reports(a, syntax.rows, {});
   if (a.stability) return report_stability(a);
   Suite suite = read_suite(a.suite, a.data);
   if (a.repeats) suite.repeats = a.repeats;
   if (a.reference_slices >= 0) suite.reference_slices = a.reference_slices;
-  std::vector<std::string> inputs{a.suite, a.limits};
-  for (const auto& frame : suite.frames) {
-    inputs.insert(inputs.end(), {frame.input, frame.camera, frame.reference});
-    inputs.insert(inputs.end(), frame.truth.begin(), frame.truth.end());
-  }
-  for (const auto& [path, option] :
-       {std::pair(&a.json, "--json"), std::pair(&a.csv, "--csv"), std::pair(&a.report, "--report")}) {
-    if (path->empty()) continue;
-    require_no_input(*path, option, inputs);
-    require_writable(*path, option);
-  }
+  check_reports(a, syntax.rows, suite);
   const auto limits = a.limits.empty() ? std::vector<Limit>() : read_limits(a.limits);
   require_known(limits, suite, a.limits);
   const auto candidates = candidates_of(suite, a.suite);

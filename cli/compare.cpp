@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "cli/commands.h"
@@ -14,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
+#include "core/options/files.h"
 
 namespace alcove {
 namespace {
@@ -35,13 +35,18 @@ CommandOf<CompareArguments> compare_syntax() {
       "  alcove compare ao.%04d.exr truth.%04d.exr --depth frame.%04d.exr --motion frame.%04d.exr --json\n"};
   OptionGroup pictures(command.rows, "", Effect::none, &CompareArguments::settings);
   pictures.text("RESULT", &S::result, "", "an EXR or any other picture; a pattern such as ao.%04d.exr for a sequence")
+      .names(FileRole::input)
       .is_required = true;
   pictures.text("REFERENCE", &S::reference, "", "what it should be; a pattern too, or one picture for all frames")
+      .names(FileRole::input)
       .is_required = true;
   OptionGroup options(command.rows, "Options", Effect::none, &CompareArguments::settings);
   OptionGroup reports(command.rows, "Options", Effect::none);
-  options.text("--reference-b", &S::reference_b, "FILE",
-               "a second render of the reference with independent noise: rmse is then free of the noise of both");
+  const auto file = [&](const char* name, std::string S::*path, const char* value, const char* sentence) {
+    options.text(name, path, value, sentence).names(FileRole::input);
+  };
+  file("--reference-b", &S::reference_b, "FILE",
+       "a second render of the reference with independent noise: rmse is then free of the noise of both");
   options
       .add(
           {"--channel", "NAMES", "", "",
@@ -50,20 +55,21 @@ CommandOf<CompareArguments> compare_syntax() {
           [](const S&) { return Words(); },
           [](S& s, const Words& words) { s.channels = fmt::format("{}", fmt::join(words, ",")); })
       .repeats = true;
-  options.text("--mask", &S::mask, "FILE", "compare only where it is above 0");
+  file("--mask", &S::mask, "FILE", "compare only where it is above 0");
   options.text("--mask-channel", &S::mask_channel, "NAME", "the mask's channel; else its only one, or its alpha");
-  options.text("--depth", &S::depth, "FILE.exr", "leave out the sky, and measure depth edges and grain too");
+  file("--depth", &S::depth, "FILE.exr", "leave out the sky, and measure depth edges and grain too");
   options.text("--depth-channel", &S::depth_channel, "NAME", "the depth channel; else found by its usual names");
   options.number("--sky", &S::sky, "", above(0), "depth at or beyond it is sky, as are 0, infinity and NaN");
   options.text("--frames", &S::frames, "LIST", "frames such as 1001-1100x2,1200; else those of RESULT on the disk");
-  options.text("--motion", &S::motion, "FILE",
-               "motion for the flicker of a sequence: place in the previous frame minus place here, in pixels, y up");
+  file("--motion", &S::motion, "FILE",
+       "motion for the flicker of a sequence: place in the previous frame minus place here, in pixels, y up");
   options.text("--motion-channels", &S::motion_channels, "X,Y", "the motion's channels; else Vector.X,Vector.Y");
   options.number("--peak", &S::peak, "", above(0), "the largest value, for PSNR and SSIM");
   options.flag("--hdr", &S::hdr, "the values are scene-linear light: HDR-FLIP instead of FLIP of display values");
   reports.flag("--json", &CompareArguments::json, "print JSON");
-  reports.text("--report", &CompareArguments::report, "FILE.html",
-               "write a self-contained page with table and pictures");
+  reports
+      .text("--report", &CompareArguments::report, "FILE.html", "write a self-contained page with table and pictures")
+      .names(FileRole::report);
   reports.flag("-q,--quiet", &CompareArguments::quiet,
                "print no table and no warnings: the exit code says whether limits hold");
   OptionGroup limits(command.rows, "Limits, for every frame; one that is broken ends with exit code 6", Effect::none,
@@ -76,6 +82,8 @@ CommandOf<CompareArguments> compare_syntax() {
   limits.number("--max-bias", &CompareLimits::max_bias, "", at_least(0), "the largest size of the mean error");
   limits.number("--max-grain", &CompareLimits::max_grain, "", at_least(0),
                 "the largest grain, which needs --depth; a frame without plain surfaces ends with exit code 3");
+  limits.number("--max-excluded", &CompareLimits::max_excluded, "", between(0, 1),
+                "the largest share of pixels that are NaN or infinite in one file only; else any breaks all limits");
   return command;
 }
 
@@ -91,6 +99,21 @@ void check_files(const CompareSettings& s) {
   require(!s.motion_channels.empty(), "--motion-channels", s.motion, "--motion");
 }
 
+/// Refuses to write over a picture of any frame.
+void check_report(const CompareArguments& arguments, const std::vector<RowOf<CompareArguments>>& rows) {
+  if (arguments.report.empty()) return;
+  FileUses uses;
+  CompareArguments of_frame;
+  for (const auto& settings : settings_of_frames(arguments.settings)) {
+    of_frame.settings = settings;
+    for (const auto& file : files_of(rows, of_frame, FileRole::input)) uses.add_input(file);
+  }
+  for (const auto& file : files_of(rows, arguments, FileRole::report)) {
+    uses.add_output(file);
+    require_makeable(file.path, file.option.c_str());
+  }
+}
+
 std::string optional_number(std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; }
 
 void print_part(const std::string& name, const PartErrors& part) {
@@ -103,7 +126,8 @@ void print_heading(const std::string& result, const std::string& reference, cons
 
 void print_picture(const FrameComparison& c) {
   print_heading(c.result, c.reference, c.channels);
-  fmt::print("  {} pixels compared, {} masked, {} not finite\n", c.count, c.masked, c.excluded);
+  fmt::print("  {} pixels compared, {} masked, {} not finite, {} of them in one file only\n", c.count, c.masked,
+             c.excluded, c.holes);
   if (c.common) fmt::print("  the files' windows differ: compared {}, which all have\n", to_string(*c.common));
   const PlaneErrors& e = c.errors;
   fmt::print("  rmse {:.4f}   mae {:.4f}   bias {:+.4f}   max {:.4f}   p95 {:.4f}   p99 {:.4f}\n", e.rmse, e.mae,
@@ -142,15 +166,12 @@ void print_sequence(const CompareReport& report) {
 Command describe_compare() { return compare_syntax().shown(); }
 
 int compare_command(const std::vector<std::string>& arguments) {
-  auto parsed = compare_syntax().parse(arguments);
+  const auto syntax = compare_syntax();
+  auto parsed = syntax.parse(arguments);
   if (!parsed) return 0;
   CompareArguments& a = *parsed;
   check_files(a.settings);
-  if (!a.report.empty()) {
-    const CompareSettings& s = a.settings;
-    require_no_input(a.report, "--report", std::array{s.result, s.reference, s.reference_b, s.mask, s.depth, s.motion});
-    require_makeable(a.report, "--report");
-  }
+  check_report(a, syntax.rows);
   if (a.limits.max_grain && a.settings.depth.empty())
     fail(ErrorKind::usage,
          "--max-grain {}: grain is measured on plain surfaces, and only depth shows where they are; give --depth "
@@ -167,13 +188,14 @@ int compare_command(const std::vector<std::string>& arguments) {
   else if (!a.quiet)
     print_picture(report.frames[0]);
   if (!a.quiet)
-    for (const auto& note : notes_on(report, a.settings))
+    for (const auto& note : notes_on(report, a.settings, a.limits))
       print_error("alcove: {}: {}\n", level_of(note), printable(line_of(note, "")));
   if (!a.report.empty()) {
     make_folder_of(a.report, "--report");
     write_whole(a.report, compare_page(report));
   }
-  if (!broken.sentences.empty()) fail(broken.kind, "{}", fmt::join(broken.sentences, "; "));
+  const bool has_limits = a.limits != CompareLimits{};
+  if (has_limits && !broken.sentences.empty()) fail(broken.kind, "{}", fmt::join(broken.sentences, "; "));
   return 0;
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -30,6 +32,7 @@ struct Facts {
   std::vector<gpu::DeviceInfo> devices;
   std::vector<std::string> checks;    // of each device; empty: not asked for
   std::vector<std::string> problems;  // sentences
+  bool is_abandoned = false;          // a device still computes
 };
 
 std::string gibibytes(std::uint64_t bytes) { return fmt::format("{:.1f} GiB", double(bytes) / (1 << 30)); }
@@ -90,15 +93,31 @@ EstimatorSettings settings_of(const std::string& preset) {
   return with_values({}, preset_values(preset, known->second)).estimator;
 }
 
+/// The seconds that a device may take for a preset, all of its kernels with it.
+constexpr std::chrono::seconds kPatience{60};
+
+/// The RMS by which a device errs with a preset. Fails as a device does, or where it takes too long.
+double deviation_of(const gpu::DeviceInfo& device, const std::string& preset, Facts& facts) {
+  const auto values = values_within(kPatience, [index = device.index, preset] {
+    gpu::Device opened({.choice = std::to_string(index)});
+    gpu::Recorder recorder(opened);
+    return check_values(recorder, settings_of(preset));
+  });
+  facts.is_abandoned = facts.is_abandoned || !values;
+  if (!values)
+    fail(ErrorKind::device,
+         "it takes more than {} s for preset {}, most of them to compile; compute on another --device",
+         kPatience.count(), preset);
+  return deviation(preset, *values);
+}
+
 /// What a device makes of a small frame with each preset, and whether that is right; if it is not, a problem.
 std::string check_device(const gpu::DeviceInfo& device, Facts& facts) {
   if (!device.unusable.empty()) return "not usable";
   std::string text;
   try {
-    gpu::Device opened({.choice = std::to_string(device.index)});
-    gpu::Recorder recorder(opened);
     for (const char* preset : kCheckedPresets) {
-      const double error = deviation(preset, check_values(recorder, settings_of(preset)));
+      const double error = deviation_of(device, preset, facts);
       text += fmt::format("{}{} {:.6f}", text.empty() ? "RMS " : ", ", preset, error);
       if (!(error <= kMostDeviation))
         facts.problems.push_back(fmt::format(
@@ -188,7 +207,12 @@ int doctor_command(const std::vector<std::string>& arguments) {
   if (!parsed) return 0;
   const Facts facts = gather(parsed->check_device);
   parsed->json ? print_json(facts) : print_text(facts);
-  return facts.problems.empty() ? 0 : int(ErrorKind::device);
+  const int code = facts.problems.empty() ? 0 : int(ErrorKind::device);
+  if (facts.is_abandoned) {
+    std::fflush(stdout);
+    std::_Exit(code);
+  }
+  return code;
 }
 
 }  // namespace alcove

@@ -10,11 +10,12 @@
 #include "cli/options.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/frame/environment.h"
+#include "core/formats/sequence.h"
+#include "core/frame/find/environment.h"
 #include "core/frame/raw_plane.h"
 #include "core/inspect/inspect.h"
 #include "core/run/first_look.h"
-#include "core/run/plan.h"
+#include "core/run/run_files.h"
 
 namespace alcove {
 
@@ -28,8 +29,20 @@ FramePlan plan_of(const Settings& settings) {
   return FramePlan(inputs);
 }
 
+/// What the run is told that inspect proposes.
+CommandNames names_of_run(const InspectOptions& asked, const FramePlan& plan) {
+  const Settings& settings = asked.run.settings;
+  const auto name = [&](const std::string& typed, const char* stem) {
+    const std::string usual = usual_output(main_input(settings.input), stem, ".exr");
+    if (!typed.empty()) return typed;
+    return plan.is_sequence() && !frame_pattern(usual) ? fmt::format("{}.%04d.exr", stem) : usual;
+  };
+  return {settings.input, name(settings.output.output, "ao"), name(settings.output.composite, "composite"),
+          settings.frames.frames, asked.typed};
+}
+
 /// Fails with ErrorKind::usage where nothing tells which camera of a list the frame has.
-Inspection inspect_one(const FramePlan& plan, int frame, const std::string& settings) {
+Inspection inspect_one(const FramePlan& plan, int frame, const CommandNames& run) {
   Notes notes;
   try {
     notes = notes_on_number(plan);
@@ -38,7 +51,7 @@ Inspection inspect_one(const FramePlan& plan, int frame, const std::string& sett
     // What is wrong with the camera file is a part of what is found.
   }
   const InputSettings& input = plan.settings().input;
-  Inspection found = inspect_frame(input, frame, {.inputs = input, .settings = settings});
+  Inspection found = inspect_frame(input, frame, run);
   add_new(notes, found.notes);
   found.notes = std::move(notes);
   return found;
@@ -66,6 +79,12 @@ int inspect_command(const std::vector<std::string>& arguments) {
   const InputSettings& input = options.settings.input;
   const std::string& path = main_input(input);
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
+  const FramePlan plan = plan_of(options.settings);
+  FileUses uses = inputs_of(plan);
+  for (const auto& file : files_of(options.settings, FileRole::input)) uses.add_input(file);
+  for (const auto& [option, file] :
+       {std::pair("--preview", options.settings.output.preview), {"--write-camera", asked.write_camera}})
+    uses.add_output({option, file});
   // A beauty may be twice as wide as high, too: but it comes with depth, or with positions.
   const bool is_alone =
       path == input.input && input.depth.empty() && input.position.empty() && asked.write_camera.empty();
@@ -74,10 +93,9 @@ int inspect_command(const std::vector<std::string>& arguments) {
     fmt::print("{}", asked.json ? environment_json(path, sky) : environment_text(path, sky));
     return 0;
   }
-  const FramePlan plan = plan_of(options.settings);
   const int frame = frame_number_of(path);
-  const Inspection inspection =
-      plan.is_sequence() ? inspect_sequence(plan, asked.settings) : inspect_one(plan, frame, asked.settings);
+  const CommandNames run = names_of_run(asked, plan);
+  const Inspection inspection = plan.is_sequence() ? inspect_sequence(plan, run) : inspect_one(plan, frame, run);
   fmt::print("{}",
              asked.json ? inspection_json(inspection) : inspection_text(inspection, options.settings.progress.verbose));
   if (inspection.unreadable) throw *inspection.unreadable;

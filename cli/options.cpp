@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 
 #include "cli/commands.h"
@@ -12,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
+#include "core/options/files.h"
 
 namespace alcove {
 namespace {
@@ -70,23 +72,62 @@ std::vector<OptionValue> all_values(const TypedOptions& typed) {
   return values;
 }
 
-/// The options among them that say how AO is computed, and not how the frame is read, as they would be typed.
-std::string settings_of_command(const TypedOptions& typed) {
+/// The words that give a value, as they are typed.
+std::string words_of(const OptionValue& value) {
+  const auto& [row, words, preset, by_set] = value;
   std::string text;
-  for (const auto& preset : words_for(typed, "--preset")) text += " --preset " + for_shell(preset);
-  for (const auto& radius : words_for(typed, "--radius")) text += " --radius " + radius;
-  for (const auto& set : words_for(typed, "--set"))
-    if (row_of_key(lower_case(set.substr(0, set.find('=')))).group == "Estimator") text += " --set " + for_shell(set);
+  for (const auto& word : words) {
+    text += text.empty() ? "" : " ";
+    if (by_set || row->is_only_key())
+      text += "--set " + for_shell(row->key() + "=" + word);
+    else if (row->is_flag())
+      text += row->long_name() + (word == "true" ? "" : "=" + word);
+    else
+      text += row->long_name() + (word.starts_with('-') ? "=" : " ") + for_shell(word);
+  }
   return text;
+}
+
+/// Whether a run is told otherwise: files that inspect names itself, and its own reports.
+bool is_told_otherwise(const OptionValue& value) {
+  static const Words kKeys{"frames", "output", "preview"};
+  return !value.is_typed() || value.row->group == "Reports" ||
+         std::ranges::find(kKeys, value.row->key()) != kKeys.end();
+}
+
+/// What was typed for the run that inspect proposes: all that has an effect there.
+std::vector<ProposedOption> proposed_options(const TypedOptions& typed, const Settings& settings) {
+  std::vector<OptionValue> values = all_values(typed), of_presets;
+  std::ranges::copy_if(values, std::back_inserter(of_presets), std::not_fn(&OptionValue::is_typed));
+  std::erase_if(values, is_told_otherwise);
+  const Settings initial = with_values({}, of_presets, Reader::inspect);
+  const auto is_idle = [&](const OptionValue& one) {
+    Settings all = initial;
+    all.input.input = settings.input.input;
+    for (const auto& value : values) value.row->read(all, value.words);
+    if (!all.input.beauty.empty() || !all.input.beauty_channels.empty()) all.output.composite = "composite";
+    return !objection(*one.row, all).empty();
+  };
+  while (true) {  // what has no effect may have been another's reason
+    const auto idle = std::ranges::find_if(values, is_idle);
+    if (idle == values.end()) break;
+    values.erase(idle);
+  }
+  std::vector<ProposedOption> proposed;
+  for (const auto& preset : words_for(typed, "--preset"))
+    proposed.push_back({"--preset " + for_shell(preset), "--preset " + for_shell(preset)});
+  for (const auto& value : values) proposed.push_back({value.row->long_name(), words_of(value)});
+  return proposed;
 }
 
 }  // namespace
 
 std::string usual_output(const std::string& input, const std::string& stem, const std::string& ending) {
   const auto pattern = frame_pattern(input);
-  if (!pattern) return stem + ending;
-  const std::size_t token = pattern->before.size();
-  return stem + "." + input.substr(token, input.size() - token - pattern->after.size()) + ending;
+  const std::size_t token = pattern ? pattern->before.size() : 0;
+  const std::string number = pattern ? "." + input.substr(token, input.size() - token - pattern->after.size()) : "",
+                    name = stem + number + ending;
+  return name == std::filesystem::path(input).filename() ? "new-" + name : name;
 }
 
 namespace {
@@ -114,8 +155,7 @@ constexpr const char* kInspect =
 
 Command run_syntax() {
   Command command{"alcove run", kRun, {}};
-  command.rows.push_back(
-      {.name = "INPUT", .sentence = "an EXR file with depth and normals, or a pattern such as frame.%04d.exr"});
+  command.rows.push_back(file_rows().front());
   std::ranges::copy_if(option_table(), std::back_inserter(command.rows), std::not_fn(&OptionRow::is_only_key));
   return command;
 }
@@ -136,6 +176,7 @@ Command inspect_syntax() {
   command.description = kInspect;
   for (auto& row : command.rows) {
     row.is_common = is_inspected(row);
+    if (row.role != FileRole::input) row.role = row.name == "--preview" ? FileRole::report : FileRole::none;
     if (row.long_name() != "--verbose") continue;
     row.is_common = true;
     row.sentence = "also print attributes, statistics and the score of each reading";
@@ -145,7 +186,8 @@ Command inspect_syntax() {
                           .name = "--write-camera",
                           .value = "FILE.json",
                           .sentence = "the camera that is found, for --camera; of a sequence with that of each frame",
-                          .is_common = true});
+                          .is_common = true,
+                          .role = FileRole::report});
   return command;
 }
 
@@ -180,6 +222,8 @@ std::optional<TypedOptions> read_arguments(const Command& command, const std::ve
   bool prints_config = false;
   with_help(command, [&] {
     options.settings = with_values(options.settings, all_values(*typed), reader);
+    for (const auto& preset : presets_of(words_for(*typed, "--preset")))
+      options.settings.preset_files.push_back(preset_file(preset));
     options.dry_run = is_on(*typed, "--dry-run");
     prints_config = is_on(*typed, "--print-config");
   });
@@ -212,7 +256,7 @@ bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOpt
   const auto typed = read_arguments(command, arguments, options.run, Reader::inspect);
   if (!typed) return false;
   with_help(command, [&] { options.json = is_on(*typed, "--json"); });
-  options.settings = settings_of_command(*typed);
+  options.typed = proposed_options(*typed, options.run.settings);
   const Words path = words_for(*typed, "--write-camera");
   if (!path.empty()) options.write_camera = path.front();
   return true;

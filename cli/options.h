@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/parsing.h"
+#include "core/inspect/inspect.h"
 #include "core/options/options.h"
 
 namespace alcove {
@@ -34,8 +35,8 @@ std::string usual_output(const std::string& input, const std::string& stem, cons
 struct InspectOptions {
   RunOptions run;
   bool json = false;
-  std::string write_camera;  // a file; empty: none
-  std::string settings;      // --preset, --radius and --set of the estimator, as they were typed, for the proposed run
+  std::string write_camera;           // a file; empty: none
+  std::vector<ProposedOption> typed;  // see CommandNames
 };
 /// Does the same for `alcove inspect`, which writes no outputs: there, no option can lack one.
 bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOptions& options);

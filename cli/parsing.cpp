@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <regex>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -52,11 +53,17 @@ struct Parser {
   }
 };
 
-std::vector<std::string> option_names(const Command& command) {
-  std::vector<std::string> names{"--help", "--help-all"};
-  for (const auto& row : command.rows)
-    if (row.name.starts_with('-')) names.push_back(row.long_name());
-  return names;
+/// The options that a misspelt one may mean. One letter is the first of a common option's name.
+std::string suggested_options(const Command& command, const std::string& typed) {
+  Words names{"--help", "--help-all"}, first;
+  for (const auto& row : command.rows) {
+    if (!row.name.starts_with('-')) continue;
+    names.push_back(row.long_name());
+    const bool is_shown = row.is_common || !has_common_rows(command);
+    if (is_shown && names.back().starts_with("-" + typed)) first.push_back(names.back());
+  }
+  const bool is_letter = typed.size() == 2 && !first.empty();
+  return is_letter ? fmt::format(" (did you mean {}?)", fmt::join(first, " or ")) : suggestion(typed, names);
 }
 
 /// What a value of the row is: "FILE", or "NUMBER (scene units, above 0)".
@@ -76,7 +83,7 @@ const OptionRow* row_of(const Command& command, const std::string& complaint) {
 [[noreturn]] void refuse_extra(const Command& command, const std::string& extra) {
   if (extra.starts_with('-')) {
     const std::string option = extra.substr(0, extra.find('='));
-    fail(ErrorKind::usage, "there is no option {}{}{}", option, suggestion(option, option_names(command)),
+    fail(ErrorKind::usage, "there is no option {}{}{}", option, suggested_options(command, option),
          see_help(command.name));
   }
   Words places;
@@ -84,6 +91,9 @@ const OptionRow* row_of(const Command& command, const std::string& complaint) {
     if (!row.name.starts_with('-')) places.push_back(row.name);
   if (places.empty())
     fail(ErrorKind::usage, "{}: {} takes options only{}", extra, command.name, see_help(command.name));
+  static const std::regex range(R"(\[?\d+-\d+(?:[x:]\d+)?\]?)");
+  if (std::regex_match(extra, range) && std::ranges::count(command.rows, "--frames", &OptionRow::long_name) > 0)
+    fail(ErrorKind::usage, "{}: a range of frames belongs to --frames{}", extra, see_help(command.name));
   const std::string pattern = names_input(extra) ? pattern_for(extra) : "";
   fail(ErrorKind::usage, "{}: {} takes one {}{}{}", extra, command.name, fmt::join(places, " and one "),
        pattern.empty() ? "" : "; a sequence is one name with a pattern: write " + pattern, see_help(command.name));

@@ -171,7 +171,8 @@ CommandOf<PresetsArguments> presets_syntax() {
   CommandOf<PresetsArguments> command{"alcove presets",
                                       "Lists the presets with what each is for, or prints the one of that name.\n"};
   OptionGroup(command.rows, "", Effect::none)
-      .text("NAME", &PresetsArguments::name, "", "a preset to print, or a TOML file");
+      .text("NAME", &PresetsArguments::name, "", "a preset to print, or a TOML file")
+      .names(FileRole::input);
   OptionGroup(command.rows, "Options", Effect::none)
       .flag("--json", &PresetsArguments::json, "print the list as JSON: name, group, sentence, file");
   return command;

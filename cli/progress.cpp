@@ -56,8 +56,9 @@ void Progress::log(const std::string& event, const std::string& members) {
   if (!log_) return;
   const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   const std::string line = fmt::format("{{\"event\":\"{}\",\"time\":{:.3f},{}}}\n", event, now, members);
-  if (std::fputs(line.c_str(), log_) < 0 || std::fflush(log_) != 0)
-    fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", log_path_, std::strerror(errno));
+  if (log_failure_ || (std::fputs(line.c_str(), log_) >= 0 && std::fflush(log_) == 0)) return;
+  log_failure_.emplace(ErrorKind::output,
+                       fmt::format("{}: cannot be written: {} (--log-json)", log_path_, std::strerror(errno)));
 }
 
 void Progress::begin(const RunReport& report, int frames) {
@@ -66,6 +67,7 @@ void Progress::begin(const RunReport& report, int frames) {
   open_log();  // now that the run's checks have let it through
   log("begin",
       fmt::format("\"frames\":{},\"options\":\"{}\",\"notes\":{}", frames, report.options, notes_json(report.notes)));
+  if (log_failure_) throw *log_failure_;  // before a frame has taken any time
   note(report);
 }
 
@@ -203,11 +205,13 @@ void Progress::end(const RunReport& report) {
                   report.wall_s));
   if (options_.kind == "openjd" && (report.failed || report.stop)) fmt::print("openjd_fail: {}\n", summary);
   (void)std::fflush(stdout);
-  if (options_.quiet) return;
-  say_further();
-  if (is_sequence_) say(printable("alcove: " + summary));
+  if (!options_.quiet) say_further();
+  if (!options_.quiet && is_sequence_) say(printable("alcove: " + summary));
   take_line_away();  // for an error that is told after the run, or for the shell
   (void)std::fflush(stderr);
+  if (!log_failure_) return;
+  if (!report.stop && report.failed == 0) throw *log_failure_;
+  say(printable(fmt::format("alcove: error: {}", log_failure_->what())));  // beside that of the frames
 }
 
 }  // namespace alcove

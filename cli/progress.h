@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
+#include "core/base/error.h"
 #include "core/options/options.h"
 #include "core/run/run_report.h"
 
@@ -18,8 +20,9 @@ namespace alcove {
 /// whole and flushed.
 class Progress {
  public:
-  /// log_json names a file, or is - for the standard output, or is empty for no log. All functions fail with
-  /// ErrorKind::output where the log or the standard output cannot be written.
+  /// log_json names a file, or is - for the standard output, or is empty for no log. begin() fails with
+  /// ErrorKind::output where the log cannot be written. If it breaks off later, end() fails, and the frames go on. All
+  /// functions fail with ErrorKind::output where the standard output cannot be written.
   Progress(const ProgressSettings& options, const std::string& log_json);
 
   void begin(const RunReport& report, int frames);
@@ -56,6 +59,7 @@ class Progress {
   const std::string log_path_;
   std::unique_ptr<std::FILE, CloseFile> file_;
   std::FILE* log_ = nullptr;
+  std::optional<Error> log_failure_;  // no event is written after it
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   bool is_sequence_ = false;
   int frames_ = 0, ended_ = 0, computed_ = 0;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress.h"
@@ -14,13 +16,29 @@
 namespace alcove {
 namespace {
 
+/// The arguments but for empty values, which say nothing, and the options that take them.
+Words without_empty(const Words& arguments) {
+  const auto rows = run_syntax().rows;
+  const auto takes_value = [&](const std::string& word) {
+    return std::ranges::any_of(
+        rows, [&](const OptionRow& row) { return !row.is_flag() && std::ranges::count(split(row.name), word) > 0; });
+  };
+  Words kept;
+  for (const auto& argument : arguments)
+    if (!argument.empty())
+      kept.push_back(argument);
+    else if (!kept.empty() && takes_value(kept.back()))
+      kept.pop_back();
+  return kept;
+}
+
 /// Prints a line for each missing option, and the command that has all of them. Returns whether none is missing.
 bool has_all(FirstLook& look, const Settings& settings, const std::vector<std::string>& arguments) {
   const MissingOptions missing = look.missing_options();
   if (!missing.any()) return true;
   std::string command = "alcove run";
   if (missing.input) command += " frame.exr";
-  for (const auto& argument : arguments) command += " " + for_shell(argument);
+  for (const auto& argument : without_empty(arguments)) command += " " + for_shell(argument);
   if (missing.output) command += " -o " + for_shell(usual_output(main_input(settings.input), "ao", ".exr"));
   if (missing.camera) command += " --camera CAMERA.json";
   if (missing.lacks_matrix) command += " --normal none";

@@ -15,6 +15,7 @@
 #include "core/formats/sequence.h"
 #include "core/frame/raw_plane.h"
 #include "core/run/first_look.h"
+#include "core/run/run_files.h"
 
 namespace alcove {
 namespace {
@@ -51,7 +52,12 @@ Command wedge_syntax() {
       row.sentence = "how far occluders reach, a look for each; else half, once and twice what inspect proposes";
   }
   const auto add = [&](const char* name, const char* value, const char* sentence) {
-    command.rows.push_back({.group = "Output", .name = name, .value = value, .sentence = sentence, .is_common = true});
+    command.rows.push_back({.group = "Output",
+                            .name = name,
+                            .value = value,
+                            .sentence = sentence,
+                            .is_common = true,
+                            .role = FileRole::report});
   };
   add("-o,--output", "FILE.html", "a self-contained page with all looks");
   add("--sheet", "FILE.png", "all looks in one labelled picture");
@@ -168,6 +174,21 @@ void check_looks(const std::vector<WedgeLook>& looks) {
   }
 }
 
+/// Refuses to write over what is read: the frames, and the presets of all looks.
+void check_reports(const Typed& typed, const FramePlan& plan) {
+  FileUses uses = inputs_of(plan);
+  for (std::size_t i = 0; i + 1 < typed.arguments.size(); i++)
+    if (typed.arguments[i] == Words{"--preset"})
+      for (const auto& preset : presets_of(typed.arguments[i + 1])) uses.add_input({"--preset", preset_file(preset)});
+  for (const auto& file : {NamedFile{"--output", typed.page}, {"--sheet", typed.sheet}}) {
+    if (file.path.empty()) continue;
+    uses.add_output(file);
+    require_writable(file.path, file.option.c_str());
+  }
+  require_ending(typed.page, "--output", ".html", "HTML");
+  require_ending(typed.sheet, "--sheet", ".png", "PNG");
+}
+
 /// All combinations of what was typed, with the proposed radius among the radii.
 std::vector<WedgeLook> looks_of(const Typed& typed) {
   std::vector<Words> arguments = typed.arguments;
@@ -184,6 +205,7 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
     return all;
   };
   FirstLook first(look_of(typed, with_radii({"auto"}), 0).settings);
+  check_reports(typed, first.plan());
   std::size_t frames = first.plan().frames().size();
   const bool names_frames = std::ranges::count(arguments, Words{"--frames"}) > 0;
   const bool is_contact_sheet = frames > 1 && !names_frames && given.size() == 1 && count_of(arguments) == 1;
@@ -219,10 +241,6 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
 /// Makes the wedge, and says what became of each look. Gives the exit code.
 int make(const Typed& typed) {
   std::vector<WedgeLook> looks = looks_of(typed);
-  for (const auto& [path, option] : {std::pair(typed.page, "--output"), {typed.sheet, "--sheet"}}) {
-    require_no_input(path, option, input_files(looks.front().settings.input));
-    if (!path.empty()) require_writable(path, option);
-  }
   make_wedge(looks, typed.page, typed.sheet);
   std::set<std::string> told;
   const auto tell = [&](const std::string& line) {
@@ -265,8 +283,6 @@ int wedge_command(const std::vector<std::string>& arguments) {
     if (typed.input.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
     if (typed.page.empty() && typed.sheet.empty())
       fail(ErrorKind::usage, "no output: name a page with -o FILE.html, or a picture with --sheet FILE.png");
-    require_ending(typed.page, "--output", ".html", "HTML");
-    require_ending(typed.sheet, "--sheet", ".png", "PNG");
     typed.arguments = arguments_in(*options);
   });
   try {

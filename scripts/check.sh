@@ -10,10 +10,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readers=(core/formats/{exr_check,exr_zip,sample_loops,dds,image_io,open_image,png,sequence}.cpp core/frame/{camera/header_camera,camera/camera,matte}.cpp core/base/{file,text}.cpp)
+readers=(core/formats/{exr_check,exr_zip,sample_loops,dds,image_io,open_image,png,sequence}.cpp core/frame/{camera/header_camera,camera/camera,find/matte}.cpp core/base/{file,text}.cpp)
 tests=(base/{text,new_file,memory_limit}_test
        formats/{file,file_names,open_image,bad_input,capture_formats,color,hostile,sequence,zip,zip_writer}_test
-       frame/{camera,chan,resection,header_camera,gbuffer,parts,inputs,readings,sources}_test
+       frame/{camera,chan,resection,header_camera,frame_source,parts,inputs,readings,sources}_test
        run/{refusals,same_bits,matte}_test measure/compare_test inspect/inspect_test cli/options_test
        gpu/gpu_test chain/{property,confidence}_test api/{library,library_refusals}_test)
 threaded=(run/{batch,faults}_test formats/{zip,zip_writer}_test)

@@ -30,7 +30,8 @@ extern "C" {
 #define ALCOVE_API __attribute__((visibility("default")))
 
 // The answer of a function: 0, or the kind of its failure, by the program's exit codes. alcove_error() has the
-// sentence. A call that fails changes nothing, except that a failed run drops the results of an earlier one.
+// sentence. A call that fails changes nothing, neither in the handle nor in the caller's memory, except that a failed
+// run drops the results of an earlier one. The handle stays usable.
 typedef enum alcove_code {
   ALCOVE_OK = 0,
   ALCOVE_FAILED = 1,  // a mistake of Alcove's own
@@ -41,8 +42,9 @@ typedef enum alcove_code {
 
 typedef enum alcove_type { ALCOVE_FLOAT = 0, ALCOVE_HALF = 1 } alcove_type;
 
-// The layout of a plane in memory, its upper left pixel first. Strides are in bytes, and may be negative; 0: packed,
-// with the components of a pixel beside each other.
+// The layout of a plane in memory, its upper left pixel first. Strides are in bytes; 0: packed, with the components of
+// a pixel beside each other. They may be negative, and need not be multiples of a value's size; none is 128 GiB or
+// more. No two values may share bytes. A side has at most 2^24 pixels, and a plane 2^32 values.
 typedef struct alcove_layout {
   int width, height;  // px
   int components;
@@ -58,20 +60,21 @@ ALCOVE_API alcove_session* alcove_new(void);
 // Frees a handle; it may be null.
 ALCOVE_API void alcove_free(alcove_session* handle);
 
-// Sets an option by its long name, such as "radius" or "--radius"; docs/options.md lists all. Values are the words of
-// the command line, several with commas ("0.1,0.5"); a flag is "true" or "false". Null resets the option. The library
-// does not take options that name files, frames or reports. alcove_run() checks whether options go together.
+// Sets an option by its long name, such as "radius"; docs/options.md lists all. Values are the words of the command
+// line, several with commas ("0.1,0.5"); a flag is "true" or "false". Null resets the option. The library does not take
+// options that name files, frames or reports. alcove_run() checks whether options go together.
 ALCOVE_API alcove_code alcove_set(alcove_session* handle, const char* option, const char* value);
 // Adds a preset by its name: draft, standard, production, reference, or one of source/. Options of alcove_set() win
 // over presets, and later presets over earlier ones. Null removes all presets.
 ALCOVE_API alcove_code alcove_preset(alcove_session* handle, const char* name);
 
 // Sets a plane, which is copied. All planes of a frame have one size. Null data removes the plane. Names:
-//   depth        1 component, of --depth-kind, planar by default
+//   depth        1 component, of depth-kind, planar by default; distances above 0, other kinds within 0 to 1. Integers
+//                must be converted: 16 bits are few for distances, and 8 bits are refused
 //   position     3, instead of a depth; in position-space, which must be set if the camera has a position
-//   normal       3, or 2 by --normal-encoding, signed by default; in --normal-space, which must be set unless the
+//   normal       3, or 2 by normal-encoding, signed by default; in --normal-space, which must be set unless the
 //                camera has no position or a camera file says it; without this plane, normals come from depth
-//   behind       1, depth behind the first surface, of --behind-kind; each call adds one, at most 8
+//   behind       1, depth behind the first surface, of behind-kind; each call adds one, at most 8
 //   material-ao  1, multiplied in
 //   matte        1, 0 to 1: where AO is wanted
 //   occluders    1, 0 to 1: only these block;  ignore: these do not
@@ -90,24 +93,29 @@ ALCOVE_API alcove_code alcove_camera(alcove_session* handle, double fx, double f
 ALCOVE_API alcove_code alcove_camera_json(alcove_session* handle, const char* text);
 
 // Computes the results that the option "aov" names: "ao" by default. `frame`, the number of the frame, picks the entry
-// of a camera file's `frames`, and changes --noise animated. Fails if the pixels contradict depth, normals or camera.
+// of a camera file's `frames`, and changes noise animated. Looks at the pixels as the program does: it measures how
+// depth was rounded, and fails if the pixels contradict depth, normals or camera. alcove_notes() has what they leave in
+// doubt.
 ALCOVE_API alcove_code alcove_run(alcove_session* handle, int frame);
 // Gives the number of components of a result of the last run; 0 if there is none of that name.
 ALCOVE_API int alcove_components(const alcove_session* handle, const char* aov);
-// Copies a result of the last run into a plane with its size and its number of components.
+// Copies a result of the last run into a plane with its size and its number of components. The plane may overlap planes
+// that were given to alcove_plane().
 ALCOVE_API alcove_code alcove_get(alcove_session* handle, const char* aov, void* data, const alcove_layout* layout);
 // Gives a number of the last run: compute-ms (of the device, 0 if it does not tell), sky-pixels, repaired-depth and
 // repaired-normals (pixels that made no sense), turned-normals (pixels whose normals faced away from the eye), radius.
 // NaN if there is none of that name.
 ALCOVE_API double alcove_number(const alcove_session* handle, const char* name);
-// Gives the doubts about a run that did not fail, one sentence per line: few normals agree with the depth, or the
-// radius is too small for the depth's precision or larger than the picture. "" without doubts.
+// Gives the doubts about the last run if it did not fail, one sentence per line, as the program's notes: depth that was
+// rounded, averaged or jittered, or that looks like another kind; a sky that is a number; normals of which few agree
+// with the depth; a radius too small for the depth's precision or larger than the picture. "" without doubts. The text
+// stays until the next run.
 ALCOVE_API const char* alcove_notes(const alcove_session* handle);
 // Gives the name of the open device; "" if none is open.
 ALCOVE_API const char* alcove_device(const alcove_session* handle);
 
 // Gives the failure of the last call that failed, in one sentence; "" if none has. It stays until the next call that
-// answers with a code.
+// answers with a code. Sentences have options and planes in single quotes: 'depth-kind'.
 ALCOVE_API const char* alcove_error(const alcove_session* handle);
 // Gives the library's version, such as "0.2.0".
 ALCOVE_API const char* alcove_version(void);

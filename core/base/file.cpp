@@ -27,6 +27,32 @@ std::string unfinished_name(const std::string& folder) {
   return (fs::path(folder) / fmt::format(".alcove-{}-{:08x}.tmp", process_id(), std::random_device()())).string();
 }
 
+/// The same text for every name of a file. One that is not there is known by the nearest folder that is, and its place
+/// below it.
+std::string identity_of(const std::string& path) {
+  std::string id = file_id(path);
+  if (!id.empty()) return id;
+  std::error_code error;
+  fs::path there = fs::weakly_canonical(path, error), below;
+  if (error) return path;
+  for (id = file_id(there.string()); id.empty() && there.has_relative_path(); id = file_id(there.string())) {
+    below = there.filename() / below;
+    there = folder_of(there.string());
+  }
+  return id + (below.empty() ? "" : "/" + below.string());
+}
+
+/// Says what stands in a file's place where a repository keeps its content elsewhere; "" for a file itself.
+std::string pointer_in(const std::string& path) {
+  constexpr std::uintmax_t kLongestPointer = 1024;  // by the specification of Git LFS
+  std::error_code error;
+  if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > kLongestPointer || error) return "";
+  std::ifstream file(path, std::ios::binary);
+  const std::string text = read_rest(file);
+  if (text.starts_with("version https://git-lfs.github.com/")) return "a pointer of Git LFS: git lfs pull fetches it";
+  return text.find("/annex/objects/") < 16 ? "a pointer of git-annex: git annex get fetches it" : "";
+}
+
 }  // namespace
 
 void require_readable(const std::string& path, const char* what, const char* option) {
@@ -38,6 +64,8 @@ void require_readable(const std::string& path, const char* what, const char* opt
   if (fs::is_directory(status)) fail(ErrorKind::input, "{}: is a folder; {} takes a {} file", path, option, what);
   if (const auto why = may_read(path))
     fail(ErrorKind::input, "{}: {} file cannot be read: {} ({})", path, what, why.message(), option);
+  if (const std::string why = pointer_in(path); !why.empty())
+    fail(ErrorKind::input, "{}: not the {} file itself but {} ({})", path, what, why, option);
 }
 
 std::string read_rest(std::istream& stream) {
@@ -96,18 +124,20 @@ void make_folder_of(const std::string& path, const char* option) {
          option);
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  if (fs::equivalent(a, b, error)) return true;
-  const fs::path whole_a = fs::weakly_canonical(a, error),
-                 whole_b = error ? fs::path() : fs::weakly_canonical(b, error);
-  return error ? a == b : whole_a == whole_b;
+void FileUses::add_input(const NamedFile& file) {
+  if (!file.path.empty()) inputs_.emplace(identity_of(file.path), file);
 }
 
-void require_no_input(const std::string& path, const char* option, std::span<const std::string> inputs) {
-  for (const auto& input : inputs)
-    if (!input.empty() && same_file(input, path))
-      fail(ErrorKind::usage, "{}: {} would overwrite an input", path, option);
+void FileUses::add_output(const NamedFile& file, const std::string& whose) {
+  const auto& [option, path] = file;
+  if (path.empty()) return;
+  const std::string identity = identity_of(path);
+  if (const auto input = inputs_.find(identity); input != inputs_.end())
+    fail(ErrorKind::usage, "{}: {}{} would overwrite an input: {} {}", path, option, whose, input->second.option,
+         input->second.path);
+  const auto& [known, is_new] = outputs_.emplace(identity, file);
+  if (!is_new && known->second.option != option)
+    fail(ErrorKind::usage, "{}: {} and {} name the same file", path, known->second.option, option);
 }
 
 NewFile::NewFile(const std::string& path) : target_(path) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <iosfwd>
+#include <map>
 #include <span>
 #include <string>
 
@@ -31,11 +32,23 @@ void require_makeable(const std::string& path, const char* option);
 /// Makes the missing folders of a file's path. Fails with ErrorKind::output.
 void make_folder_of(const std::string& path, const char* option);
 
-/// Whether two paths lead, or would lead, to one file, with dots and links resolved.
-bool same_file(const std::string& a, const std::string& b);
+/// A file, and the option that names it.
+struct NamedFile {
+  std::string option, path;
+};
 
-/// Fails with ErrorKind::usage if `path`, an output, is one of the inputs. Empty names do not count.
-void require_no_input(const std::string& path, const char* option, std::span<const std::string> inputs);
+/// The files that a command reads and writes. A file is the same by every name, through dots and links, also where it
+/// is not there yet.
+class FileUses {
+ public:
+  void add_input(const NamedFile& file);
+  /// Fails with ErrorKind::usage if the file is an input, or an output of another option. `whose` stands behind the
+  /// option in the message, such as " of frame 3".
+  void add_output(const NamedFile& file, const std::string& whose = "");
+
+ private:
+  std::map<std::string, NamedFile> inputs_, outputs_;  // by the file
+};
 
 /// A file in the making. Its hidden name beside `path` does not end as images do, so that folder watchers pass it by.
 /// It is locked for as long as its process lives. Unless it is committed, it vanishes, and the file at `path` stays as

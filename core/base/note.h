@@ -27,10 +27,22 @@ enum class NoteCode {
   field_of_view,
   camera_scaled,
   // faults that harm AO
+  no_surfaces,
+  holes_in_depth,
+  enlarged_depth,
+  smoothed_depth,
+  noisy_depth,
   half_depth,
   overflown_depth,
   jittered_depth,
   letterbox_bars,
+  part_of_picture,
+  missing_tile,
+  depth_offset,
+  depth_curve,
+  clamped_depth,
+  wrapped_depth,
+  displaced_normals,
   antialiased_depth,
   shortened_normals,
   averaged_normals,
@@ -66,11 +78,13 @@ enum class NoteCode {
   // frames, and choices for them
   sequence_hole,
   frame_number,
+  other_frame,
   automatic_radius,
   computed_again,
   // comparisons
   ao_layer,
   sky_differs,
+  holes,
 };
 
 /// The form of a note in the header of an output. Headers are the same bits for the same inputs.

@@ -35,13 +35,13 @@ struct InputSettings {
   std::string depth_channel;                    // a channel's full name; empty: found by its usual names
   // three names with commas, or a layer; empty: found. Normals may have two
   std::string normal_channels, beauty_channels, position_channels;
-  // the light that AO may dim, see core/frame/gbuffer.cpp; empty: found
+  // the light that AO may dim, see core/frame/find/frame_source.cpp; empty: found
   std::string ambient;
   // the materials' own AO: a file, and the full name of a channel. Empty file: the input, if a channel is named; empty
   // name: found
   std::string material_ao, material_ao_channel;
-  // the matte, where AO is wanted: a file and a channel as for material AO, and objects, see core/frame/matte.h; and
-  // the AO outside of it, 0 to 1
+  // the matte, where AO is wanted: a file and a channel as for material AO, and objects, see core/frame/find/matte.h;
+  // and the AO outside of it, 0 to 1
   std::string matte, matte_channel, matte_object;
   double matte_outside = 1;
   // first surfaces that are occluders: these alone, or all but these. Given as a file of coverage, or as objects, names
@@ -70,7 +70,7 @@ struct InputSettings {
   MotionKind motion_kind = MotionKind::automatic;
   std::string layer;  // look only at channels of this layer or part
   std::string view;   // of a stereo file; empty: its default
-  // pixels of depth and normals for each of the picture, in x and in y, 1 to 4; auto: by the beauty's size
+  // pixels of depth and normals for each of the picture, in x and in y, 1 to 4; auto: 1
   std::string supersampling = "auto";
   std::optional<Region> roi;  // compute and write no more than this, in px of the picture; none: the data window
   // the program that wrote the frame, of presets/input; auto: by its header and channels
@@ -87,6 +87,7 @@ struct InputSettings {
   // automatic: the one whose points lie on the rays of their pixels
   PositionSpace position_space = PositionSpace::automatic;
   bool strict = false;                    // guesses and warnings are errors
+  std::string allow;                      // codes of notes, with commas, that would be errors
   std::string camera;                     // a camera file: JSON, or .chan
   std::string chan_rotation = "zxy";      // of a .chan file: the axes in the order of their turns
   std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive
@@ -99,7 +100,7 @@ struct InputSettings {
 struct EstimatorSettings {
   Estimator estimator = Estimator::gtao;
   std::optional<double> radius;  // scene units, > 0; no default, since no number fits all scenes
-  bool radius_auto = false;      // instead: as core/frame/radius.h proposes
+  bool radius_auto = false;      // instead: as core/frame/pixels/radius.h proposes
   // scene units, > 0: more scales. The AO is the mean of all: that is AO itself, with a falloff that drops by a step at
   // each radius
   std::vector<double> further_radii;
@@ -240,6 +241,7 @@ struct ProgressSettings {
 };
 
 struct Settings {
+  std::vector<std::string> preset_files;  // from which the command line has taken values
   FrameSettings frames;
   InputSettings input;
   EstimatorSettings estimator;

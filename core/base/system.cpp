@@ -166,6 +166,12 @@ void* symbol_of(const char* library, const char* symbol, std::string& why) {
   return address;
 }
 
+std::string file_id(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return "";
+  return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+}
+
 std::error_code may_read(const std::string& path) {
   return ::access(path.c_str(), R_OK) == 0 ? std::error_code() : last_error();
 }

@@ -78,6 +78,9 @@ std::uint64_t free_memory();
 
 // Files and folders.
 
+/// The file that a path leads to, as a text that every name of it gives and no other file has, through links of both
+/// kinds; "" if there is none.
+std::string file_id(const std::string& path);
 /// Empty if the process may read the file, else the reason why not.
 std::error_code may_read(const std::string& path);
 /// Empty if the process may make files in the folder, else the reason why not.

@@ -231,4 +231,25 @@ Json with_valid_strings(const Json& json) {
 
 std::string json_text(const nlohmann::ordered_json& json, int indent) { return with_valid_strings(json).dump(indent); }
 
+std::string frames_text(std::vector<int> frames) {
+  std::ranges::sort(frames);
+  std::string text;
+  for (std::size_t i = 0; i < frames.size();) {
+    std::size_t end = i + 1;
+    while (end < frames.size() && frames[end] == frames[end - 1] + 1) end++;
+    if (!text.empty()) text += ", ";
+    text += end - i == 1 ? fmt::format("{}", frames[i]) : fmt::format("{}-{}", frames[i], frames[end - 1]);
+    i = end;
+  }
+  return text;
+}
+
+std::string short_frames_text(const std::vector<int>& frames) {
+  constexpr std::ptrdiff_t kMostParts = 10;
+  const std::string text = frames_text(frames);
+  if (frames.empty() || std::ranges::count(text, ',') < kMostParts) return text;
+  const auto [first, last] = std::ranges::minmax(frames);
+  return fmt::format("{} frames from {} to {}", frames.size(), first, last);
+}
+
 }  // namespace alcove

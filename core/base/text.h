@@ -55,4 +55,10 @@ std::string suggestion(std::string_view name, std::span<const std::string> candi
 /// files, which may be no UTF-8: as_utf8() escapes them.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
+/// Writes the frames as the shortest list, in rising order: "1003, 1010-1012".
+std::string frames_text(std::vector<int> frames);
+
+/// The same, cut to the number of frames, the first and the last where the list has more than ten parts.
+std::string short_frames_text(const std::vector<int>& frames);
+
 }  // namespace alcove

@@ -18,8 +18,8 @@
 #include "core/chain/compute.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/formats/exr.h"
-#include "core/frame/evidence.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
+#include "core/frame/pixels/statistics.h"
 #include "core/gpu/recorder.h"
 #include "core/measure/metrics.h"
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <string_view>
+#include <thread>
 
 #include "core/base/error.h"
 #include "core/chain/compute.h"
@@ -83,6 +85,15 @@ double deviation(const std::string& preset, const std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size(); i++)
     squares += std::pow(values[i] - std::stoi(stored.substr(4 * i, 4), nullptr, 16) / kStoredOne, 2);
   return std::sqrt(squares / double(values.size()));  // of NaN NaN, which is no small deviation
+}
+
+std::optional<std::vector<double>> values_within(std::chrono::milliseconds time,
+                                                 std::function<std::vector<double>()> work) {
+  std::packaged_task<std::vector<double>()> task(std::move(work));
+  std::future<std::vector<double>> values = task.get_future();
+  std::thread(std::move(task)).detach();
+  if (values.wait_for(time) != std::future_status::ready) return std::nullopt;
+  return values.get();
 }
 
 }  // namespace alcove

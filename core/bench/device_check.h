@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,5 +29,10 @@ std::string stored_text(const std::vector<double>& values);
 
 /// The RMS of values less those that are stored for one of kCheckedPresets.
 double deviation(const std::string& preset, const std::vector<double>& values);
+
+/// What `work` returns; nothing if it takes longer. Then it goes on by itself, for no driver can be stopped while it
+/// compiles, and the process must end by std::_Exit().
+std::optional<std::vector<double>> values_within(std::chrono::milliseconds time,
+                                                 std::function<std::vector<double>()> work);
 
 }  // namespace alcove

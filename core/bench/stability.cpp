@@ -10,7 +10,7 @@
 
 #include "core/chain/compute.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/frame/radius.h"
+#include "core/frame/pixels/radius.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_scene.h"
 
@@ -204,7 +204,12 @@ std::vector<Axis> all_axes() {
   const std::vector<double> over_near{3, 10, 30, 100, 300, 1e3, 3e3, 1e4};
   const double depth = distance_of(kFov), pixel = depth * 2 * std::tan(kFov * std::numbers::pi / 360) / kWidth;
   return {
-      {"depth scale", "scene units per unit of the room", true, 1, {1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6, 1e9}, at_scale},
+      {"depth scale",
+       "scene units per unit of the room",
+       true,
+       1,
+       {1e-15, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e9, 1e15},
+       at_scale},
       {"depth range", "farthest over nearest depth", true, 1, {1, 10, 1e2, 1e3, 1e4, 1e5, 1e6}, before_background},
       {"field of view",
        "degrees",

@@ -13,6 +13,13 @@ struct SuiteFrame {
   double radius = 0;               // scene units, of the truth, > 0
   std::vector<std::string> truth;  // one ray-traced AO image, or two with independent noise
   std::string reference = {};      // a kept CPU reference, see bench.h; empty: it is computed
+
+  /// All that are read for it.
+  std::vector<std::string> files() const {
+    std::vector<std::string> all{input, camera, reference};
+    all.insert(all.end(), truth.begin(), truth.end());
+    return all;
+  }
 };
 
 struct SuiteCandidate {

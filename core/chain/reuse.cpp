@@ -13,45 +13,8 @@
 namespace alcove {
 namespace {
 
-/// Adds values to a hash, each by its own bytes: between the members of a struct there may be padding.
-template <class... T>
-void add(std::uint64_t& hash, const T&... values) {
-  static_assert((std::is_arithmetic_v<T> && ...));
-  ((hash = XXH3_64bits_withSeed(&values, sizeof(values), hash)), ...);
-}
-
-/// The parameters of kernels are hashed as a whole, since they have no padding.
-void add(std::uint64_t& hash, const PrepareParams& params) {
-  hash = XXH3_64bits_withSeed(&params, sizeof(params), hash);
-}
-
-void add(std::uint64_t& hash, const LayerTerms& terms) {
-  static_assert(std::has_unique_object_representations_v<uint> && sizeof(DepthTerms) == 10 * sizeof(float));
-  add(hash, terms.form, std::uint32_t(terms.kind));
-  hash = XXH3_64bits_withSeed(&terms.depth, sizeof(terms.depth), hash);
-}
-
-void add(std::uint64_t& hash, const Matrix3& matrix) {
-  for (const auto& row : matrix)
-    for (const double value : row) add(hash, value);
-}
-
-void add(std::uint64_t& hash, const gpu::Buffer* plane) {
-  add(hash, plane ? 1 : 0);
-  if (plane) hash = XXH3_64bits_withSeed(plane->host().data(), plane->host().size(), hash);
-}
-
-/// All of what another frame or view sees: any of it may count for any pixel.
-void add(std::uint64_t& hash, const OtherView& other) {
-  add(hash, other.view.size.x, other.view.size.y, other.view.center.x, other.view.center.y,
-      other.view.tangent_per_pixel.x, other.view.tangent_per_pixel.y, other.view.orthographic, other.depth_precision.x,
-      other.depth_precision.y, other.depth_precision.z);
-  for (const auto& row : other.to_here)
-    for (const float value : row) add(hash, value);
-  if (other.content != 0)
-    add(hash, other.content);
-  else
-    for (const gpu::Buffer* plane : {other.depth, other.normal, other.moving}) add(hash, plane);
+void add(std::uint64_t& hash, const gpu::Buffer& plane) {
+  hash = XXH3_64bits_withSeed(plane.host().data(), plane.host().size(), hash);
 }
 
 /// Blocks in x and y.
@@ -77,34 +40,21 @@ void add_blocks(std::vector<std::uint64_t>& blocks, const gpu::Buffer& planes, i
 
 }  // namespace
 
-LastFrame::Hashes LastFrame::hashes_of(const FrameInputs& frame, const EstimatorSettings& settings) {
-  Hashes hashes;
-  add(hashes.meaning, frame.prepare);
-  add(hashes.meaning, frame.depth_map.form, frame.normal_form, frame.noise_origin.x, frame.noise_origin.y,
-      frame.albedo_value, frame.behind_lists_all);
-  for (const double at : frame.depth_precision.at) add(hashes.meaning, at);
-  for (const double at : frame.hidden_precision.at) add(hashes.meaning, at);
-  for (const auto& terms : frame.behind) add(hashes.meaning, terms);
-  add(hashes.meaning, frame.aov_from_view);
-  for (const auto& other : frame.others) add(hashes.meaning, other);
-  for (const auto* matte : {&frame.matte, &frame.occluders}) {
-    add(hashes.meaning, std::uint32_t(matte->kind), matte->outside, matte->ignores);
-    for (const std::uint32_t object : matte->objects) add(hashes.meaning, object);
-  }
-  for (const auto& light : frame.ambient) add(hashes.colors, light.weight, light.color);
-  for (const auto* plane : frame.planes.entries) add(hashes.meaning, plane ? planes_in(*plane, frame.view) : 0u);
-  if (settings.noise == Noise::animated) add(hashes.meaning, frame.frame);
-  hashes.blocks.assign(std::size_t(blocks_of(frame.view).x) * std::size_t(blocks_of(frame.view).y), 0);
+LastFrame::Past LastFrame::past_of(const FrameInputs& frame, const EstimatorSettings& settings) {
+  Past past;
+  past.whole.recipe = frame;
+  if (settings.noise == Noise::animated) past.whole.noise_frame = frame.frame;
+  past.blocks.assign(std::size_t(blocks_of(frame.view).x) * std::size_t(blocks_of(frame.view).y), 0);
   for (const auto& row : kRawPlanes) {
     const gpu::Buffer* plane = frame[row.plane];
-    if (row.content == PlaneContent::color)
-      add(hashes.colors, plane);
-    else if (row.content == PlaneContent::selection)
-      add(hashes.meaning, plane);
-    else if (plane)
-      add_blocks(hashes.blocks, *plane, frame.view.size);
+    if (!plane) continue;
+    past.whole.bytes[std::size_t(row.plane)] = plane->bytes();
+    if (row.content == PlaneContent::geometry)
+      add_blocks(past.blocks, *plane, frame.view.size);
+    else
+      add(row.content == PlaneContent::color ? past.colors : past.whole.selection, *plane);
   }
-  return hashes;
+  return past;
 }
 
 bool LastFrame::is_worth_comparing(const FrameInputs& frame) const {
@@ -115,12 +65,12 @@ bool LastFrame::is_worth_comparing(const FrameInputs& frame) const {
 }
 
 bool LastFrame::is_same(gpu::Recorder& gpu, FrameInputs& frame, const EstimatorSettings& settings) {
-  Hashes now = hashes_of(frame, settings);
+  Past now = past_of(frame, settings);
   const bool had = outputs_.has_value();
   if (had && now == last_) return true;
   forget();
-  const Hashes before = std::exchange(last_, std::move(now));
-  if (!had || before.meaning != last_.meaning) return false;
+  const Past before = std::exchange(last_, std::move(now));
+  if (!had || before.whole != last_.whole) return false;
   const ivec2 count = blocks_of(frame.view);
   const int columns = count.x + 1;
   frame.changes =

@@ -1,10 +1,12 @@
 // What a frame has in common with the one before it in the same buffers: all of it, or blocks of its pixels.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A result may be used again where it provably has the same bits: where every value that it is made from is the same,
-// by 64-bit hashes (XXH3) of the raw planes. That needs noise that is the same in every frame (Noise::fixed).
+// A result may be used again where every value that it is made from is the same: the frame's recipe, which is
+// compared, and the raw planes, by 64-bit hashes (XXH3). Settings are those of the run. That needs noise that is the
+// same in every frame (Noise::fixed).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -30,15 +32,22 @@ class LastFrame {
   const FrameOutputs& outputs() const { return outputs_.value(); }
 
  private:
-  struct Hashes {
-    std::uint64_t meaning = 0;          // of everything but the planes
-    std::uint64_t colors = 0;           // of all planes but depth and normals
-    std::vector<std::uint64_t> blocks;  // of depth and normals
-    bool operator==(const Hashes&) const = default;
+  /// What a frame was made from; of planes their hashes.
+  struct Past {
+    struct Whole {
+      FrameRecipe recipe;
+      std::optional<int> noise_frame;  // by which animated noise goes on; fixed: 0
+      std::array<std::size_t, kRawPlanes.size()> bytes{};
+      std::uint64_t selection = 0;
+      bool operator==(const Whole&) const = default;
+    } whole;                            // where it differs, no block is as it was
+    std::uint64_t colors = 0;           // of planes that no estimate is made from
+    std::vector<std::uint64_t> blocks;  // of those that one is made from
+    bool operator==(const Past&) const = default;
   };
-  static Hashes hashes_of(const FrameInputs& frame, const EstimatorSettings& settings);
+  static Past past_of(const FrameInputs& frame, const EstimatorSettings& settings);
 
-  Hashes last_;
+  Past last_;
   double ms_ = 0;  // of a whole frame; 0: nobody knows
   std::optional<FrameOutputs> outputs_;
 };

@@ -25,6 +25,7 @@ constexpr std::size_t kLongestName = 255;
 constexpr std::uint32_t kMultiPart = 0x1000;             // of the version's flags
 constexpr std::uint64_t kLinesPerChunk = 256;            // the most of any compression
 constexpr std::string_view kDeepLines = "deepscanline";  // a type of parts, which compresses each line by itself
+constexpr int kHtj2k256 = 10, kHtj2k32 = 11;             // compressions
 constexpr std::uint64_t kOffset = 8;                     // bytes of a chunk's place in the file
 // The most pixels per byte: DWA keeps 2 bytes of a constant block of 64 pixels, and deflate packs these 1032:1.
 constexpr std::uint64_t kPixelsPerByte = 65536;
@@ -114,6 +115,7 @@ class Walk {
     if (name == "dataWindow" && *size == 16) read_window(claim);
     if (name == "tiles" && *size == 9) read_tiles(claim);
     if (name == "chunkCount" && *size == 4) read_chunk_count();
+    if (name == "compression" && *size == 1) check_compression();
     if (name == "type" && *size == kDeepLines.size()) read_type(claim);
     reader_.file.seekg(next);
   }
@@ -135,6 +137,18 @@ class Walk {
   void read_chunk_count() {
     if (const std::uint32_t count = *reader_.word(); count > reader_.bytes_left() / kOffset)
       refuse(fmt::format("{} chunks in a file of {} bytes", count, reader_.size));
+  }
+
+  void check_compression() {
+    const int number = reader_.file.get();
+    if (number < EXR_COMPRESSION_LAST_TYPE) return;
+    const std::string name = number == kHtj2k256 || number == kHtj2k32
+                                 ? "HTJ2K (high-throughput JPEG 2000, of OpenEXR 3.4)"
+                                 : fmt::format("of number {}", number);
+    fail(ErrorKind::input,
+         "{}: its compression is {}, which OpenEXR {} of this program does not read: write the file with ZIP or PIZ "
+         "({})",
+         path_, name, OPENEXR_VERSION_STRING, option_);
   }
 
   void read_type(Claim& claim) {

@@ -14,13 +14,14 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/formats/absent_frames.h"
 
 namespace alcove {
 
 namespace {
 
 constexpr long kMostFrames = 1'000'000;
-constexpr long kFrameLimit = 1'000'000'000;  // frame numbers lie nearer to 0
+constexpr long kFrameLimit = 1'000'000'000;  // frame numbers lie nearer to 0: they have 9 digits at most
 constexpr int kMostPadding = 16;
 
 /// A place for the frame number in a path.
@@ -75,12 +76,15 @@ struct Range {
   long first = 0, last = 0, step = 1;
 };
 
-std::optional<Range> range_of(const std::string& text) {
+std::optional<Range> range_of(const std::string& text, const std::string& list) {
   const char *at = text.data(), *end = at + text.size();
   const auto number = [&](long& value) {
     const auto [stop, error] = std::from_chars(at, end, value);
+    if (error == std::errc::result_out_of_range || value <= -kFrameLimit || value >= kFrameLimit)
+      fail(ErrorKind::usage, "--frames {}: {} is too far from 0: numbers have 9 digits at most", list,
+           std::string(at, stop));
     at = stop;
-    return error == std::errc() && -kFrameLimit < value && value < kFrameLimit;
+    return error == std::errc();
   };
   Range range;
   if (!number(range.first)) return std::nullopt;
@@ -95,7 +99,7 @@ std::optional<Range> range_of(const std::string& text) {
 /// Adds one part of a list. `list` is for messages. `listed` counts frames, repeated ones too.
 void add_part(const std::string& text, const std::string& list, std::vector<int>& frames,
               std::unordered_set<int>& distinct, long& listed) {
-  const auto range = range_of(text);
+  const auto range = range_of(text, list);
   if (!range)
     fail(ErrorKind::usage,
          "--frames {}: \"{}\" is no frame and no range; write 1001, 1001-1100 or 1001-1100x2, with commas between",
@@ -171,19 +175,6 @@ std::vector<int> parse_frames(const std::string& list) {
   return frames;
 }
 
-std::string frames_text(std::vector<int> frames) {
-  std::ranges::sort(frames);
-  std::string text;
-  for (std::size_t i = 0; i < frames.size();) {
-    std::size_t end = i + 1;
-    while (end < frames.size() && frames[end] == frames[end - 1] + 1) end++;
-    if (!text.empty()) text += ", ";
-    text += end - i == 1 ? fmt::format("{}", frames[i]) : fmt::format("{}-{}", frames[i], frames[end - 1]);
-    i = end;
-  }
-  return text;
-}
-
 std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option) {
   namespace fs = std::filesystem;
   if (pattern.after.find('/') != pattern.after.npos)
@@ -196,15 +187,17 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
   std::vector<int> frames;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (const auto frame = frame_of(name, entry->path().filename().string())) frames.push_back(*frame);
-  if (error) fail(ErrorKind::input, "{}: the folder {} cannot be read: {}", option, folder, error.message());
-  if (frames.empty()) fail(ErrorKind::input, "{}: there is no frame such as {}", option, pattern.path(1));
+  if (error)
+    fail(ErrorKind::input, "{}: the folder {} cannot be read: {}{}", option, folder, error.message(),
+         why_no_frames(pattern));
+  if (frames.empty())
+    fail(ErrorKind::input, "{}: there is no frame such as {}{}", option, pattern.path(1), why_no_frames(pattern));
   std::ranges::sort(frames);
   return frames;
 }
 
 void require_ending(const std::string& path, const char* option, const char* ending, const char* format) {
-  const std::string found = ending_of(path);
-  if (found.empty() || found == ending) return;
+  if (path.empty() || ending_of(path) == ending) return;
   fail(ErrorKind::usage, "{}: {} writes only {}: let its name end in {}", path, option, format, ending);
 }
 

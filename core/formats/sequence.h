@@ -29,9 +29,6 @@ std::optional<FramePattern> frame_pattern(const std::string& path);
 /// anything else, on a step of 0, and on more than 1,000,000 frames, repeated ones counted.
 std::vector<int> parse_frames(const std::string& list);
 
-/// Writes the frames as the shortest list, in rising order: "1003, 1010-1012".
-std::string frames_text(std::vector<int> frames);
-
 /// Gives the frames of a pattern that lie on the disk, in rising order. Only names that the pattern itself makes count:
 /// shot.00042.exr is not a frame of shot.%04d.exr. `option` is for the message. Fails with ErrorKind::input if the
 /// folder cannot be read or holds no such file, and with ErrorKind::usage if the token is in the folder's name.
@@ -50,9 +47,8 @@ struct FrameNumber {
 /// a date do not count, nor do fewer digits at the end of a word, which may be a shot's (sh010).
 FrameNumber frame_number_in(const std::string& path);
 
-/// Fails with ErrorKind::usage if the name of an output has the ending of another format than `format`, whose ending is
-/// `ending`, such as ".exr". A name without an ending passes, and a frame number or the suffix of a file in the making
-/// may follow the ending: ao.exr.0001, ao.exr.tmp.
+/// Fails with ErrorKind::usage if the name of an output, where it has one, has not the ending of `format`, such as
+/// ".exr". A frame number or the suffix of a file in the making may follow the ending: ao.exr.0001, ao.exr.tmp.
 void require_ending(const std::string& path, const char* option, const char* ending, const char* format);
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// Lists made from the table of planes, and facts of the files that settings name.
+// Facts of the files that settings name.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/raw_plane.h"
 
@@ -7,17 +7,6 @@
 #include "core/base/text.h"
 
 namespace alcove {
-
-std::vector<FileOption> plane_file_options() {
-  std::vector<FileOption> options{{"INPUT", &InputSettings::input}};
-  for (const auto& row : kRawPlanes)
-    for (const FileOption& file : {row.file, row.other_file, row.third_file})
-      if (file.path)
-        options.push_back(file);
-      else if (file.list)
-        for (std::size_t i = 0; i < kMostBehind; i++) options.push_back({file.option, nullptr, file.list, i});
-  return options;
-}
 
 const std::string& main_input(const InputSettings& settings) {
   if (!settings.input.empty()) return settings.input;
@@ -49,13 +38,6 @@ bool has_deep(const InputSettings& settings) { return settings.deep != FileList{
 bool has_hidden_sources(const InputSettings& settings) {
   const bool has_files = settings.behind != FileList{} || has_deep(settings);
   return has_files || settings.around > 0 || settings.around_all || settings.other_views;
-}
-
-std::vector<std::string> input_files(const InputSettings& settings) {
-  std::vector<std::string> files{settings.camera, settings.motion};
-  for (const auto& file : plane_file_options())
-    if (file.path != &InputSettings::normal || wants_normals(settings)) files.push_back(file.of(settings));
-  return files;
 }
 
 }  // namespace alcove

@@ -1,5 +1,5 @@
-// The planes of a frame's files, before any pass: one table of their facts, arrays with an entry for each, and the
-// files that the settings name.
+// The planes of a frame's files, before any pass: one table of their facts, arrays with an entry for each, and
+// what the settings say of the files.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -28,94 +28,25 @@ constexpr std::size_t kMostMattePlanes = 32;
 /// The most lights that AO may dim.
 constexpr std::size_t kMostAmbientLights = 16;
 
-/// An option that names a file, or one of its files.
-struct FileOption {
-  const char* option = nullptr;
-  std::string InputSettings::*path = nullptr;
-  FileList InputSettings::*list = nullptr;  // instead of a path
-  std::size_t entry = 0;                    // of the list
-
-  std::string& of(InputSettings& settings) const { return path ? settings.*path : (settings.*list)[entry]; }
-  const std::string& of(const InputSettings& settings) const { return path ? settings.*path : (settings.*list)[entry]; }
-};
-
 /// A row of the table.
 struct RawPlaneFacts {
   RawPlane plane;
-  const char* name;   // of its buffer
-  std::size_t least;  // components
-  std::size_t most;
+  const char* name;         // of its buffer
+  std::size_t least, most;  // components
   PlaneContent content;
-  FileOption file;             // null: it lies in the beauty's file
-  FileOption other_file = {};  // null: there is no second option for it
-  FileOption third_file = {};  // the same
 };
 
 inline constexpr std::array kRawPlanes{
-    RawPlaneFacts{.plane = RawPlane::depth,
-                  .name = "raw depth",
-                  .least = 1,
-                  .most = 3,
-                  .content = PlaneContent::geometry,
-                  .file = {"--depth", &InputSettings::depth},
-                  .other_file = {"--position", &InputSettings::position}},
-    RawPlaneFacts{.plane = RawPlane::normal,
-                  .name = "raw normal",
-                  .least = 2,
-                  .most = 3,
-                  .content = PlaneContent::geometry,
-                  .file = {"--normal", &InputSettings::normal}},
-    RawPlaneFacts{.plane = RawPlane::behind,
-                  .name = "raw behind",
-                  .least = 1,
-                  .most = kMostBehindPlanes,
-                  .content = PlaneContent::geometry,
-                  .file = {"--behind", nullptr, &InputSettings::behind},
-                  .other_file = {"--deep", nullptr, &InputSettings::deep}},
-    RawPlaneFacts{.plane = RawPlane::beauty,
-                  .name = "raw beauty",
-                  .least = 3,
-                  .most = 4,
-                  .content = PlaneContent::color,
-                  .file = {"--beauty", &InputSettings::beauty}},
-    RawPlaneFacts{.plane = RawPlane::indirect,
-                  .name = "raw indirect",
-                  .least = 3,
-                  .most = 3 * kMostAmbientLights,
-                  .content = PlaneContent::color,
-                  .file = {}},
-    RawPlaneFacts{.plane = RawPlane::diffuse_color,
-                  .name = "raw diffuse color",
-                  .least = 3,
-                  .most = 3 * kMostAmbientLights,
-                  .content = PlaneContent::color,
-                  .file = {}},
-    RawPlaneFacts{.plane = RawPlane::material_ao,
-                  .name = "raw material ao",
-                  .least = 1,
-                  .most = 1,
-                  .content = PlaneContent::color,
-                  .file = {"--set material-ao", &InputSettings::material_ao}},
-    RawPlaneFacts{.plane = RawPlane::albedo,
-                  .name = "raw albedo",
-                  .least = 3,
-                  .most = 3,
-                  .content = PlaneContent::color,
-                  .file = {"--set albedo", &InputSettings::albedo}},
-    RawPlaneFacts{.plane = RawPlane::matte,
-                  .name = "raw matte",
-                  .least = 1,
-                  .most = kMostMattePlanes,
-                  .content = PlaneContent::selection,
-                  .file = {"--matte", &InputSettings::matte}},
-    RawPlaneFacts{.plane = RawPlane::occluders,
-                  .name = "raw occluders",
-                  .least = 1,
-                  .most = kMostMattePlanes,
-                  .content = PlaneContent::geometry,
-                  .file = {"--set occluders", &InputSettings::occluders},
-                  .other_file = {"--set ignore", &InputSettings::ignore},
-                  .third_file = {"--set objects", &InputSettings::objects}},
+    RawPlaneFacts{RawPlane::depth, "raw depth", 1, 3, PlaneContent::geometry},
+    RawPlaneFacts{RawPlane::normal, "raw normal", 2, 3, PlaneContent::geometry},
+    RawPlaneFacts{RawPlane::behind, "raw behind", 1, kMostBehindPlanes, PlaneContent::geometry},
+    RawPlaneFacts{RawPlane::beauty, "raw beauty", 3, 4, PlaneContent::color},
+    RawPlaneFacts{RawPlane::indirect, "raw indirect", 3, 3 * kMostAmbientLights, PlaneContent::color},
+    RawPlaneFacts{RawPlane::diffuse_color, "raw diffuse color", 3, 3 * kMostAmbientLights, PlaneContent::color},
+    RawPlaneFacts{RawPlane::material_ao, "raw material ao", 1, 1, PlaneContent::color},
+    RawPlaneFacts{RawPlane::albedo, "raw albedo", 3, 3, PlaneContent::color},
+    RawPlaneFacts{RawPlane::matte, "raw matte", 1, kMostMattePlanes, PlaneContent::selection},
+    RawPlaneFacts{RawPlane::occluders, "raw occluders", 1, kMostMattePlanes, PlaneContent::geometry},
 };
 
 /// An array with an entry for each plane.
@@ -134,9 +65,6 @@ constexpr bool rows_are_in_order() {
   return true;
 }
 static_assert(rows_are_in_order());
-
-/// Every option that names a file of planes, INPUT first; one that names several, once for each.
-std::vector<FileOption> plane_file_options();
 
 // Files.
 
@@ -160,8 +88,5 @@ bool has_deep(const InputSettings& settings);
 
 /// Whether anything is named that may show more than the first surface of each pixel.
 bool has_hidden_sources(const InputSettings& settings);
-
-/// All files that a frame reads; empty names where it has none.
-std::vector<std::string> input_files(const InputSettings& settings);
 
 }  // namespace alcove

@@ -26,6 +26,7 @@ struct DepthMap {
   std::array<double, 3> axis{};                                               // of positions
   // of positions: from their origin to the eye, scene units
   double eye_distance = 0;
+  bool operator==(const DepthMap&) const = default;
 };
 
 /// The largest error of a planar depth z: at[0] + at[1] z + at[2] z^2, scene units.
@@ -33,6 +34,7 @@ struct DepthPrecision {
   std::array<double, 3> at{};
 
   double at_depth(double z) const { return at[0] + z * (at[1] + z * at[2]); }
+  bool operator==(const DepthPrecision&) const = default;
 };
 
 /// With d the value and n, f the planes:
@@ -122,12 +124,14 @@ struct MatteReading {
   std::vector<std::uint32_t> objects = {};  // that are selected, by the bits of their floats
   double outside = 1;                       // the AO where nothing is selected, 0 to 1
   bool ignores = false;                     // of occluders: the selected ones are none; else all others are none
+  bool operator==(const MatteReading&) const = default;
 };
 
 /// The reading of a light of the planes of RawPlane::indirect: see composite.comp.
 struct AmbientReading {
   double weight = 1;
   int color = -1;  // of those in RawPlane::diffuse_color, which multiplies it; below 0: none
+  bool operator==(const AmbientReading&) const = default;
 };
 
 /// The meaning of one frame, with its windows and its camera.

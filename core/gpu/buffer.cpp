@@ -122,8 +122,9 @@ bool Buffer::allocate(Device& device, MemoryUse use, Allocation& allocation) con
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.size = capacity_ + 2 * guard_;
-  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
-               VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT |
+               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+               VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   VkBuffer buffer = VK_NULL_HANDLE;
   check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer), "vkCreateBuffer");
   Allocation made;
@@ -144,6 +145,21 @@ std::span<std::byte> Buffer::map(Device& device, const Allocation& allocation) c
   void* data = nullptr;
   check(vkMapMemory(device.handle(), allocation.memory, 0, VK_WHOLE_SIZE, 0, &data), "vkMapMemory");
   return {static_cast<std::byte*>(data), capacity_ + 2 * guard_};
+}
+
+VkBufferView Buffer::texels(const Device& device, VkFormat format) const {
+  auto& view = views_[format];
+  if (view) return view;
+  constexpr VkDeviceSize kTexelBytes = 4;
+  VkBufferViewCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
+  info.buffer = handle();
+  info.format = format;
+  info.offset = guard_;
+  info.range = std::min<VkDeviceSize>((capacity_ + guard_) / kTexelBytes, device.most_texels()) * kTexelBytes;
+  VkBufferView made = VK_NULL_HANDLE;
+  check(vkCreateBufferView(device.handle(), &info, nullptr, &made), "vkCreateBufferView");
+  return view = {device.handle(), made};
 }
 
 bool Buffer::suits(std::size_t bytes) const {

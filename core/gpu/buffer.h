@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -69,6 +70,8 @@ class Buffer {
   VkBuffer handle() const { return device_side_.buffer; }
   /// The part that kernels get: the bytes, and the guard behind them, so that a read beyond the end gives NaN.
   VkDescriptorBufferInfo bound() const { return {handle(), guard_, bytes_ + guard_}; }
+  /// The same part as texels, one per word. What the device allows no texel of is left out.
+  VkBufferView texels(const Device& device, VkFormat format) const;
   /// False if something was written beside its bytes. Always true without guards: see DeviceOptions.
   bool guards_hold() const;
   /// The staging twin; null if the host maps the buffer itself, or if nobody has asked for a twin yet.
@@ -94,6 +97,7 @@ class Buffer {
   std::vector<std::byte> rehearsed_;
   Allocation device_side_;
   mutable Allocation staging_side_;
+  mutable std::map<VkFormat, DeviceHandle<VkBufferView, vkDestroyBufferView>> views_;
   mutable std::span<std::byte> host_;  // of the whole capacity
   std::span<std::byte> guarded_;       // the bytes with their guards; empty without guards
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -245,6 +246,15 @@ PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const D
   return *best;
 }
 
+bool is_fast_with_texels(VkDriverId driver, std::string_view driver_info) {
+  constexpr std::string_view kMesa = "Mesa ";
+  constexpr int kFirstWithoutLoops = 25;  // seen: 22.3 and the source of 23.2 have loops over lanes, 25.0 has none
+  int version = kFirstWithoutLoops;
+  if (driver_info.starts_with(kMesa))
+    std::from_chars(driver_info.data() + kMesa.size(), driver_info.data() + driver_info.size(), version);
+  return driver == VK_DRIVER_ID_MESA_LLVMPIPE && version < kFirstWithoutLoops;
+}
+
 std::optional<QueueFamily> compute_family(VkPhysicalDevice device) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
@@ -362,7 +372,11 @@ void Device::read_properties() {
   most_allocations_ = properties.limits.maxMemoryAllocationCount;
   most_blocks_ =
       std::min(properties.limits.maxPerStageDescriptorStorageBuffers, properties.limits.maxPerStageResources);
-  block_alignment_ = properties.limits.minStorageBufferOffsetAlignment;
+  reads_texels_ = options_.texels.value_or(is_fast_with_texels(properties12.driverID, properties12.driverInfo)) &&
+                  properties.limits.maxPerStageDescriptorStorageImages >= kMostBlocks;
+  most_texels_ = properties.limits.maxTexelBufferElements;
+  block_alignment_ = std::max(properties.limits.minStorageBufferOffsetAlignment,
+                              properties.limits.minTexelBufferOffsetAlignment);  // both are powers of 2
   cache_owner_ = {properties.vendorID, properties.deviceID, std::to_array(properties.pipelineCacheUUID)};
 }
 
@@ -427,12 +441,17 @@ double Device::submission_ms() const {
   return is_free ? std::numeric_limits<double>::infinity() : options_.submission_ms;
 }
 
-const Kernel& Device::kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization) {
+const Kernel& Device::kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization,
+                             std::size_t most_bytes) {
+  // Mesa's compiler may round an expression otherwise where its parts are used otherwise, and the two builds of the
+  // exact search, with hidden surfaces and without, then differ by a last bit. It is nearly all arithmetic.
+  const bool is_arithmetic = stem == "exact";
+  const bool reads_texels = reads_texels_ && !is_arithmetic && most_bytes / sizeof(float) <= most_texels_;
   Slot& slot = [&]() -> Slot& {
     const std::lock_guard lock(mutex_);
-    return kernels_[{stem, specialization}];
+    return kernels_[{{stem, specialization}, reads_texels}];
   }();
-  std::call_once(slot.made, [&] { slot.kernel = std::make_unique<Kernel>(*this, stem, specialization); });
+  std::call_once(slot.made, [&] { slot.kernel = std::make_unique<Kernel>(*this, stem, specialization, reads_texels); });
   return *slot.kernel;
 }
 

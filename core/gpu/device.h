@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -58,6 +59,9 @@ struct QueueFamily {
   std::uint32_t index;
   std::uint32_t timestamp_bits;  // 0: no timestamps
 };
+/// Whether a driver reads buffers of texels so much faster than storage buffers that kernels should: see with_texels().
+bool is_fast_with_texels(VkDriverId driver, std::string_view driver_info);
+
 /// The first queue family that computes; nullopt if none does.
 std::optional<QueueFamily> compute_family(VkPhysicalDevice device);
 
@@ -122,8 +126,10 @@ class Device {
   double submission_ms() const;
 
   /// The kernel of that stem, compiled on first use for these specialization constants (ids 0, 1, 2 ...). Threads that
-  /// ask for a kernel in the making wait for it; others do not wait.
-  const Kernel& kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization);
+  /// ask for a kernel in the making wait for it; others do not wait. most_bytes: of the largest buffer that it gets. If
+  /// that has more words than the device takes texels, the kernel reads storage buffers.
+  const Kernel& kernel(const std::string& stem, const std::vector<std::uint32_t>& specialization,
+                       std::size_t most_bytes = 0);
 
   /// Allocates so many bytes of memory of that type; gives null if too little is left. Fails with OutOfMemory if the
   /// driver allows no further allocation, however small.
@@ -143,6 +149,8 @@ class Device {
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   /// The most storage buffers of a kernel.
   std::uint32_t most_blocks() const { return most_blocks_; }
+  /// The most texels of a buffer.
+  std::uint32_t most_texels() const { return most_texels_; }
   /// The bytes whose multiples are the places in a buffer that a kernel's block may begin at.
   VkDeviceSize block_alignment() const { return block_alignment_; }
 
@@ -167,7 +175,8 @@ class Device {
   std::uint32_t queue_family_ = 0, timestamp_bits_ = 0;
   double nanoseconds_per_tick_ = 1;
   bool preserves_nan_ = false;
-  std::uint32_t most_allocations_ = 0, most_blocks_ = 0;
+  bool reads_texels_ = false;
+  std::uint32_t most_allocations_ = 0, most_blocks_ = 0, most_texels_ = 0;
   VkDeviceSize block_alignment_ = 1;
   std::atomic<std::uint32_t> allocations_ = 0;
   std::atomic<std::uint64_t> finished_ = 0;  // submissions
@@ -180,7 +189,7 @@ class Device {
     std::once_flag made;
     std::unique_ptr<Kernel> kernel;
   };
-  std::map<KernelName, Slot> kernels_;
+  std::map<std::pair<KernelName, bool>, Slot> kernels_;  // by their names, and whether they read texels
 };
 
 }  // namespace alcove::gpu

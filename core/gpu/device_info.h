@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ struct DeviceOptions {
   bool pipeline_cache = true;   // keep compiled pipelines in the XDG cache folder
   // false: always copy through staging buffers, as with a device whose memory the host cannot map
   bool map_memory = true;
+  // Whether kernels read buffers of texels where they can; nullopt: if the driver is much faster with them.
+  std::optional<bool> texels = std::nullopt;
   // Guards for tests: at least so many bytes before and behind every buffer are NaN, and so are its own bytes
   // until they are written. A run that writes into a guard fails.
   std::size_t guard_bytes = 0;

@@ -37,7 +37,9 @@ struct Module {
   std::map<std::uint32_t, std::uint32_t> array_stride, constants;
   std::map<std::uint32_t, std::vector<std::uint32_t>> types;  // opcode, then operands
   std::map<std::uint32_t, std::uint32_t> block_of;            // variable -> struct type
+  std::map<std::uint32_t, std::uint32_t> place_in;            // pointer into a variable -> that
   std::set<std::uint32_t> not_writable, not_readable;         // struct types with such a member, and variables
+  std::set<std::uint32_t> with_atomics;                       // variables
   std::uint32_t push_constant_type = 0;
 
   /// The bytes of a type in scalar layout.
@@ -58,6 +60,15 @@ struct Module {
         fail(ErrorKind::device, "a kernel's parameters hold a type that reflection does not know (opcode {})",
              words[0]);
     }
+  }
+
+  /// See Block::texel.
+  VkFormat texel_of(std::uint32_t variable) const {
+    const auto& members = types.at(block_of.at(variable));
+    if (members.size() != 2 || types.at(members[1])[0] != spv::OpTypeRuntimeArray) return VK_FORMAT_UNDEFINED;
+    const auto& element = types.at(types.at(members[1])[1]);
+    if (element[0] == spv::OpTypeFloat) return VK_FORMAT_R32_SFLOAT;
+    return element[0] == spv::OpTypeInt && element[2] == 0 ? VK_FORMAT_R32_UINT : VK_FORMAT_UNDEFINED;
   }
 };
 
@@ -81,6 +92,8 @@ void read_variable(Module& module, std::span<const std::uint32_t> words) {
   if (words[3] == spv::StorageClassStorageBuffer) module.block_of[words[2]] = module.types.at(words[1])[2];
 }
 
+bool is_atomic(std::uint32_t opcode) { return opcode >= spv::OpAtomicLoad && opcode <= spv::OpAtomicXor; }
+
 void read_instruction(Module& module, Reflection& reflection, std::span<const std::uint32_t> words) {
   const auto opcode = words[0] & spv::OpCodeMask;
   switch (opcode) {
@@ -97,10 +110,12 @@ void read_instruction(Module& module, Reflection& reflection, std::span<const st
     case spv::OpConstant: module.constants[words[2]] = words[3]; break;
     case spv::OpSpecConstant: reflection.constants[module.constant_id.at(words[2])] = words[3]; break;
     case spv::OpVariable: read_variable(module, words); break;
+    case spv::OpAccessChain: module.place_in[words[2]] = words[3]; break;
     case spv::OpTypeInt:
     case spv::OpTypeFloat:
     case spv::OpTypeVector:
     case spv::OpTypeArray:
+    case spv::OpTypeRuntimeArray:
     case spv::OpTypeStruct:
     case spv::OpTypePointer: {
       auto& type = module.types[words[1]];
@@ -108,7 +123,8 @@ void read_instruction(Module& module, Reflection& reflection, std::span<const st
       type.insert(type.end(), words.begin() + 2, words.end());
       break;
     }
-    default: break;
+    default:
+      if (is_atomic(opcode)) module.with_atomics.insert(module.place_in[words[opcode == spv::OpAtomicStore ? 1 : 3]]);
   }
 }
 
@@ -129,7 +145,9 @@ Reflection reflect(std::span<const std::uint32_t> code) {
     const auto type = module.block_of[id];
     const bool is_read = !module.not_readable.contains(id) && !module.not_readable.contains(type);
     const bool is_written = !module.not_writable.contains(id) && !module.not_writable.contains(type);
-    reflection.blocks.push_back({module.names[type], binding, is_read, is_written});
+    const bool may_be_texels = is_read && !module.with_atomics.contains(id);
+    reflection.blocks.push_back(
+        {module.names[type], binding, is_read, is_written, may_be_texels ? module.texel_of(id) : VK_FORMAT_UNDEFINED});
   }
   if (module.push_constant_type) reflection.parameter_bytes = module.size_of(module.push_constant_type);
   return reflection;
@@ -153,6 +171,111 @@ std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> cod
   fail(ErrorKind::device, "a kernel's SPIR-V has no entry point");
 }
 
+namespace {
+
+/// The ids of types by which a kernel reads texels of one format.
+struct TexelTypes {
+  std::uint32_t scalar = 0, vector = 0, image = 0, pointer = 0;
+};
+
+/// Writes a module anew, instruction by instruction, and changes those that have to do with buffers of texels.
+class TexelWriter {
+ public:
+  TexelWriter(std::span<const std::uint32_t> code, std::span<const Block> blocks) : code_(code), bound_(code[3]) {
+    for (std::size_t at = first_instruction(code); at < code.size(); at += words_at(code, at))
+      look_at(code.subspan(at, words_at(code, at)), blocks);
+  }
+
+  std::vector<std::uint32_t> written() {
+    const std::size_t first = first_instruction(code_);
+    result_.assign(code_.begin(), code_.begin() + std::ptrdiff_t(first));
+    write(spv::OpCapability, {spv::CapabilityImageBuffer});
+    for (std::size_t at = first; at < code_.size(); at += words_at(code_, at))
+      rewrite(code_.subspan(at, words_at(code_, at)));
+    result_[3] = bound_;
+    return std::move(result_);
+  }
+
+ private:
+  struct Place {
+    std::uint32_t variable, index;  // ids
+  };
+
+  /// Notes the ids of the variables, and those of the types that exist: none may be declared twice.
+  void look_at(std::span<const std::uint32_t> words, std::span<const Block> blocks) {
+    const auto opcode = words[0] & spv::OpCodeMask;
+    if (opcode == spv::OpDecorate && words[2] == spv::DecorationBinding) {
+      const auto block = std::ranges::find(blocks, words[3], &Block::binding);
+      if (block != blocks.end() && block->texel != VK_FORMAT_UNDEFINED) format_of_[words[1]] = block->texel;
+    }
+    if (opcode == spv::OpTypeFloat) types_[VK_FORMAT_R32_SFLOAT].scalar = words[1];
+    if (opcode == spv::OpTypeInt && words[3] == 0) types_[VK_FORMAT_R32_UINT].scalar = words[1];
+    if (opcode == spv::OpTypeVector && words[3] == 4)
+      for (auto& [format, types] : types_)
+        if (types.scalar == words[2]) types.vector = words[1];
+  }
+
+  void rewrite(std::span<const std::uint32_t> words) {
+    const auto opcode = words[0] & spv::OpCodeMask;
+    if (opcode == spv::OpVariable && format_of_.contains(words[2])) return declare(words[2]);
+    if (opcode == spv::OpAccessChain && format_of_.contains(words[3])) {
+      places_[words[2]] = {words[3], words[5]};  // behind the index of the block's only member
+      return;
+    }
+    if (opcode == spv::OpLoad && places_.contains(words[3])) return load(words[2], places_.at(words[3]));
+    if (opcode == spv::OpStore && places_.contains(words[1])) return store(words[2], places_.at(words[1]));
+    result_.insert(result_.end(), words.begin(), words.end());
+  }
+
+  void declare(std::uint32_t variable) {
+    const VkFormat format = format_of_.at(variable);
+    TexelTypes& types = types_.at(format);
+    if (!types.vector) write(spv::OpTypeVector, {types.vector = bound_++, types.scalar, 4});
+    if (!types.image) {
+      const std::uint32_t of_image = format == VK_FORMAT_R32_UINT ? spv::ImageFormatR32ui : spv::ImageFormatR32f;
+      const std::uint32_t no_depth = 0, no_layers = 0, no_samples = 0, without_sampler = 2;
+      write(spv::OpTypeImage, {types.image = bound_++, types.scalar, spv::DimBuffer, no_depth, no_layers, no_samples,
+                               without_sampler, of_image});
+      write(spv::OpTypePointer, {types.pointer = bound_++, spv::StorageClassUniformConstant, types.image});
+    }
+    write(spv::OpVariable, {types.pointer, variable, spv::StorageClassUniformConstant});
+  }
+
+  void load(std::uint32_t result, const Place& place) {
+    const TexelTypes& types = types_.at(format_of_.at(place.variable));
+    const std::uint32_t image = bound_++, texel = bound_++, first = 0;
+    write(spv::OpLoad, {types.image, image, place.variable});
+    write(spv::OpImageRead, {types.vector, texel, image, place.index});
+    write(spv::OpCompositeExtract, {types.scalar, result, texel, first});
+  }
+
+  void store(std::uint32_t value, const Place& place) {
+    const TexelTypes& types = types_.at(format_of_.at(place.variable));
+    const std::uint32_t image = bound_++, texel = bound_++;
+    write(spv::OpLoad, {types.image, image, place.variable});
+    write(spv::OpCompositeConstruct, {types.vector, texel, value, value, value, value});
+    write(spv::OpImageWrite, {image, place.index, texel});
+  }
+
+  void write(spv::Op opcode, std::initializer_list<std::uint32_t> operands) {
+    result_.push_back(opening(opcode, std::uint32_t(1 + operands.size())));
+    result_.insert(result_.end(), operands);
+  }
+
+  std::span<const std::uint32_t> code_;
+  std::vector<std::uint32_t> result_;
+  std::uint32_t bound_;                          // the least id that is free
+  std::map<std::uint32_t, VkFormat> format_of_;  // of variables
+  std::map<VkFormat, TexelTypes> types_;
+  std::map<std::uint32_t, Place> places_;  // of pointers
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> with_texels(std::span<const std::uint32_t> code, std::span<const Block> blocks) {
+  return TexelWriter(code, blocks).written();
+}
+
 std::span<const std::uint32_t> code_for(const std::string& stem, const Reflection& all,
                                         const std::vector<std::uint32_t>& specialization) {
   const auto usual = kernel_code(stem + "_usual");
@@ -164,11 +287,19 @@ std::span<const std::uint32_t> code_for(const std::string& stem, const Reflectio
   return is_usual ? usual : kernel_code(stem);
 }
 
-Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization)
+VkDescriptorType descriptor_of(const Block& block) {
+  const bool is_texels = block.texel != VK_FORMAT_UNDEFINED;
+  return is_texels ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
+
+Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization,
+               bool reads_texels)
     : stem_(stem) {
   const auto code = kernel_code(stem);
   if (code.empty()) fail(ErrorKind::device, "there is no kernel {}", stem);
   reflection_ = reflect(code);
+  if (!reads_texels)
+    for (Block& block : reflection_.blocks) block.texel = VK_FORMAT_UNDEFINED;
   std::vector<std::uint32_t> ids;
   for (const auto& constant : reflection_.constants) ids.push_back(constant.first);
   if (ids.size() != specialization.size() || (!specialization.empty() && ids.back() != specialization.size() - 1))
@@ -178,17 +309,17 @@ Kernel::Kernel(Device& device, const std::string& stem, const std::vector<std::u
     fail(ErrorKind::device, "kernel {} has {} storage buffers, and {} takes {}", stem, reflection_.blocks.size(),
          device.info().name, most);
   create_layouts(device);
-  const auto own = code_for(stem, reflection_, specialization);
-  if (device.preserves_nan())
-    create_pipeline(device, with_preserved_nan(own), specialization);
-  else
-    create_pipeline(device, own, specialization);
+  std::vector<std::uint32_t> edited;
+  auto own = code_for(stem, reflection_, specialization);
+  if (reads_texels) own = edited = with_texels(own, reflection_.blocks);
+  if (device.preserves_nan()) own = edited = with_preserved_nan(own);
+  create_pipeline(device, own, specialization);
 }
 
 void Kernel::create_layouts(Device& device) {
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (const auto& block : reflection_.blocks)
-    bindings.push_back({block.binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+    bindings.push_back({block.binding, descriptor_of(block), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
   VkDescriptorSetLayoutCreateInfo set_info{};
   set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   set_info.bindingCount = std::uint32_t(bindings.size());

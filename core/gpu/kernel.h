@@ -22,6 +22,8 @@ struct Block {
   std::string name;  // in GLSL
   std::uint32_t binding;
   bool is_read, is_written;  // not declared writeonly, not declared readonly
+  // The format of its words if it may be a buffer of texels: an array of floats or uints that is read, without atomics.
+  VkFormat texel = VK_FORMAT_UNDEFINED;
 };
 
 /// The declarations of a kernel, read from its SPIR-V.
@@ -40,6 +42,11 @@ Reflection reflect(std::span<const std::uint32_t> code);
 /// SPIR-V 1.4 or later with one entry point, and the device must have shaderSignedZeroInfNanPreserveFloat32.
 std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> code);
 
+/// The code with buffers of texels in the place of those storage buffers whose blocks have a format of texels: kernels
+/// are written for storage buffers alone. It gives the same bits. Old versions of lavapipe gather texels at once, but
+/// read storage buffers in a loop over the lanes, which takes up to ten times as long, depending on the CPU.
+std::vector<std::uint32_t> with_texels(std::span<const std::uint32_t> code, std::span<const Block> blocks);
+
 /// The SPIR-V of kernels/FOLDER/STEM.comp, embedded at build time; empty if no kernel has that stem. STEM_usual is its
 /// twin, where it has one: the same source, in which some specialization constants are fixed at the values that they
 /// have where none is given. A Kernel takes it by itself where these are its values. It saves time, since drivers leave
@@ -51,11 +58,14 @@ std::span<const std::uint32_t> kernel_code(std::string_view stem);
 std::span<const std::uint32_t> code_for(const std::string& stem, const Reflection& all,
                                         const std::vector<std::uint32_t>& specialization);
 
+/// The kind of descriptor that a block is bound by.
+VkDescriptorType descriptor_of(const Block& block);
+
 class Kernel {
  public:
   /// Fails with ErrorKind::device if there is no such kernel, if its specialization constants are not 0 .. n-1, or if
-  /// it has more storage buffers than the device takes.
-  Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization);
+  /// it has more storage buffers than the device takes. reads_texels: see with_texels().
+  Kernel(Device& device, const std::string& stem, const std::vector<std::uint32_t>& specialization, bool reads_texels);
 
   const std::string& stem() const { return stem_; }
   const Reflection& reflection() const { return reflection_; }

@@ -63,6 +63,13 @@ std::vector<const Buffer*> buffers_of(const Kernel& kernel, std::span<const Bind
   return buffers;
 }
 
+/// The bytes of the largest of them.
+std::size_t most_bytes_of(std::span<const Binding> bindings) {
+  std::size_t most = 0;
+  for (const Binding& binding : bindings) most = std::max(most, binding.buffer ? binding.buffer->bytes() : 0);
+  return most;
+}
+
 PassTime pass_of(const Kernel& kernel, std::span<const Buffer* const> buffers) {
   PassTime pass{kernel.stem()};
   for (std::size_t i = 0; i < buffers.size(); i++) {
@@ -99,12 +106,13 @@ Recorder::~Recorder() {
 }
 
 Recorder::Submission Recorder::make_submission() {
-  const VkDescriptorPoolSize descriptors{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostDispatches * kMostBlocks};
+  const VkDescriptorPoolSize descriptors[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostDispatches * kMostBlocks},
+                                              {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, kMostDispatches * kMostBlocks}};
   VkDescriptorPoolCreateInfo sets_info{};
   sets_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
   sets_info.maxSets = kMostDispatches;
-  sets_info.poolSizeCount = 1;
-  sets_info.pPoolSizes = &descriptors;
+  sets_info.poolSizeCount = std::uint32_t(std::size(descriptors));
+  sets_info.pPoolSizes = descriptors;
   VkDescriptorPool sets = VK_NULL_HANDLE;
   check(vkCreateDescriptorPool(device_->handle(), &sets_info, nullptr, &sets), "vkCreateDescriptorPool");
   Submission submission{VK_NULL_HANDLE, {device_->handle(), sets}, {}, {}};
@@ -142,7 +150,8 @@ Buffer& Recorder::buffer(std::string_view name, std::size_t bytes, Use use) {
       recording = recordings_;
       return pooled;
     }
-    if (recording_ || !device_) replaced_.emplace_back(name, std::move(pooled));
+    // Commands of this recording have it only where this recording has asked for it.
+    if (!device_ || (recording_ && recording == recordings_)) replaced_.emplace_back(name, std::move(pooled));
     buffers_.erase(found);
   }
   try {
@@ -285,7 +294,7 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
     return;
   }
   begin();
-  const Kernel& kernel = device_->kernel(stem, specialization);
+  const Kernel& kernel = device_->kernel(stem, specialization, most_bytes_of(bindings));
   if (params.size() != kernel.reflection().parameter_bytes)
     fail(ErrorKind::device, "kernel {} takes {} bytes of parameters, and the host sends {}", stem,
          kernel.reflection().parameter_bytes, params.size());
@@ -333,18 +342,21 @@ VkDescriptorSet Recorder::bind(const Kernel& kernel, std::span<const Buffer* con
   info.pSetLayouts = &layout;
   VkDescriptorSet set = VK_NULL_HANDLE;
   check(vkAllocateDescriptorSets(device_->handle(), &info, &set), "vkAllocateDescriptorSets");
-  std::vector<VkDescriptorBufferInfo> infos;
+  std::vector<VkDescriptorBufferInfo> infos(buffers.size());
+  std::vector<VkBufferView> views(buffers.size());
   std::vector<VkWriteDescriptorSet> writes;
-  infos.reserve(buffers.size());
   for (std::size_t i = 0; i < buffers.size(); i++) {
-    infos.push_back(buffers[i]->bound());
+    const Block& block = kernel.reflection().blocks[i];
+    infos[i] = buffers[i]->bound();
+    if (block.texel != VK_FORMAT_UNDEFINED) views[i] = buffers[i]->texels(*device_, block.texel);
     VkWriteDescriptorSet write{};
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     write.dstSet = set;
-    write.dstBinding = kernel.reflection().blocks[i].binding;
+    write.dstBinding = block.binding;
     write.descriptorCount = 1;
-    write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    write.pBufferInfo = &infos.back();
+    write.descriptorType = descriptor_of(block);
+    write.pBufferInfo = &infos[i];       // or, of a buffer of texels,
+    write.pTexelBufferView = &views[i];  // its view
     writes.push_back(write);
   }
   vkUpdateDescriptorSets(device_->handle(), std::uint32_t(writes.size()), writes.data(), 0, nullptr);

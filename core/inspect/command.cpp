@@ -7,10 +7,9 @@
 #include "core/base/option_words.h"
 #include "core/base/text.h"
 #include "core/frame/camera/camera.h"
-#include "core/frame/evidence.h"
-#include "core/frame/radius.h"
+#include "core/frame/pixels/radius.h"
 #include "core/frame/raw_plane.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "core/inspect/inspect.h"
 
 namespace alcove {
@@ -29,6 +28,9 @@ class Command {
     if (value) text_ += " " + typed(option, fmt::format("{}", *value));
   }
   const std::string& text() const { return text_; }
+  bool has(const std::string& option) const {
+    return text_.find(" " + option + " ") != text_.npos || text_.find(" " + option + "=") != text_.npos;
+  }
 
  private:
   std::string text_;
@@ -48,11 +50,11 @@ void add_files(Command& command, const FrameSource& source, const InputSettings&
 }
 
 /// The beauty goes with the composite that it is for.
-void add_beauty(Command& command, const InputSettings& settings, const std::string& output) {
+void add_beauty(Command& command, const InputSettings& settings, const std::string& composite) {
   command.add("--beauty", settings.beauty);
   command.add("--set beauty-channels", settings.beauty_channels);
   if (settings.beauty.empty() && settings.beauty_channels.empty()) return;
-  command.add("--composite", output.starts_with("ao.") ? "composite" + output.substr(2) : "composite." + output);
+  command.add("--composite", composite);
 }
 
 void add_behind(Command& command, const InputSettings& settings) {
@@ -115,12 +117,13 @@ std::string command_of(const FrameSource& source, const CommandNames& names, boo
   add_behind(command, settings);
   command.add("--frames", names.frames);
   command.add("-o", names.output);
-  add_beauty(command, settings, names.output);
+  add_beauty(command, settings, names.composite);
   add_depth(command, source, settings);
   add_normals(command, source, settings, has_camera);
   add_camera(command, settings, has_camera);
-  if (!names.settings.empty()) command.add(names.settings.substr(1));
-  if (names.settings.find("--radius ") != names.settings.npos) return command.text();
+  for (const auto& [option, words] : names.typed)
+    if (!command.has(option)) command.add(words);
+  if (command.has("--radius")) return command.text();
   if (const auto radius = proposed_radius(source.reading.camera, source.evidence->median_depth))
     command.add("--radius", radius);
   else

@@ -13,7 +13,6 @@
 #include "core/chain/compute.h"
 #include "core/formats/png.h"
 #include "core/formats/sequence.h"
-#include "core/frame/evidence.h"
 #include "core/frame/raw_plane.h"
 
 namespace alcove {
@@ -36,7 +35,6 @@ std::array<double, 3> percentiles(std::span<const float> depth) {
 
 void write_contact_sheet(const Settings& settings, int number) {
   const std::string& path = settings.output.preview;
-  require_no_input(path, "--preview", input_files(settings.input));
   require_ending(path, "--preview", ".png", "PNG");
   require_writable(path, "--preview");
   const HostFrame frame = read_host_frame(settings.input, number);

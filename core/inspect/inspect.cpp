@@ -11,10 +11,11 @@
 #include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
-#include "core/frame/behind.h"
-#include "core/frame/channels.h"
+#include "core/frame/find/behind.h"
+#include "core/frame/find/channels.h"
 #include "core/frame/raw_plane.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/faults.h"
+#include "core/frame/settle/settle.h"
 
 namespace alcove {
 namespace {

@@ -16,8 +16,10 @@
 #include "core/formats/exr.h"
 #include "core/frame/camera/camera.h"
 #include "core/frame/evidence.h"
-#include "core/frame/gbuffer.h"
-#include "core/frame/matte.h"
+#include "core/frame/find/frame_source.h"
+#include "core/frame/find/matte.h"
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/statistics.h"
 #include "core/run/plan.h"
 
 namespace alcove {
@@ -165,12 +167,17 @@ const char* name_of(SampleType type);
 /// Only the frame's view and the settings' layer count, since a run finds no others.
 std::vector<HiddenGuess> hidden_guesses(const FrameSource& source, const InputSettings& settings);
 
-/// The files and frames of a proposed run.
+/// An option of a proposed run, and the words that give it: "--slices" and "--slices 8".
+struct ProposedOption {
+  std::string option, words;
+};
+
+/// The files and options of a proposed run.
 struct CommandNames {
   InputSettings inputs;  // its files and cameras
-  std::string output = "ao.exr";
-  std::string frames = {};    // a list, or empty
-  std::string settings = {};  // options that say how AO is computed, each after a blank
+  std::string output = "ao.exr", composite = "composite.exr";
+  std::string frames = {};                 // a list, or empty
+  std::vector<ProposedOption> typed = {};  // by the user, as far as they have an effect
 };
 
 /// The command of the run that reads the settled frame as it was understood, with every guess made explicit. Without a
@@ -206,7 +213,7 @@ CameraSearch look_for_camera(const InputSettings& settings, int frame);
 
 /// Inspects the frame by which a run would decide the reading of all, and adds changes along the sequence: by the
 /// headers of all frames, and by the pixels of a few. Fails as inspect_frame() does for that frame; faults of others
-/// are part of the answer. `settings` is that of CommandNames.
-Inspection inspect_sequence(const FramePlan& plan, const std::string& settings);
+/// are part of the answer.
+Inspection inspect_sequence(const FramePlan& plan, const CommandNames& run);
 
 }  // namespace alcove

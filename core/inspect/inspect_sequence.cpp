@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/frame/raw_plane.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "core/inspect/inspect.h"
 
 namespace alcove {
@@ -110,7 +110,7 @@ double width_of(const Camera& camera) {
 /// A sequence being looked at.
 class SequenceInspector {
  public:
-  SequenceInspector(const FramePlan& plan, const std::string& settings) : plan_(plan), settings_(settings) {}
+  SequenceInspector(const FramePlan& plan, const CommandNames& run) : plan_(plan), run_(run) {}
 
   Inspection inspect() {
     Inspection found = first_that_shows();
@@ -128,10 +128,9 @@ class SequenceInspector {
  private:
   /// The frame that a run would settle the sequence by.
   Inspection first_that_shows() {
-    const CommandNames run{plan_.settings().input, "ao.%04d.exr", plan_.settings().frames.frames, settings_};
     std::optional<Inspection> first;
     for (const int frame : plan_.evidence()) {
-      Inspection found = inspect_frame(plan_.at(frame).input, frame, run);
+      Inspection found = inspect_frame(plan_.at(frame).input, frame, run_);
       if (first && !found.shows_surfaces) continue;
       shown_frame_ = frame;
       first = std::move(found);
@@ -230,7 +229,7 @@ class SequenceInspector {
   static constexpr const char* kRefused = "refused";
 
   const FramePlan& plan_;
-  const std::string& settings_;
+  const CommandNames& run_;
   int shown_frame_ = 0;
   bool has_camera_ = false;
   InspectedSequence shown_{};
@@ -242,8 +241,8 @@ class SequenceInspector {
 
 }  // namespace
 
-Inspection inspect_sequence(const FramePlan& plan, const std::string& settings) {
-  return SequenceInspector(plan, settings).inspect();
+Inspection inspect_sequence(const FramePlan& plan, const CommandNames& run) {
+  return SequenceInspector(plan, run).inspect();
 }
 
 }  // namespace alcove

@@ -10,9 +10,10 @@
 
 #include "core/base/image.h"
 #include "core/base/text.h"
+#include "core/formats/absent_frames.h"
 #include "core/formats/picture.h"
 #include "core/formats/sequence.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 #include "core/measure/metrics.h"
 #include "core/measure/report.h"
 
@@ -61,7 +62,9 @@ std::vector<int> frames_of(const CompareSettings& settings) {
     if (pattern)
       std::ranges::copy_if(frames, std::back_inserter(missing),
                            [&](int frame) { return !is_there(pattern->path(frame)); });
-    if (!missing.empty()) fail(ErrorKind::input, "{}: frames are missing: {}", *path, frames_text(missing));
+    if (!missing.empty())
+      fail(ErrorKind::input, "{}: frames are missing: {}{}", *path, frames_text(missing),
+           missing.size() == frames.size() ? why_no_frames(*pattern) : "");
   }
   return frames;
 }
@@ -335,6 +338,12 @@ std::optional<SkyDifference> sky_difference(const Planes& planes, double rmse) {
   return {};
 }
 
+HoleAt hole_at(const Planes& planes, const Hole& hole) {
+  const std::size_t pixel = hole.value % planes.data.pixels(), width = std::size_t(planes.data.width);
+  return {planes.data.x + int(pixel % width), planes.data.y + int(pixel / width),
+          planes.channels[hole.value / planes.data.pixels()], hole.in_result};
+}
+
 FrameComparison measure(const CompareSettings& settings, const Planes& planes, int frame) {
   const auto& values = planes.values;
   const int width = planes.data.width, height = planes.data.height;
@@ -351,6 +360,8 @@ FrameComparison measure(const CompareSettings& settings, const Planes& planes, i
   c.count = values.count;
   c.excluded = values.excluded;
   c.masked = values.masked;
+  c.holes = values.holes;
+  if (values.first_hole) c.first_hole = hole_at(planes, *values.first_hole);
   c.errors = compare_planes(values.result, values.reference, values.mask, values.reference_b);
   c.sky_differs = sky_difference(planes, c.errors.rmse);
   c.psnr = psnr(c.errors.rmse, settings.peak);
@@ -410,6 +421,13 @@ CompareReport compare_sequence(const CompareSettings& settings) {
 
 }  // namespace
 
+std::vector<CompareSettings> settings_of_frames(const CompareSettings& settings) {
+  if (!is_sequence(settings)) return {settings};
+  std::vector<CompareSettings> all;
+  for (const int frame : frames_of(settings)) all.push_back(settings_of_frame(settings, frame));
+  return all;
+}
+
 CompareReport compare_pictures(const CompareSettings& settings) {
   if (is_sequence(settings)) return compare_sequence(settings);
   if (!settings.motion.empty())
@@ -449,9 +467,12 @@ Notes warnings_on_sky(const CompareReport& report, const CompareSettings& settin
 
 }  // namespace
 
-Notes notes_on(const CompareReport& report, const CompareSettings& settings) {
+Notes notes_on(const CompareReport& report, const CompareSettings& settings, const CompareLimits& limits) {
   Notes notes = notes_on_channels(report);
   add_new(notes, warnings_on_sky(report, settings));
+  const std::string holes = holes_beyond(report, 0);
+  if (limits == CompareLimits{} && !holes.empty())
+    notes.push_back({NoteCode::holes, holes + "; with any limit, such as --max-rmse, the exit code would be 6"});
   return notes;
 }
 

@@ -31,6 +31,13 @@ struct CompareSettings {
   bool pictures = false;                // keep pictures for the report
 };
 
+/// A value that is NaN or infinite in one file only.
+struct HoleAt {
+  int x = 0, y = 0;  // px, as the files count them
+  std::string channel;
+  bool in_result = false;  // else in the reference
+};
+
 /// Data URLs of the report.
 struct ComparePictures {
   std::string result, reference, error;
@@ -50,8 +57,9 @@ struct FrameComparison {
   std::vector<std::string> channels;
   std::vector<std::string> ao_channels;  // of the reference, if the name of its AO layer told them; else empty
   int width = 0, height = 0;
-  std::optional<Window> common;                     // the compared pixels, if the files have different windows
-  std::size_t count = 0, excluded = 0, masked = 0;  // pixels; see Comparable
+  std::optional<Window> common;  // the compared pixels, if the files have different windows
+  std::size_t count = 0, excluded = 0, masked = 0, holes = 0;  // pixels; see Comparable
+  std::optional<HoleAt> first_hole;
   PlaneErrors errors;
   double psnr = 0;             // infinite for equal pictures
   std::optional<double> ssim;  // none if no compared pixel is 5 pixels from all borders
@@ -73,6 +81,9 @@ struct CompareReport {
 /// The most frames of a sequence that keep their pictures: those with the largest rmse.
 inline constexpr std::size_t kMostPicturedFrames = 12;
 
+/// The settings with the files of each frame. Fails as compare_pictures() does on frames that are missing.
+std::vector<CompareSettings> settings_of_frames(const CompareSettings& settings);
+
 /// Reads and measures the frames. Fails with ErrorKind::usage on settings that contradict each other. Fails with
 /// ErrorKind::input on missing and unreadable files, on pictures that share no pixel or no channel, on pictures of
 /// different data windows with different display windows, and if no pixel is left to compare.
@@ -81,14 +92,18 @@ CompareReport compare_pictures(const CompareSettings& settings);
 /// The frame with the largest rmse.
 const FrameComparison& worst_frame(const CompareReport& report);
 
-/// Notes and warnings to the user beside broken limits.
-Notes notes_on(const CompareReport& report, const CompareSettings& settings);
+/// Says of the frame with the largest share of holes how many it has, and where its first one is; "" if it has no more
+/// than that share.
+std::string holes_beyond(const CompareReport& report, double most);
 
 /// Limits. Each holds for every frame of a sequence.
 struct CompareLimits {
   std::optional<double> max_rmse, max_p99, min_ssim, max_flip;
   std::optional<double> max_bias;   // of its size
   std::optional<double> max_grain;  // needs CompareSettings::depth
+  // share of the pixels within the mask that are finite in one file only, 0 to 1; else none may be
+  std::optional<double> max_excluded;
+  bool operator==(const CompareLimits&) const = default;
 };
 
 struct BrokenLimits {
@@ -97,8 +112,11 @@ struct BrokenLimits {
   ErrorKind kind = ErrorKind::comparison;
 };
 
-/// Checks each limit on the frame with the worst value of its measure.
+/// Checks each limit on the frame with the worst value of its measure. Holes are broken where no limit is given, too.
 BrokenLimits broken_limits(const CompareReport& report, const CompareLimits& limits);
+
+/// Notes and warnings to the user beside broken limits.
+Notes notes_on(const CompareReport& report, const CompareSettings& settings, const CompareLimits& limits);
 
 /// The JSON of a comparison; docs/compare-and-bench.md lists the fields.
 std::string compare_json(const CompareReport& report, const std::vector<std::string>& broken);

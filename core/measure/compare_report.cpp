@@ -66,6 +66,13 @@ Json sky_json(const FrameComparison& frame) {
           {"rmse_without", number(sky.rmse_without)}};
 }
 
+const char* file_of(const HoleAt& hole) { return hole.in_result ? "result" : "reference"; }
+
+Json hole_json(const std::optional<HoleAt>& hole) {
+  if (!hole) return nullptr;
+  return {{"x", hole->x}, {"y", hole->y}, {"channel", hole->channel}, {"in", file_of(*hole)}};
+}
+
 Json window_json(const std::optional<Window>& window) {
   if (!window) return nullptr;
   return {{"x", window->x}, {"y", window->y}, {"width", window->width}, {"height", window->height}};
@@ -81,13 +88,14 @@ void add_parts(Json& json, const FrameComparison& frame) {
   }
   json["bands"] = std::move(bands);
   json["sky_differs"] = sky_json(frame);
+  json["first_hole"] = hole_json(frame.first_hole);
   json["edges"] =
       frame.edges ? Json{{"at", part_json(frame.edges->at)}, {"away", part_json(frame.edges->away)}} : Json(nullptr);
   json["common_window"] = window_json(frame.common);
 }
 
 void add_measures(Json& json, const FrameComparison& frame) {
-  json.update({{"count", frame.count}, {"excluded", frame.excluded}, {"masked", frame.masked}});
+  json.update({{"count", frame.count}, {"excluded", frame.excluded}, {"masked", frame.masked}, {"holes", frame.holes}});
   for (const auto& measure : kMeasures) json[measure.name] = number(measure.of(frame));
 }
 
@@ -100,13 +108,14 @@ Json frame_json(const FrameComparison& frame) {
 
 /// A sequence's own numbers: each is the worst of all frames, the counts are sums.
 void add_worst_measures(Json& json, const CompareReport& report) {
-  std::size_t count = 0, excluded = 0, masked = 0;
+  std::size_t count = 0, excluded = 0, masked = 0, holes = 0;
   for (const auto& frame : report.frames) {
     count += frame.count;
     excluded += frame.excluded;
     masked += frame.masked;
+    holes += frame.holes;
   }
-  json.update({{"count", count}, {"excluded", excluded}, {"masked", masked}});
+  json.update({{"count", count}, {"excluded", excluded}, {"masked", masked}, {"holes", holes}});
   for (const auto& measure : kMeasures) json[measure.name] = number(measure.of(worst_in(report, measure)));
 }
 
@@ -127,6 +136,10 @@ std::pair<std::string, std::string> names_of(const CompareReport& report) {
   return {file(report.result), file(report.reference)};
 }
 
+double share_of_holes(const FrameComparison& frame) {
+  return double(frame.holes) / double(frame.count + frame.excluded);
+}
+
 struct Limit {
   const char* measure;
   const char* option;
@@ -135,8 +148,21 @@ struct Limit {
 
 }  // namespace
 
+std::string holes_beyond(const CompareReport& report, double most) {
+  const FrameComparison& frame = *std::ranges::max_element(report.frames, {}, share_of_holes);
+  if (share_of_holes(frame) <= most) return "";
+  const HoleAt& hole = *frame.first_hole;
+  return fmt::format(
+      "{}{} of {} pixels are NaN or infinite in one file only, the first in the {} at x {}, y {}, channel {}",
+      report.is_sequence ? fmt::format("frame {}: ", frame.frame) : "", frame.holes, frame.count + frame.excluded,
+      file_of(hole), hole.x, hole.y, hole.channel);
+}
+
 BrokenLimits broken_limits(const CompareReport& report, const CompareLimits& limits) {
   BrokenLimits broken;
+  const double most_holes = limits.max_excluded.value_or(0);
+  if (const std::string holes = holes_beyond(report, most_holes); !holes.empty())
+    broken.sentences.push_back(fmt::format("{}, and --max-excluded is {:.6g}", holes, most_holes));
   const std::array all{Limit{"rmse", "--max-rmse", limits.max_rmse}, Limit{"p99", "--max-p99", limits.max_p99},
                        Limit{"ssim", "--min-ssim", limits.min_ssim}, Limit{"flip", "--max-flip", limits.max_flip},
                        Limit{"bias", "--max-bias", limits.max_bias}, Limit{"grain", "--max-grain", limits.max_grain}};

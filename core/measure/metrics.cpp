@@ -187,11 +187,16 @@ Comparable make_comparable(const std::string& what, std::size_t pixels, Values r
                            Values reference_b, Mask mask) {
   const auto copy = [](Values values) { return std::vector<float>(values.begin(), values.end()); };
   Comparable c{copy(result), copy(reference), copy(reference_b), std::vector<std::uint8_t>(pixels, 1)};
+  std::vector<std::uint8_t> holes(pixels);
   for (std::size_t i = 0; i < result.size(); i++) {
-    const bool finite = std::isfinite(result[i]) && std::isfinite(reference[i]) &&
-                        (reference_b.empty() || std::isfinite(reference_b[i]));
-    if (!finite) c.mask[i % pixels] = 0;
+    const bool is_known = std::isfinite(reference[i]) && (reference_b.empty() || std::isfinite(reference_b[i]));
+    const bool is_finite = std::isfinite(result[i]);
+    if (!is_known || !is_finite) c.mask[i % pixels] = 0;
+    if (is_known == is_finite || !counts(mask, i)) continue;
+    holes[i % pixels] = 1;
+    if (!c.first_hole) c.first_hole = Hole{i, is_known};
   }
+  c.holes = std::size_t(std::ranges::count(holes, 1));
   for (std::size_t pixel = 0; pixel < pixels; pixel++) {
     (!counts(mask, pixel) ? c.masked : c.mask[pixel] ? c.count : c.excluded)++;
     if (!counts(mask, pixel)) c.mask[pixel] = 0;

@@ -37,6 +37,12 @@ PlaneErrors compare_planes(Values result, Values reference, Mask mask = {}, Valu
 /// 20 log10(peak / rmse), in dB; infinite for an rmse of 0.
 double psnr(double rmse, double peak = 1);
 
+/// A value that is NaN or infinite in the result or in the reference, and finite in the other one.
+struct Hole {
+  std::size_t value = 0;  // its index in the planes
+  bool in_result = false;
+};
+
 /// Planes for measures that look at neighbourhoods too (ssim, FLIP). They are finite, and equal at pixels that do not
 /// count, so that such a pixel adds no error to its neighbours.
 struct Comparable {
@@ -45,6 +51,8 @@ struct Comparable {
   std::size_t count = 0;                              // compared pixels
   std::size_t excluded = 0;                           // pixels within the mask that a NaN or an infinity leaves out
   std::size_t masked = 0;                             // pixels that the mask leaves out
+  std::size_t holes = 0;                              // of the excluded: see Hole
+  std::optional<Hole> first_hole = {};
 
   /// The reference, or the mean of both references.
   std::vector<float> mean_reference() const;

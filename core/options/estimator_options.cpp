@@ -265,12 +265,14 @@ void add_time_rows(std::vector<SettingRow>& rows) {
 
 void add_estimator_rows(std::vector<SettingRow>& rows) {
   OptionGroup command_line(rows, "Estimator", Effect::none, &Settings::estimator);
-  for (const auto& [name, value, sentence] :
-       {std::tuple("--preset", "NAME|FILE[,...]", "settings from presets; later ones win"),
-        {"--set", "KEY=VALUE", "any setting; alcove run --help-markdown lists the keys"}}) {
+  const auto show = [&](const char* name, const char* value, const char* sentence) -> SettingRow& {
     SettingRow& row = command_line.show({name, value, "", "", sentence});
     row.repeats = row.is_common = true;
-  }
+    return row;
+  };
+  show("--preset", "NAME|FILE[,...]", "settings from presets; later ones win")
+      .implies(FileRole::input, [](const Settings& all) { return all.preset_files; });
+  show("--set", "KEY=VALUE", "any setting; alcove run --help-markdown lists the keys");
   add_radius_rows(rows);
   add_search_rows(rows);
   add_filter_rows(rows);

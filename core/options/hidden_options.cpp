@@ -89,12 +89,13 @@ std::string unless_hidden_sources(const Settings& all) {
 
 std::string unless_motion(const Settings& all) { return unless_given(!all.input.motion.empty(), "--motion"); }
 
-void add_behind_rows(InputGroup& files, InputGroup& pixels) {
+void add_behind_rows(InputGroup& pixels) {
   using S = InputSettings;
-  SettingRow& behind = files.add(
+  SettingRow& behind = pixels.add(
       {"--behind", "FILE", "", "up to 8 times", "depth behind the first surface: peels, back faces, other elements"},
       [](const S& s) { return words_of(s.behind); }, [](S& s, const Words& words) { read_files(words, s.behind); });
   behind.repeats = true;
+  behind.names(FileRole::input);
   behind.idle(unless_ranges);
   SettingRow& channels = pixels.add(
       {"behind-channel", "NAME[,NAME...]", "", "", "the depth channel of --behind, once or for each"},
@@ -112,18 +113,19 @@ void add_behind_rows(InputGroup& files, InputGroup& pixels) {
   kinds.idle([](const Settings& all) { return unless_for_each_file(all.input, all.input.behind_kinds.size()); });
 }
 
-void add_deep_rows(InputGroup& files, InputGroup& pixels) {
+void add_deep_rows(InputGroup& pixels) {
   using S = InputSettings;
-  files
+  pixels
       .add(
           {"--deep", "FILE", "", "up to 8 times", "a deep EXR, for what its samples show behind the first surface"},
           [](const S& s) { return words_of(s.deep); }, [](S& s, const Words& words) { read_files(words, s.deep); })
+      .names(FileRole::input)
       .repeats = true;
   pixels.number("deep-opacity", &S::deep_opacity, "", between(0, 1), "of a deep sample, from which it is a surface")
       .idle([](const Settings& all) { return unless_given(has_deep(all.input), "--deep"); });
 }
 
-void add_view_rows(InputGroup& files, InputGroup& pixels) {
+void add_view_rows(InputGroup& pixels) {
   using S = InputSettings;
   pixels.flag("other-views", &S::other_views, "of a stereo file: what its other views see of the same instant")
       .idle(unless_ranges);
@@ -135,7 +137,8 @@ void add_view_rows(InputGroup& files, InputGroup& pixels) {
           [](S& s, const std::string& text) { return read_around(text, s); },
           fmt::format("is neither all nor a whole number from 0 to {}", kMostAround))
       .others_idle(unless_ranges);
-  files.text("--motion", &S::motion, "FILE", "an EXR of motion vectors, in pixels, which tell what moves")
+  pixels.text("--motion", &S::motion, "FILE", "an EXR of motion vectors, in pixels, which tell what moves")
+      .names(FileRole::input)
       .idle([](const Settings& all) {
         const InputSettings& input = all.input;
         const bool takes_frames = input.around > 0 || input.around_all || input.accumulate > 0;
@@ -152,11 +155,10 @@ void add_view_rows(InputGroup& files, InputGroup& pixels) {
 }  // namespace
 
 void add_hidden_rows(std::vector<SettingRow>& rows) {
-  OptionGroup files(rows, "Hidden surfaces", Effect::input, &Settings::input),
-      pixels(rows, "Hidden surfaces", Effect::pixels, &Settings::input);
-  add_behind_rows(files, pixels);
-  add_deep_rows(files, pixels);
-  add_view_rows(files, pixels);
+  OptionGroup pixels(rows, "Hidden surfaces", Effect::pixels, &Settings::input);
+  add_behind_rows(pixels);
+  add_deep_rows(pixels);
+  add_view_rows(pixels);
   OptionGroup kept(rows, "Hidden surfaces", Effect::pixels, &Settings::estimator, true);
   kept.number("hidden", &EstimatorSettings::hidden, "surfaces of a pixel", between(0, kMostKept),
               "kept behind the first, the nearest ones; 0: none")

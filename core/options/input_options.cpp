@@ -7,7 +7,7 @@
 
 #include "core/base/text.h"
 #include "core/frame/camera/camera.h"
-#include "core/frame/input_rules.h"
+#include "core/frame/find/input_rules.h"
 #include "core/frame/raw_plane.h"
 #include "core/options/options.h"
 #include "core/options/reasons.h"
@@ -88,7 +88,7 @@ std::string unless_objects(const Settings& all) {
 /// A row of a text that is a file, or else names objects.
 SettingRow& file_or_objects(std::vector<SettingRow>& rows, const char* option, std::string InputSettings::*file,
                             std::string InputSettings::*objects, const char* help) {
-  return OptionGroup(rows, "Input", Effect::pixels_or_picture, &Settings::input)
+  return OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
       .own(
           {option, "FILE|NAME[,NAME...]", "", "", help},
           [=](const InputSettings& s) { return (s.*file).empty() ? s.*objects : s.*file; },
@@ -96,7 +96,8 @@ SettingRow& file_or_objects(std::vector<SettingRow>& rows, const char* option, s
             s.*file = names_picture(text) ? text : "";
             s.*objects = names_picture(text) ? "" : text;
             return true;
-          });
+          })
+      .names(FileRole::input, names_picture);
 }
 
 void add_occluder_rows(std::vector<SettingRow>& rows) {
@@ -105,8 +106,9 @@ void add_occluder_rows(std::vector<SettingRow>& rows) {
                   "only these block: a picture of coverage, or objects as in --matte-object");
   file_or_objects(rows, "ignore", &S::ignore, &S::ignored_objects,
                   "these do not block, but what --behind or --deep show behind them; as occluders");
-  OptionGroup(rows, "Input", Effect::input, &Settings::input)
+  OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
       .text("objects", &S::objects, "FILE", "an EXR that tells the objects of occluders and ignore; else INPUT")
+      .names(FileRole::input)
       .idle(unless_objects);
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
       .text("object-channel", &S::object_channel, "NAME", "the channel of their numbers, or the layer of a Cryptomatte")
@@ -115,24 +117,29 @@ void add_occluder_rows(std::vector<SettingRow>& rows) {
 
 void add_file_rows(std::vector<SettingRow>& rows) {
   using S = InputSettings;
-  OptionGroup inputs(rows, "Input", Effect::input, &Settings::input);
-  inputs.text("--depth", &S::depth, "FILE", "of the depth alone: EXR, DDS or TIFF").is_common = true;
+  OptionGroup inputs(rows, "Input", Effect::pixels, &Settings::input);
+  const auto file = [&](const char* name, std::string S::*path, const char* sentence) -> SettingRow& {
+    return inputs.text(name, path, "FILE", sentence).names(FileRole::input);
+  };
+  file("--depth", &S::depth, "of the depth alone: EXR, DDS or TIFF").is_common = true;
+  file("--position", &S::position, "an EXR of the positions, instead of a depth");
   inputs.text("--normal", &S::normal, "FILE|none", "of the normals alone: EXR, DDS, TIFF or PNG; none: made from depth")
+      .names(FileRole::input, [](const std::string& text) { return lower_case(text) != "none"; })
       .is_common = true;
-  inputs.text("--position", &S::position, "FILE", "an EXR of the positions, instead of a depth");
-  SettingRow& beauty = inputs.text("--beauty", &S::beauty, "FILE", "an EXR of the beauty, and of its parts of light");
+  SettingRow& beauty = file("--beauty", &S::beauty, "an EXR of the beauty, and of its parts of light");
   beauty.is_common = true;
   beauty.idle(unless_beauty_serves);
-  inputs.text("material-ao", &S::material_ao, "FILE", "an EXR of the materials' own AO, multiplied in");
-  inputs.text("--matte", &S::matte, "FILE", "where AO is wanted, as coverage from 0 to 1");
+  file("material-ao", &S::material_ao, "an EXR of the materials' own AO, multiplied in");
+  file("--matte", &S::matte, "where AO is wanted, as coverage from 0 to 1");
   add_occluder_rows(rows);
-  OptionGroup(rows, "Input", Effect::pixels_or_input, &Settings::input, true)
+  OptionGroup(rows, "Input", Effect::pixels, &Settings::input, true)
       .own(
           {"albedo", "FILE|NUMBER", "", "0 to 1",
            "the diffuse colour, of all surfaces or in an EXR; else the beauty's"},
           [](const S& s) { return s.albedo_value ? fmt::format("{}", *s.albedo_value) : s.albedo; },
           [](S& s, const std::string& text) { return read_albedo(text, s); },
           "is neither a file nor a number from 0 to 1")
+      .names(FileRole::input, [](const std::string& text) { return !number_of(text); })
       .idle(unless_multi_bounce);
 }
 
@@ -174,7 +181,7 @@ void add_channel_rows(std::vector<SettingRow>& rows) {
       {"--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "", "compute and write only this region"}, say_roi,
       [](S& s, const std::string& text) { return read_roi(text, s.roi); }, "is not X,Y,WIDTH,HEIGHT in whole pixels");
   pixels.word("supersampling", &S::supersampling, {"auto", "1", "2", "3", "4"},
-              "pixels of depth for one that is written, in x and in y; auto: by the beauty");
+              "pixels of depth for one that is written, in x and in y; auto: 1");
   pixels.word("--source", &S::source, source_names(), "the program that wrote the frame; auto: by header and channels");
 }
 
@@ -242,8 +249,18 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
   using S = InputSettings;
   OptionGroup(rows, "Input", Effect::none, &Settings::input)
       .flag("--strict", &S::strict, "guesses and warnings are errors");
-  OptionGroup(rows, "Input", Effect::content, &Settings::input)
+  OptionGroup(rows, "Input", Effect::none, &Settings::input)
+      .own(
+          {"allow", "normals-disagree", "", "", "faults that are no errors: normals that mostly disagree with depth"},
+          [](const S& s) { return s.allow; },
+          [](S& s, const std::string& text) {
+            s.allow = text;
+            return std::ranges::all_of(split(text), [](const std::string& code) { return code == "normals-disagree"; });
+          },
+          "is no list of codes; it takes normals-disagree");
+  OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
       .text("--camera", &S::camera, "FILE.json|.chan", "the camera; see docs/inputs.md")
+      .names(FileRole::input)
       .is_common = true;
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
       .word("--chan-rotation", &S::chan_rotation, {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"},

@@ -248,7 +248,7 @@ void check_scales(const Settings& settings) {
            e.estimator == Estimator::hbao ? "hbao" : "crytek");
   for (const char* name : {"relight", "relight-open"})
     if (settings.output.environment.empty() && std::ranges::count(split(settings.output.aovs), name) > 0)
-      fail(ErrorKind::usage, "--aov {}: it is the light of a sky: give --environment SKY.exr", name);
+      fail(ErrorKind::usage, "--aov {}: it is the light of a sky, which --environment gives", name);
   if (e.further_radii.empty()) return;
   const auto radii = radii_of(e);
   if (radii.size() > kMostRadii)

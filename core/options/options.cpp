@@ -99,12 +99,14 @@ void add_report_rows(std::vector<SettingRow>& rows) {
   const auto shows_lines = [](const Settings& all) {
     return all.progress.kind == "bar" || all.progress.kind == "plain";
   };
-  files.text("--stats", &OutputSettings::stats, "FILE.json", "times of every pass, counts and totals");
+  files.text("--stats", &OutputSettings::stats, "FILE.json", "times of every pass, counts and totals")
+      .names(FileRole::report);
   progress
       .word("--progress", &ProgressSettings::kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
             "plain: one line per frame; percent, openjd: on standard output, as farms read it")
       .idle([=](const Settings& all) { return if_given(shows_lines(all) && all.progress.quiet, "--quiet", kWhy); });
-  files.text("--log-json", &OutputSettings::log_json, "FILE|-", "one JSON object per line for every event");
+  files.text("--log-json", &OutputSettings::log_json, "FILE|-", "one JSON object per line for every event")
+      .names(FileRole::report, [](const std::string& text) { return text != "-"; });
   progress.flag("-v,--verbose", &ProgressSettings::verbose, "say more: the time of every pass");
   progress.flag("-q,--quiet", &ProgressSettings::quiet, "say nothing but errors").idle([=](const Settings& all) {
     return if_given(shows_lines(all), "--progress", kWhy);

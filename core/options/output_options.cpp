@@ -42,6 +42,13 @@ bool read_tint(const std::string& text, std::array<double, 3>& tint) {
   return true;
 }
 
+/// The pictures of the debug views.
+Words debug_files(const Settings& all) {
+  Words files;
+  for (const auto* view : debug_views_of(all.output)) files.push_back(debug_path(all.output, *view));
+  return files;
+}
+
 void add_composite_rows(std::vector<SettingRow>& rows) {
   using S = OutputSettings;
   OptionGroup pixels(rows, "Output", Effect::pixels, &Settings::output);
@@ -80,20 +87,20 @@ void add_composite_rows(std::vector<SettingRow>& rows) {
       .idle(unless_composite);
 }
 
-/// Whether depth and normals may be larger than what is written is seen from their files.
 std::string unless_supersampled(const Settings& all) {
   const std::string& factor = all.input.supersampling;
-  if (factor == "1") return "supersampling is 1";
-  return unless_given(factor != "auto" || !all.output.composite.empty(),
-                      "--set supersampling, and no beauty that is smaller than the depth");
+  return factor == "1" ? "supersampling is 1" : unless_given(factor != "auto", "--set supersampling");
 }
 
 void add_preview_rows(std::vector<SettingRow>& rows) {
   using S = OutputSettings;
   OptionGroup pixels(rows, "Output", Effect::pixels, &Settings::output);
-  OptionGroup(rows, "Output", Effect::display, &Settings::output)
-      .text("ocio", &S::ocio, "FILE", "OpenColorIO configuration for the preview; else that of OCIO, else sRGB")
-      .idle(unless_shown_composite);
+  // What it says is known by its bytes, whether the variable names it or the option.
+  OptionGroup files(rows, "Output", Effect::none, &Settings::output);
+  SettingRow& ocio =
+      files.text("ocio", &S::ocio, "FILE", "OpenColorIO configuration for the preview; else that of OCIO, else sRGB");
+  ocio.names(FileRole::input).idle(unless_shown_composite);
+  ocio.is_of_frame = false;
   pixels.text("display", &S::display, "NAME", "of the OpenColorIO configuration; else its default one")
       .idle(unless_shown_composite);
   pixels.text("view-transform", &S::view_transform, "NAME", "the view of the display; else its default one")
@@ -115,12 +122,15 @@ void add_output_rows(std::vector<SettingRow>& rows) {
       results(rows, "Output", Effect::pixels, &Settings::output, true);
   OptionGroup files(rows, "Output", Effect::none,
                     &Settings::output);  // Whether a file is there is looked at when a run is resumed.
-  files.text("-o,--output", &S::output, "FILE.exr", "the AO, 1 = open, and what else --aov names").is_common = true;
+  files.text("-o,--output", &S::output, "FILE.exr", "the AO, 1 = open, and what else --aov names")
+      .names(FileRole::output)
+      .is_common = true;
   word_list(results, "--aov", &S::aovs, fmt::format("what OUTPUT holds: {}", fmt::join(aov_names(), ", "))).is_common =
       true;
-  OptionGroup(rows, "Output", Effect::input, &Settings::output)
+  pixels
       .text("--environment", &S::environment, "SKY.exr",
-            "lat-long light: OUTPUT holds relight, what white surfaces reflect of it with occlusion");
+            "lat-long light: OUTPUT holds relight, what white surfaces reflect of it with occlusion")
+      .names(FileRole::input);
   results.choice("ao-channels", &S::ao_channels, "mono: Y; rgb: R, G, B").others_idle([](const Settings& all) {
     return unless_aov(all, {"ao"});
   });
@@ -147,14 +157,17 @@ void add_output_rows(std::vector<SettingRow>& rows) {
         return unless_given(is_seen, "--composite and no --set ao-channels=rgb");
       });
   files.text("--composite", &S::composite, "FILE.exr", "the beauty with AO in its ambient light, or in all of it")
+      .names(FileRole::output)
       .is_common = true;
   add_composite_rows(rows);
   files
       .text("--preview", &S::preview, "FILE.png",
             "of the composite, or of the AO; of all frames in one where the name has no number")
+      .names(FileRole::output)
       .is_common = true;
   word_list(files, "debug", &S::debug,
-            fmt::format("pictures beside OUTPUT, ao.VIEW.png: {}", fmt::join(debug_view_names(), ", ")));
+            fmt::format("pictures beside OUTPUT, ao.VIEW.png: {}", fmt::join(debug_view_names(), ", ")))
+      .implies(FileRole::output, debug_files);
   pixels.choice("--type", &S::type, "sample type of OUTPUT; depth is always float");
   files.word("compression", &S::compression, {"none", "rle", "zips", "zip", "piz"}, "of OUTPUT");
   files.flag("no-mkdir", &S::no_mkdir, "a missing folder of an output is an error; else it is made");

@@ -13,7 +13,7 @@
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/estimate/sites.h"
 #include "core/chain/results/confidence.h"
-#include "core/frame/input_rules.h"
+#include "core/frame/find/input_rules.h"
 
 namespace alcove {
 namespace {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/option_words.h"
 #include "core/base/settings.h"
 
@@ -22,13 +23,11 @@ namespace alcove {
 /// What an option has to do with the pixels of an output: by this, --resume knows which files were made otherwise.
 enum class Effect {
   none,    // The pixels come out the same: a device, threads, a report, the name or compression of an output.
-  pixels,  // Its value counts.
-  input,   // It names an input, which is known by its bytes (alcove/inputs): only how often it is given counts.
-  pixels_or_input,    // A number counts by its value, anything else as the name of an input.
-  pixels_or_picture,  // The name of a picture counts as that of an input, anything else by its value.
-  content,            // It names a file whose content counts, and not its place.
-  display,            // As `content`, but only where a preview shows a composite.
+  pixels,  // Its value counts. Of an input, only its being given does, since it is known by its bytes (alcove/inputs).
 };
+
+/// What a command does with the files that an option names: it reads them, writes one for each frame, or writes one.
+enum class FileRole { none, input, output, report };
 
 using Words = std::vector<std::string>;
 
@@ -47,6 +46,9 @@ struct OptionRow {
   bool is_required = false;  // of arguments without a name
   bool is_common = false;    // among the few that --help shows; --help-all shows all
   bool in_library = false;   // libalcove takes it: not what names files, frames or reports, or how files are written
+  FileRole role = FileRole::none;                             // of its files
+  bool is_of_frame = false;                                   // they may have a place for the frame number
+  std::function<bool(const std::string&)> is_file = nullptr;  // which of its values name one; null: all
 
   /// Whether it is set by --set and presets alone.
   bool is_only_key() const;
@@ -69,6 +71,8 @@ struct RowOf : OptionRow {
   // Each tells why the value has no effect beside the others, in a sentence; "" where it has one, or asks for nothing.
   // A value without effect that is typed is refused; of a preset it is left out.
   std::vector<std::function<std::string(const Options&)>> idle_reasons = {};
+  // Gives the files of an option whose words are not their names; null: those of its words that are.
+  std::function<Words(const Options&)> derived_files = nullptr;
   Words usual = {};                 // the words of the default
   bool usual_asks_nothing = false;  // the default is no mistake, whatever is beside it
 
@@ -81,6 +85,28 @@ struct RowOf : OptionRow {
   RowOf& others_idle(std::function<std::string(const Options&)> why) {
     usual_asks_nothing = true;
     return idle(std::move(why));
+  }
+
+  /// Says that the option's words name files, and which of them do.
+  RowOf& names(FileRole file_role, std::function<bool(const std::string&)> names_file = nullptr) {
+    role = file_role;
+    is_of_frame = role != FileRole::report;
+    is_file = std::move(names_file);
+    return *this;
+  }
+  /// The same of files that its words are not the names of.
+  RowOf& implies(FileRole file_role, std::function<Words(const Options&)> files) {
+    role = file_role;
+    derived_files = std::move(files);
+    return *this;
+  }
+  /// The files that it names, if it has this role.
+  std::vector<NamedFile> files(const Options& options, FileRole wanted) const {
+    std::vector<NamedFile> found;
+    if (role != wanted) return found;
+    for (const auto& word : derived_files ? derived_files(options) : words(options))
+      if (!word.empty() && (!is_file || is_file(word))) found.push_back({long_name(), word});
+    return found;
   }
 
   /// Whether presets and --set may hold it.

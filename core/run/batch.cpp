@@ -3,9 +3,7 @@
 #include "core/run/batch.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
-#include <set>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -26,79 +24,10 @@
 #include "core/run/memory.h"
 #include "core/run/pipeline.h"
 #include "core/run/resume.h"
+#include "core/run/run_files.h"
 
 namespace alcove {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// Fails where an output is an input, or another output.
-void check_files(const Settings& settings) {
-  auto outputs = outputs_of(settings.output);
-  const auto reports = reports_of(settings.output);
-  outputs.insert(outputs.end(), reports.begin(), reports.end());
-  for (std::size_t i = 0; i < outputs.size(); i++) {
-    require_no_input(outputs[i].path, outputs[i].option, input_files(settings.input));
-    for (std::size_t j = 0; j < i; j++)
-      if (same_file(outputs[j].path, outputs[i].path))
-        fail(ErrorKind::usage, "{}: {} and {} name the same file", outputs[i].path, outputs[j].option,
-             outputs[i].option);
-  }
-  require_endings(settings.output);
-}
-
-/// The folders of a run's files that are not there before it. The destructor removes those that are empty, so that
-/// nothing is left of a run that is refused only once its frames are read.
-class NewFolders {
- public:
-  explicit NewFolders(const FramePlan& plan) {
-    for (const int frame : plan.frames()) add(outputs_of(plan.at(frame).output));
-    add(reports_of(plan.settings().output));
-  }
-  NewFolders(const NewFolders&) = delete;
-  NewFolders& operator=(const NewFolders&) = delete;
-  ~NewFolders() {
-    std::error_code not_empty;
-    for (auto folder = folders_.rbegin(); folder != folders_.rend(); folder++) fs::remove(*folder, not_empty);
-  }
-
- private:
-  void add(const std::vector<OutputFile>& files) {
-    std::error_code error;
-    for (const auto& file : files)
-      for (std::string folder = folder_of(file.path);
-           !folders_.contains(folder) && fs::status(folder, error).type() == fs::file_type::not_found;
-           folder = folder_of(folder))
-        folders_.insert(folder);
-  }
-
-  std::set<std::string> folders_;  // what lies in another one comes after it
-};
-
-/// Fails where a file of the run cannot be made. Removes unfinished files that killed runs have left beside them.
-void prepare_outputs(const FramePlan& plan) {
-  const OutputSettings& output = plan.settings().output;
-  std::set<std::string> folders;
-  std::unordered_map<std::string, const char*> options;  // by name
-  const auto prepare = [&](const OutputFile& file) {
-    const auto [known, is_new] = options.try_emplace(file.path, file.option);
-    const bool is_shared =
-        plan.has_contact_sheet() && file.path == output.preview && std::string_view(file.option) == known->second;
-    if (!is_new && !is_shared)
-      fail(ErrorKind::usage, "{}: {} and {} of two frames name the same file", file.path, known->second, file.option);
-    if (output.no_mkdir)
-      require_writable(file.path, file.option);
-    else
-      require_makeable(file.path, file.option);
-  };
-  for (const int frame : plan.frames())
-    for (const auto& file : outputs_of(plan.at(frame).output)) {
-      prepare(file);
-      folders.insert(folder_of(file.path));
-    }
-  for (const auto& file : reports_of(output)) prepare(file);
-  for (const auto& folder : folders) remove_unfinished(folder);
-}
 
 // The division of cores and memory.
 
@@ -116,7 +45,7 @@ class RunDevice {
       : settings_(plan.settings()), plan_(plan), settled_(settled), frames_(frames) {
     const DeviceSettings& d = settings_.device;
     lanes_.emplace(gpu::DeviceOptions{d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, share_cores());
-    RunMemory memory = memory_for_frames(d, info());
+    RunMemory memory = memory_for_frames(settings_, info());
     if (settled_) {
       require_room_for_others(memory, plan_, *settled_, settings_, frames_);
       require_buffers_for_others(info().buffer_bytes, *settled_, settings_);
@@ -137,7 +66,7 @@ class RunDevice {
   /// Divides the cores among the frames in flight on a CPU, and tells the codecs and lavapipe how many threads each
   /// has. A CPU device reads that when it is made, and so before anybody knows whether it is one. Gives the lanes.
   int share_cores() {
-    const RunMemory memory = memory_of_host(settings_.device);
+    const RunMemory memory = memory_of_host(settings_);
     const int lanes = lanes_within(memory, threads_), of_a_frame = threads_ / lanes;
     set_exr_memory(memory.host_bytes / kCodecPart / std::uint64_t(lanes));
     set_exr_threads(lanes == 1 ? threads_ : std::max(0, threads_ - lanes));
@@ -174,7 +103,7 @@ class Batch {
   /// Computes the frames; those that a lost device took with it once more, on a fresh one.
   void compute(const std::vector<int>& frames) {
     const Settings& settings = plan_.settings();
-    const std::uint64_t bytes = memory_of_host(settings.device).host_bytes;
+    const std::uint64_t bytes = memory_of_host(settings).host_bytes;
     set_exr_memory(bytes / kCodecPart);
     const auto settled = plan_.is_sequence() ? look_.settle(bytes) : std::nullopt;
     if (settled) note(FrameTally::notes_on(*settled, settings.input));
@@ -308,16 +237,16 @@ RunReport run_frames(FirstLook& look, const RunWatch& watch) {
   report.missing = plan.missing();
   const NewFolders new_folders(plan);
   if (!plan.frames().empty()) {
-    const Settings first = plan.at(plan.frames().front());
-    check_files(first);
+    refuse_overwriting(plan);
     prepare_outputs(plan);
-    report.options = options_digest(first);
+    require_endings(plan.at(plan.frames().front()).output);
+    report.options = options_digest(settings);
   }
   InputIdentities identities(plan);
   const auto [wanted, notes] = frames_to_compute(plan, report.options, identities);
   add_new(report.notes, notes);
   Batch batch(look, identities, watch, report);
-  make_folders(reports_of(settings.output), settings.output);
+  make_folders(files_of(settings, FileRole::report), settings.output);
   if (watch.begin) watch.begin(report, int(plan.frames().size()));
   batch.tell_kept(wanted);
   if (!wanted.empty()) batch.compute(wanted);
@@ -329,7 +258,7 @@ RunReport run_frames(FirstLook& look, const RunWatch& watch) {
   report.wall_s = wall.ms() / 1000;
   if (!settings.output.stats.empty()) {
     // Another chunk's run, refused meanwhile, may have taken the folder for its own and away.
-    make_folders(reports_of(settings.output), settings.output);
+    make_folders(files_of(settings, FileRole::report), settings.output);
     write_whole(settings.output.stats, stats_json(report));
   }
   return report;

@@ -10,7 +10,7 @@
 #include "core/base/text.h"
 #include "core/chain/chain.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "core/run/frame_run.h"
 #include "core/run/memory.h"
 #include "core/run/shot.h"
@@ -271,7 +271,7 @@ EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, Prep
   if (limits.allow(whole)) {
     compute(whole, whole);
   } else {
-    const WindowLimits of_parts = limits.in_parts(source);
+    const WindowLimits of_parts = limits.in_parts(source, settings);
     read_for_parts(source, settings, read, of_parts.room.bytes - of_parts.kept);
     Surroundings surroundings(source, settings, read[RawPlane::depth]);
     for (const auto& row : tiles_of(whole, surroundings, of_parts, source))

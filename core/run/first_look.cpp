@@ -10,12 +10,14 @@
 #include "core/base/text.h"
 #include "core/chain/results/outputs.h"
 #include "core/formats/sequence.h"
-#include "core/frame/radius.h"
-#include "core/frame/settle.h"
+#include "core/frame/pixels/radius.h"
+#include "core/frame/settle/settle.h"
 #include "core/options/options.h"
 #include "core/run/frame_files.h"
 #include "core/run/memory.h"
 #include "core/run/resume.h"
+#include "core/run/run_files.h"
+#include "core/run/tiles.h"
 
 namespace alcove {
 namespace {
@@ -43,9 +45,27 @@ Notes notes_on_missing_around(const FramePlan& plan) {
                        frames_text(missing))}};
 }
 
+/// The note on files of one frame whose names have another frame's number. Peels and cameras are counted otherwise.
+Notes notes_on_other_frames(const FramePlan& plan) {
+  const Settings& settings = plan.settings();
+  const auto number = plan.is_sequence() ? plan.all().front() : frame_number_in(main_input(settings.input)).number;
+  if (plan.all().size() != 1 || !number) return {};
+  Notes notes;
+  for (const auto& row : file_rows()) {
+    if (row.group != "Input" || !row.is_of_frame || row.key() == "camera") continue;
+    for (const auto& [option, path] : row.files(plan.at(*number), FileRole::input))
+      if (const FrameNumber other = frame_number_in(path); other.number && other.number != number)
+        notes.push_back({NoteCode::other_frame, fmt::format("{} {}: by the digits {} of its name it is of frame {}, "
+                                                            "and the frame is {}",
+                                                            option, path, other.digits, *other.number, *number)});
+  }
+  return notes;
+}
+
 /// Names tell these: numbers that are left out, frames that others do without, and the number of a single frame.
 Notes notes_on_names(const FramePlan& plan) {
   Notes notes = notes_on_holes(plan);
+  add_new(notes, notes_on_other_frames(plan));
   refuse_warnings(notes, plan.settings(), main_input(plan.settings().input));
   // The settings say that frames may be missing, so that this is never an error.
   add_new(notes, notes_on_missing_around(plan));
@@ -195,7 +215,8 @@ MissingOptions FirstLook::missing_options() {
     }
   } catch (const Error& error) {
     // A name that no command could have comes first, since it would be a part of the one that is proposed.
-    if (error.kind() == ErrorKind::usage) throw;
+    std::error_code none;
+    if (error.kind() == ErrorKind::usage || std::filesystem::is_directory(main_input(settings_.input), none)) throw;
     missing.unreadable = error;
   }
   return missing;
@@ -289,6 +310,21 @@ std::string at_once_text(const RunMemory& memory, const FramePlan& plan, const F
   return fmt::format("{} at once, for which there is room (--memory)", count);
 }
 
+/// The least that --memory may be, with its cost, and what computes a frame at once; "" where its depth is unreadable.
+std::string needs_text(FrameSource& source, const Settings& settings, const RunMemory& memory,
+                       const FrameMemory& frame) {
+  const Room room{.bytes = memory.host_bytes, .buffer_bytes = Room::kEndless, .program_bytes = memory.program_bytes};
+  const WindowLimits limits{frame, room, longest_side(settings.estimator)};
+  try {
+    const MemoryNeeds needs = memory_needs(source, settings, limits);
+    const std::string at_once = limits.option_for(needs.at_once) + " computes a frame at once";
+    if (needs.parts == 1) return at_once + ", and nothing less is enough";
+    return fmt::format("{}, {} is the least: {}", at_once, limits.option_for(needs.least), needs.cost());
+  } catch (const Error&) {
+    return "";  // the frame fails by itself, and others of a sequence may not
+  }
+}
+
 }  // namespace
 
 std::string plan_text(FirstLook& look) {
@@ -305,14 +341,19 @@ std::string plan_text(FirstLook& look) {
   for (const auto& note : notes) line(level_of(note), line_of(note, ""));
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
+  refuse_overwriting(plan);
   require_endings(first.output);
-  for (const auto& path : named_paths())
-    if (!path.of(first).empty()) line(path.option, span_text(path.of(first), path.of(last)));
+  for (const auto& row : file_rows()) {
+    if (!row.is_of_frame) continue;
+    const auto of_first = row.files(first, row.role), of_last = row.files(last, row.role);
+    for (std::size_t i = 0; i < of_first.size(); i++)
+      line(of_first[i].option, span_text(of_first[i].path, of_last[i].path));
+  }
 
+  set_exr_threads(threads_of(first.device));  // as a run does: codecs take memory for each
   FrameSource source = look.open(first, plan.frames().front());
   // Frames of a sequence are read as one of them that shows enough.
-  if (!plan.is_sequence() && !source.evidence)
-    settle_by_rows(source, first.input, memory_of_host(first.device).host_bytes);
+  if (!plan.is_sequence() && !source.evidence) settle_by_rows(source, first.input, memory_of_host(first).host_bytes);
   std::vector<std::string> channels;
   for (const auto& plane : source.channels.planes.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);
@@ -324,12 +365,14 @@ std::string plan_text(FirstLook& look) {
   const std::uint64_t bytes = frame.of(source.reading.data).host;
   InputIdentities identities(plan);
   const auto [wanted, resumed] = frames_to_compute(plan, options_digest(first), identities);
-  require_room_for_others(memory_of_host(first.device), plan, source, first, wanted);
-  const RunMemory host = memory_of_host(first.device);
-  const std::uint64_t memory = without_shared_frames(host, plan, source, first, wanted, 1).host_bytes;
+  const RunMemory host = memory_of_host(first);
+  require_room_for_others(host, plan, source, first, wanted);
+  const RunMemory of_frames = without_shared_frames(host, plan, source, first, wanted, 1);
+  const std::uint64_t memory = of_frames.host_bytes;
   line("size", to_string(written_picture(source)));
   const std::string at_once = bytes > memory ? "in tiles" : at_once_text(host, plan, source, first, wanted);
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
+  if (const std::string needs = needs_text(source, first, of_frames, frame); !needs.empty()) line("--memory", needs);
   const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared) {
     line(name, fmt::format("up to {} of the {} frames of the shot: {} MiB of {} for each at once, beside what it takes "
                            "itself",

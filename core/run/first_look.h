@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/settings.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 #include "core/run/plan.h"
 
 namespace alcove {

@@ -20,9 +20,9 @@
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
 #include "core/formats/png.h"
-#include "core/frame/behind.h"
+#include "core/frame/find/behind.h"
 #include "core/frame/raw_plane.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "core/run/tiles.h"
 
 namespace alcove {

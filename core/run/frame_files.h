@@ -14,7 +14,7 @@
 #include "core/formats/color.h"
 #include "core/formats/exr.h"
 #include "core/formats/sheet.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 
 namespace alcove {
 

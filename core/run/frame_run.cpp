@@ -14,8 +14,10 @@
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
-#include "core/frame/settle.h"
+#include "core/frame/pixels/detectors.h"
+#include "core/frame/settle/settle.h"
 #include "core/run/memory.h"
+#include "core/run/run_files.h"
 #include "kernels/hidden/hidden.h"
 
 namespace alcove {
@@ -129,6 +131,9 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
   report_.repaired_pixels =
       counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
   report_.notes = notes_on(source, settings.input);
+  if (counts_.sky == source.reading.data.pixels())
+    add_new(report_.notes,
+            {{NoteCode::no_surfaces, no_surfaces_text(source.channels[RawPlane::depth].front().channel)}});
   add_new(report_.notes, behind_.notes(source));
   add_new(report_.notes, deep_notes(source));
   if (has_ao_) {
@@ -241,7 +246,7 @@ class FrameRun {
     if (!run_.planes && !source.region && limits.allow(source.reading.data))
       run_whole(source, source.reading.data);
     else
-      run_parts(source, limits.in_parts(source));
+      run_parts(source, limits.in_parts(source, settings_));
     if (report_.parts > 1) note_parts(source);
     report_.total_ms = total.ms();
   }
@@ -267,8 +272,11 @@ class FrameRun {
     const Notes own = std::exchange(source.notes, settled.notes);
     add_new(source.notes, own);
     source.suspicious = settled.suspicious;
-    // A damaged file harms its own frame alone; others that are damaged fail when they are read.
-    std::erase_if(source.suspicious, [](const Note& note) { return note.code == NoteCode::damaged_file; });
+    // A damaged file harms its own frame alone; others that are damaged fail when they are read. An empty frame is
+    // counted by itself.
+    std::erase_if(source.suspicious, [](const Note& note) {
+      return note.code == NoteCode::damaged_file || note.code == NoteCode::no_surfaces;
+    });
   }
 
   /// Ends the frame before it is computed where what is known then counts as an error.
@@ -356,13 +364,8 @@ class FrameRun {
 
   /// By what is noted so far.
   Provenance provenance() const {
-    const bool has_own_camera = settings_.input.camera != run_.plan.at(run_.plan.frames().front()).input.camera;
-    return {has_own_camera ? options_digest(settings_) : run_.provenance.options,
-            run_.provenance.device,
-            run_.identities.of(frame_),
-            header_text(report_.notes),
-            text_of(others_),
-            text_of(estimates_)};
+    return {run_.provenance.options,    run_.provenance.device, run_.identities.of(frame_),
+            header_text(report_.notes), text_of(others_),       text_of(estimates_)};
   }
 
   void run_whole(FrameSource& source, const Window& computed) {
@@ -374,19 +377,31 @@ class FrameRun {
     finish_tally(source);
     if (run_.take_results) return run_.take_results(source, computed, outputs);
     const Stopwatch writing;
-    std::vector<std::vector<float>> regions;
-    auto planes = result_planes(outputs, computed, settings_.output);
-    for (auto& plane : planes)
-      if (source.region) plane = regions.emplace_back(cropped(plane, computed, *source.region));
     const Provenance by = provenance();
-    make_folders(outputs_of(settings_.output), settings_.output);
+    make_folders(files_of(settings_, FileRole::output), settings_.output);
     FrameWriter writer(source, settings_, by);
-    writer.write(planes);
+    write_planes(writer, written_of(source), computed, result_planes(outputs, computed, settings_.output));
     TakePreview take_preview;
     if (run_.take_preview) take_preview = [this](const auto& shown) { run_.take_preview(frame_, shown); };
     write_pictures(source, computed, outputs, run_.transform, settings_.output, by, take_preview);
     writer.finish(by.notes);
     report_.write_ms += writing.ms();
+  }
+
+  /// Writes the planes of a window over `written`, a part of it or all; so many rows at once are cropped or made half.
+  static void write_planes(FrameWriter& writer, const Window& written, const Window& computed,
+                           const std::vector<std::span<const float>>& planes) {
+    Window rows = written;
+    for (; rows.y < written.y + written.height; rows.y += kRowsWritten) {
+      rows.height = std::min(kRowsWritten, written.y + written.height - rows.y);
+      std::vector<std::vector<float>> regions;
+      std::vector<std::span<const float>> parts;
+      const std::size_t first = std::size_t(rows.y - computed.y) * std::size_t(computed.width);
+      for (const auto& plane : planes)
+        parts.push_back(written == computed ? plane.subspan(first, rows.pixels())
+                                            : regions.emplace_back(cropped(plane, computed, rows)));
+      writer.write(parts);
+    }
   }
 
   void finish_tally(const FrameSource& source) {
@@ -397,12 +412,12 @@ class FrameRun {
   void run_tiles(FrameSource& source, const WindowLimits& limits, Surroundings& surroundings) {
     const Window computed = surroundings.around(written_of(source));
     why_in_parts_ = limits.why_not(computed);
-    refuse_pictures(limits, computed);
+    refuse_pictures(source, limits, computed);
     refuse_by_notes(source);
     const Stopwatch cutting;
     const auto tiles = tiles_of(written_of(source), surroundings, limits, source);
     report_.read_ms += cutting.ms();
-    make_folders(outputs_of(settings_.output), settings_.output);
+    make_folders(files_of(settings_, FileRole::output), settings_.output);
     FrameWriter writer(source, settings_, provenance());
     report_.parts = 0;
     parts_ = 0;
@@ -435,15 +450,16 @@ class FrameRun {
     if (bytes > room_.bytes)
       limits.refuse(fmt::format("{}: a preview shows the display window, {}: leave out --preview", report_.input,
                                 to_string(source.reading.display)),
-                    bytes);
+                    MemoryNeeds{bytes, bytes});
   }
 
   /// Pictures show a frame on a scale of its own, which no tile knows.
-  void refuse_pictures(const WindowLimits& limits, const Window& computed) const {
+  void refuse_pictures(const FrameSource& source, WindowLimits limits, const Window& computed) const {
     if (settings_.output.preview.empty() && settings_.output.debug.empty()) return;
     const char* const whose = run_.take_results                  ? "a wedge needs it whole: give a part by --roi"
                               : settings_.output.preview.empty() ? "--set debug needs it whole: leave it out"
                                                                  : "--preview needs it whole: leave it out";
+    if (!source.region && !run_.planes) limits.kept = 0;  // all of it is read into its buffers
     limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {}", report_.input, whose), computed);
   }
 

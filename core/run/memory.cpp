@@ -3,6 +3,7 @@
 #include "core/run/memory.h"
 
 #include <algorithm>
+#include <set>
 #include <unordered_map>
 
 #include "core/base/error.h"
@@ -11,7 +12,8 @@
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/geometry/geometry.h"
 #include "core/formats/exr.h"
-#include "core/frame/channels.h"
+#include "core/frame/find/channels.h"
+#include "core/gpu/kernel.h"
 #include "core/run/frame_files.h"
 #include "core/run/shot.h"
 #include "kernels/estimate/estimate.h"
@@ -70,13 +72,23 @@ FrameMemory::Bytes FrameMemory::of(const Window& computed) const {
   gpu::Recorder rehearsal;
   run_chain(rehearsal, rehearsed_inputs(rehearsal, *this, window), estimator, wanted);
   const std::uint64_t device = rehearsal.bytes() + fixed_on_device;
-  return {device, device + computed.pixels() * beside + fixed_bytes, rehearsal.largest_bytes()};
+  const std::uint64_t rows = std::uint64_t(std::min(kRowsWritten, computed.height)) * std::uint64_t(computed.width);
+  // Rows that are written are there once more as half, and cropped to a region.
+  const std::uint64_t copies = (is_cropped ? 2 : 1) * rows * written;
+  return {device, device + computed.pixels() * beside + copies + fixed_bytes, rehearsal.largest_bytes()};
 }
 
 std::uint64_t FrameMemory::codec_bytes(std::uint64_t room) const {
   std::uint64_t bytes = 0;
   for (const std::uint64_t group : codec_groups) bytes += exr_codec_bytes(group, room / kCodecPart);
   return bytes;
+}
+
+void FrameMemory::take(const Settings& settings) {
+  estimator = settings.estimator;
+  estimator.radius = settings.estimator.radius.value_or(1);
+  wanted = settings.output;
+  looks_at_others = settings.input.around > 0 || settings.input.around_all || settings.input.other_views;
 }
 
 FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
@@ -93,14 +105,10 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   memory.reading = source.reading;
   memory.file_data = source.reading.data;
   for (const auto& row : kRawPlanes) memory.channels[row.plane] = source.channels[row.plane].size();
-  memory.estimator = settings.estimator;
-  memory.estimator.radius = settings.estimator.radius.value_or(1);
-  memory.wanted = settings.output;
-  const InputSettings& input = settings.input;
-  memory.looks_at_others = input.around > 0 || input.around_all || input.other_views;
+  memory.take(settings);
   memory.written = sizeof(float) * written;
-  // What is written may be there once more: cropped to a region, or as half.
-  memory.beside = memory.written + sizeof(float) * pictures;
+  memory.beside = sizeof(float) * pictures;
+  memory.is_cropped = source.region.has_value();
   memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.reading.data.width)};
   memory.fixed_bytes =
       exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output) + composite_bytes(source);
@@ -121,11 +129,36 @@ std::uint64_t raw_bytes_of(const FrameSource& source) {
 
 namespace {
 
-// The process with one lane, and without frames: libraries, the driver, kernels and what compiles them. On lavapipe
-// 110 to 165 MiB were measured, the most while the driver's cache is empty. Each further lane on the CPU has a driver
-// of its own, which compiles the kernels again: 58 MiB.
+/// The process without kernels and frames: libraries, and a device. 72 MiB were measured on lavapipe.
+constexpr std::uint64_t kProcessBytes = 74ull << 20;
+/// A further device on the CPU, without its kernels.
+constexpr std::uint64_t kCpuLaneBytes = 8ull << 20;
+/// Bytes that lavapipe and LLVM take for each byte of a kernel while the driver's cache is empty: 150 to 180 were
+/// measured over the estimators, searches and AOVs. From a full cache a kernel takes half of them.
+constexpr std::uint64_t kCompiledPart = 190;
+
+/// The bytes of the kernels of a frame, as lavapipe holds them. A few pixels with all that options name have them all.
+std::uint64_t kernel_bytes(const Settings& settings) {
+  FrameMemory frame;
+  frame.file_data = {0, 0, 32, 32};
+  frame.channels[RawPlane::depth] = 1;
+  frame.channels[RawPlane::normal] = 3;
+  frame.channels[RawPlane::beauty] = settings.output.composite.empty() ? 0 : 3;
+  if (settings.estimator.hidden > 0 && !(settings.input.behind[0] + settings.input.deep[0]).empty()) {
+    frame.channels[RawPlane::behind] = 1;
+    frame.reading.behind.resize(1);
+  }
+  frame.take(settings);
+  gpu::Recorder rehearsal;
+  run_chain(rehearsal, rehearsed_inputs(rehearsal, frame, frame.file_data), frame.estimator, frame.wanted);
+  const std::set<gpu::KernelName> kernels(rehearsal.rehearsed().begin(), rehearsal.rehearsed().end());
+  std::uint64_t bytes = 0;
+  for (const auto& [stem, specialization] : kernels) bytes += kCompiledPart * gpu::kernel_code(stem).size_bytes();
+  return bytes;
+}
+
+/// The process on a GPU at least.
 constexpr std::uint64_t kProgramBytes = 176ull << 20;
-constexpr std::uint64_t kCpuLaneBytes = 64ull << 20;
 /// Command buffers and queues of a further lane on a GPU.
 constexpr std::uint64_t kGpuLaneBytes = 8ull << 20;
 /// What a GPU's driver may come to take of the host's memory after its device was made, for its compiler above all.
@@ -149,14 +182,17 @@ RunMemory memory_with(const DeviceSettings& settings, std::uint64_t program_byte
 
 }  // namespace
 
-RunMemory memory_of_host(const DeviceSettings& settings) { return memory_with(settings, kProgramBytes, kCpuLaneBytes); }
+RunMemory memory_of_host(const Settings& settings) {
+  const std::uint64_t kernels = kernel_bytes(settings);
+  return memory_with(settings.device, kProcessBytes + kernels, kCpuLaneBytes + kernels);
+}
 
-RunMemory memory_for_frames(const DeviceSettings& settings, const gpu::DeviceInfo& device) {
+RunMemory memory_for_frames(const Settings& settings, const gpu::DeviceInfo& device) {
   // A CPU device computes in host memory, which is counted already. An integrated GPU's memory is counted as both: its
   // driver may give away less of it than the host has.
   if (device.type == gpu::DeviceType::cpu) return memory_of_host(settings);
-  RunMemory memory =
-      memory_with(settings, std::max(kProgramBytes, resident_memory_bytes() + kDriverBytes), kGpuLaneBytes);
+  const std::uint64_t program_bytes = std::max(kProgramBytes, resident_memory_bytes() + kDriverBytes);
+  RunMemory memory = memory_with(settings.device, program_bytes, kGpuLaneBytes);
   memory.device_bytes = std::uint64_t(kPlannedPart * double(device.free_bytes));
   return memory;
 }

@@ -10,7 +10,7 @@
 
 #include "core/base/settings.h"
 #include "core/chain/results/outputs.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 #include "core/gpu/device.h"
 #include "core/run/plan.h"
 
@@ -18,6 +18,9 @@ namespace alcove {
 
 /// The part of a frame's memory that the codec of one of its files may take.
 constexpr std::uint64_t kCodecPart = 8;
+
+/// Rows of a frame's results that are written together. No compression takes more.
+constexpr int kRowsWritten = 256;
 
 /// The longest side of a window, in pixels, for the passes of these settings: the marks of an exact search hold the
 /// step along a line in 16 bits.
@@ -35,6 +38,8 @@ struct FrameMemory {
   Bytes of(const Window& computed) const;
   /// What the codecs of the frame's files take of host memory where so much is left for the frame.
   std::uint64_t codec_bytes(std::uint64_t room) const;
+  /// What settings say of it, for a radius of 1 where there is none yet.
+  void take(const Settings& settings);
 
   Reading reading;
   Window file_data;
@@ -42,6 +47,7 @@ struct FrameMemory {
   EstimatorSettings estimator;
   Wanted wanted;
   bool looks_at_others = false;
+  bool is_cropped = false;  // a region of it is written
 
   std::uint64_t beside = 0;                 // in host memory beside buffers, for each pixel
   std::uint64_t written = 0;                // of the planes that are written, for each pixel
@@ -66,8 +72,8 @@ struct RunMemory {
 };
 
 /// As long as the device is not known, it is taken for the CPU, which is what takes the most of the host's memory.
-RunMemory memory_of_host(const DeviceSettings& settings);
-RunMemory memory_for_frames(const DeviceSettings& settings, const gpu::DeviceInfo& device);
+RunMemory memory_of_host(const Settings& settings);
+RunMemory memory_for_frames(const Settings& settings, const gpu::DeviceInfo& device);
 
 /// The number of frames of which this window is computed that the memory has room for, at least 1.
 std::uint64_t frames_in(const RunMemory& memory, const FrameMemory& frame, const Window& computed);

@@ -86,7 +86,7 @@ class Pipeline {
   /// Begins the next frame; nothing where no frame is to be begun.
   std::optional<Attempt> begin() {
     Lock lock(mutex_);
-    changed_.wait(lock, [&] { return ended_ || begun_ == frames_.size() || in_flight_ < most_in_flight_; });
+    changed_.wait(lock, [&] { return ended_ || begun_ == frames_.size() || in_flight_ + waiting_ < most_in_flight_; });
     if (ended_ || begun_ == frames_.size() || (run_.stop && run_.stop())) return {};
     in_flight_++;
     const int frame = frames_[begun_];
@@ -141,7 +141,6 @@ class Pipeline {
       attempt.notes.push_back(
           {NoteCode::device_memory, "the device had no memory for this frame at first; it was computed again"});
       attempt.was_alone = true;
-      lanes_.set_count(1);
     } else if (!is_fewer_already) {
       if (pixels < 2) return false;
       attempt.notes.push_back(
@@ -151,9 +150,13 @@ class Pipeline {
       attempt.room.pixels = pixels / 2;
     }
     in_flight_--;
+    waiting_++;
     changed_.notify_all();
     changed_.wait(lock, [&] { return error_ || in_flight_ < most_in_flight_; });
+    waiting_--;
     in_flight_++;
+    // Another frame that waited may have left its buffers meanwhile.
+    if (attempt.was_alone) lanes_.set_count(1);
     attempt.most_in_flight = most_in_flight_;
     return !error_;
   }
@@ -227,6 +230,7 @@ class Pipeline {
   Room room_;                                    // of each frame in flight
   int most_in_flight_;                           // frames
   int in_flight_ = 0;                            // frames
+  int waiting_ = 0;                              // frames to be computed again; they go before those not begun
   int working_ = 0;                              // threads that may still finish a frame
   std::size_t begun_ = 0;                        // frames
   std::size_t told_ = 0;                         // frames

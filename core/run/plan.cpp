@@ -6,13 +6,12 @@
 #include <filesystem>
 #include <numeric>
 #include <regex>
-#include <unordered_set>
 
 #include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/base/text.h"
-#include "core/chain/results/debug.h"
+#include "core/formats/absent_frames.h"
 #include "core/formats/sequence.h"
+#include "core/frame/raw_plane.h"
 
 namespace alcove {
 namespace {
@@ -51,8 +50,16 @@ bool exists(const std::string& path) {
   return fs::exists(path, error);
 }
 
+/// Fails where a frame's file is a folder.
+void refuse_folder(const std::string& path, const std::string& option) {
+  std::error_code error;
+  if (fs::is_directory(path, error))
+    fail(ErrorKind::input, "{}: is a folder; {} takes a file, or a pattern such as {}", path, option,
+         (fs::path(path) / "shot.####.exr").string());
+}
+
 /// Fails where a name that is no file is what a shell would have taken for several.
-void refuse_glob(const std::string& path, const char* option) {
+void refuse_glob(const std::string& path, const std::string& option) {
   const std::size_t begin = path.find_first_of("*?");
   if (begin == path.npos) return;
   const std::size_t end = std::min(path.find_first_not_of("*?", begin), path.size());
@@ -60,6 +67,12 @@ void refuse_glob(const std::string& path, const char* option) {
   const std::string pattern = path.substr(0, begin) + std::string(counts ? end - begin : 4, '#') + path.substr(end);
   fail(ErrorKind::usage, "{}: {} takes a sequence as one name with a pattern: write {}", path, option,
        pattern.find_first_of("*?") == pattern.npos ? pattern : "shot.####.exr");
+}
+
+/// Fails where a name that is no file has a placeholder of another program.
+void refuse_foreign_pattern(const std::string& path, const std::string& option) {
+  if (const std::string why = foreign_pattern_in(path); !why.empty())
+    fail(ErrorKind::usage, "{}: {} ({})", path, why, option);
 }
 
 /// Whether a name has a place for a frame number that no name has by chance, as one with a lone # may: ## or more, %d
@@ -71,133 +84,109 @@ bool has_clear_place(const std::string& name) {
 
 }  // namespace
 
-std::span<const NamedPath> named_paths() {
-  static const std::vector<NamedPath> paths = [] {
-    std::vector<NamedPath> result;
-    for (const auto& file : plane_file_options())
-      result.push_back({file.option, [file](Settings& s) -> std::string& { return file.of(s.input); }, false});
-    const auto add = [&](const char* option, auto member, auto path, bool is_output) {
-      result.push_back({option, [=](Settings& s) -> std::string& { return s.*member.*path; }, is_output});
-    };
-    add("--motion", &Settings::input, &InputSettings::motion, false);
-    add("--camera", &Settings::input, &InputSettings::camera, false);
-    add("--environment", &Settings::output, &OutputSettings::environment, false);
-    add("--output", &Settings::output, &OutputSettings::output, true);
-    add("--composite", &Settings::output, &OutputSettings::composite, true);
-    add("--preview", &Settings::output, &OutputSettings::preview, true);
-    return result;
-  }();
-  return paths;
-}
-
 FramePlan::FramePlan(const Settings& settings) : settings_(settings) {
-  find_patterns();
-  const std::vector<int> all = all_frames();
-  refuse_shared_files(all);
-  find_evidence(all);
-  find_inputs(chunk_of(all, settings.frames.chunk, settings.frames.chunks));
-  if (settings.frames.frames.empty()) holes_ = holes_in(all);
-  // The first chunk tells of them where the settings say that frames may be missing.
-  if (settings.frames.missing == Missing::skip && settings.frames.chunk == 1)
-    missing_.insert(missing_.end(), holes_.begin(), holes_.end());
+  find_patterns(FileRole::input);
+  is_sequence_ = !settings_.frames.frames.empty() || !patterns_.empty();
+  find_patterns(FileRole::output);
+  all_ = all_frames();
+  refuse_shared_files();
+  find_evidence();
+  find_inputs(chunk_of(all_, settings.frames.chunk, settings.frames.chunks));
+  if (settings.frames.frames.empty()) holes_ = holes_in(all_);
+  // The first chunk tells of them.
+  if (settings.frames.chunk == 1) missing_.insert(missing_.end(), holes_.begin(), holes_.end());
   std::ranges::sort(missing_);
   find_shot();
   refuse_missing_around();
 }
 
-void FramePlan::find_patterns() {
-  const auto find = [&](bool outputs) {
-    for (const auto& path : named_paths()) {
-      const std::string& text = path.of(settings_);
-      if (path.is_output != outputs || text.empty() || (!outputs && exists(text))) continue;
-      if (outputs && !is_sequence_ && !has_clear_place(text)) continue;
-      if (!outputs) refuse_glob(text, path.option);
-      if (const auto name = frame_pattern(text)) patterns_.push_back({path, *name});
+void FramePlan::find_patterns(FileRole role) {
+  const bool are_inputs = role == FileRole::input;
+  for (const auto& row : file_rows()) {
+    if (row.role != role || !row.is_of_frame) continue;
+    const Words words = row.words(settings_);
+    for (std::size_t i = 0; i < words.size(); i++) {
+      const std::string& text = words[i];
+      if (row.is_file && !row.is_file(text)) continue;
+      if (are_inputs) refuse_folder(text, row.long_name());
+      if (are_inputs ? exists(text) : !is_sequence_ && !has_clear_place(text)) continue;
+      if (are_inputs) refuse_glob(text, row.long_name());
+      if (const auto name = frame_pattern(text))
+        patterns_.push_back({&row, i, text, *name});
+      else if (are_inputs)
+        refuse_foreign_pattern(text, row.long_name());
     }
-  };
-  find(false);
-  is_sequence_ = !settings_.frames.frames.empty() || !patterns_.empty();
-  find(true);
-  if (is_sequence_ || patterns_.empty()) return;
-  // The number of a single frame is that in its name.
-  const std::string& input = main_input(settings_.input);
-  const auto& output = patterns_.front();
-  if (!frame_number_in(input).number)
-    fail(ErrorKind::usage,
-         "{} {}: its name has a place for a frame number, and {} has no clear one: give --frames NUMBER",
-         output.path.option, output.path.of(settings_), input);
+  }
+}
+
+const FramePlan::Pattern* FramePlan::first_input() const {
+  const auto found = std::ranges::find_if(patterns_, &Pattern::is_input);
+  return found == patterns_.end() ? nullptr : &*found;
 }
 
 std::vector<int> FramePlan::all_frames() const {
   if (!settings_.frames.frames.empty()) return parse_frames(settings_.frames.frames);
-  const auto input = std::ranges::find_if(patterns_, [](const Pattern& pattern) { return !pattern.path.is_output; });
-  if (input == patterns_.end()) return {frame_number_of(main_input(settings_.input))};
-  return frames_on_disk(input->name, input->path.option);
+  if (const Pattern* input = first_input()) return frames_on_disk(input->name, input->option().c_str());
+  // The number of a single frame is that in its name.
+  const std::string& input = main_input(settings_.input);
+  const auto number = frame_number_in(input).number;
+  if (!number && !patterns_.empty())
+    fail(ErrorKind::usage,
+         "{} {}: its name has a place for a frame number, and {} has no clear one: give --frames NUMBER",
+         patterns_.front().option(), patterns_.front().text, input);
+  return {number.value_or(0)};
 }
 
-void FramePlan::refuse_shared_files(const std::vector<int>& all) {
-  Settings whole = settings_;
+/// Frames that differ in nothing but their number would be the same one, and files without one the last frame's.
+void FramePlan::refuse_shared_files() {
+  if (all_.size() < 2) return;
+  constexpr const char* kMend = "put a place for the frame number into its name, such as %04d";
+  if (!first_input())
+    fail(ErrorKind::usage, "{}: all {} frames would be computed from it: {}", main_input(settings_.input), all_.size(),
+         kMend);
   const FrameSettings& frames = settings_.frames;
-  for (const auto& path : named_paths()) {
-    const bool is_pattern =
-        std::ranges::any_of(patterns_, [&](const Pattern& pattern) { return pattern.path.option == path.option; });
-    const bool is_shared = path.is_output && all.size() > 1 && !path.of(whole).empty() && !is_pattern;
-    const char* const part = frames.chunks > 1 ? "--chunk" : frames.resume && !frames.overwrite ? "--resume" : nullptr;
-    const bool is_sheet = is_shared && path.option == std::string_view("--preview");
-    has_contact_sheet_ = has_contact_sheet_ || is_sheet;
-    if (is_sheet && part)
-      fail(ErrorKind::usage,
-           "{} {}: a contact sheet shows all {} frames, and {} leaves some out: put a place for the frame number into "
-           "its name, such as %04d",
-           path.option, path.of(whole), all.size(), part);
-    if (is_shared && !is_sheet)
-      fail(ErrorKind::usage,
-           "{} {}: all {} frames would be written to it: put a place for the frame number into its name, such as %04d",
-           path.option, path.of(whole), all.size());
+  const char* const part = frames.chunks > 1 ? "--chunk" : frames.resume && !frames.overwrite ? "--resume" : nullptr;
+  for (const auto& row : file_rows()) {
+    const auto files = row.files(settings_, FileRole::output);
+    if (!row.is_of_frame || files.empty() || std::ranges::count(patterns_, &row, &Pattern::row) > 0) continue;
+    const auto& [option, path] = files.front();
+    if (row.key() != "preview")
+      fail(ErrorKind::usage, "{} {}: all {} frames would be written to it: {}", option, path, all_.size(), kMend);
+    if (part)
+      fail(ErrorKind::usage, "{} {}: a contact sheet shows all {} frames, and {} leaves some out: {}", option, path,
+           all_.size(), part, kMend);
+    has_contact_sheet_ = true;
   }
-  std::unordered_set<std::string> inputs;
-  for (const auto& pattern : patterns_)
-    if (!pattern.path.is_output)
-      for (const int frame : all) inputs.insert(pattern.name.path(frame));
-  for (const auto& pattern : patterns_)
-    for (const int frame : all)
-      if (const auto path = pattern.name.path(frame + settings_.frames.output_offset);
-          pattern.path.is_output && inputs.contains(path))
-        fail(ErrorKind::usage, "{}: {} of frame {} would overwrite an input", path, pattern.path.option, frame);
-  auto shared = reports_of(settings_.output);
-  if (has_contact_sheet_) shared.push_back({"--preview", whole.output.preview});
-  for (const auto& report : shared)
-    if (inputs.contains(report.path))
-      fail(ErrorKind::usage, "{}: {} would overwrite an input", report.path, report.option);
 }
 
 /// Takes frames from the beginning to the end, since a sequence may begin with nothing but sky. All frames are looked
 /// for only where one of these is missing.
-void FramePlan::find_evidence(const std::vector<int>& all) {
-  evidence_ = evenly(all, kEvidenceFrames);
+void FramePlan::find_evidence() {
+  evidence_ = evenly(all_, kEvidenceFrames);
   const auto is_there = [&](int frame) { return !is_sequence_ || has_inputs(frame); };
   if (std::ranges::all_of(evidence_, is_there)) return;
   std::vector<int> there;
-  std::ranges::copy_if(all, std::back_inserter(there), is_there);
+  std::ranges::copy_if(all_, std::back_inserter(there), is_there);
   evidence_ = evenly(there, kEvidenceFrames);
 }
 
 bool FramePlan::has_inputs(int frame) const {
   return std::ranges::all_of(
-      patterns_, [&](const Pattern& pattern) { return pattern.path.is_output || exists(pattern.name.path(frame)); });
+      patterns_, [&](const Pattern& pattern) { return !pattern.is_input() || exists(pattern.name.path(frame)); });
 }
 
 void FramePlan::find_inputs(const std::vector<int>& chunk) {
   std::string complaint;
   for (const auto& pattern : patterns_) {
-    if (pattern.path.is_output) continue;
+    if (!pattern.is_input()) continue;
     std::vector<int> absent;
     std::ranges::copy_if(chunk, std::back_inserter(absent),
                          [&](int frame) { return !exists(pattern.name.path(frame)); });
     if (absent.empty()) continue;
     complaint +=
-        fmt::format("{}{}: {} of {} frames are missing: {} ({})", complaint.empty() ? "" : "; ", pattern.path.option,
-                    absent.size(), chunk.size(), frames_text(absent), pattern.name.path(absent.front()));
+        fmt::format("{}{}: {} of {} frames are missing: {} ({}{})", complaint.empty() ? "" : "; ", pattern.option(),
+                    absent.size(), chunk.size(), frames_text(absent), pattern.name.path(absent.front()),
+                    absent.size() == chunk.size() ? why_no_frames(pattern.name) : "");
   }
   if (!complaint.empty() && settings_.frames.missing == Missing::error)
     fail(ErrorKind::input, "{}; --set missing=skip leaves them out, --frames says which to compute", complaint);
@@ -208,8 +197,8 @@ void FramePlan::find_inputs(const std::vector<int>& chunk) {
 void FramePlan::find_shot() {
   const char* const option = shot_option(settings_.input);
   if (!option) return;
-  const auto input = std::ranges::find_if(patterns_, [](const Pattern& pattern) { return !pattern.path.is_output; });
-  if (input == patterns_.end()) {
+  const Pattern* const input = first_input();
+  if (!input) {
     const std::string &file = main_input(settings_.input), pattern = pattern_for(file);
     fail(ErrorKind::usage,
          "{}: {} takes other frames of a sequence, and this names one file: give a pattern such as {}, with "
@@ -217,13 +206,13 @@ void FramePlan::find_shot() {
          file, option, pattern.empty() ? "shot.####.exr" : pattern, option);
   }
   const std::string& motion = settings_.input.motion;
-  const auto is_motion = [](const Pattern& pattern) { return pattern.path.option == std::string_view("--motion"); };
+  const auto is_motion = [](const Pattern& pattern) { return pattern.row->key() == "motion"; };
   if (!motion.empty() && std::ranges::none_of(patterns_, is_motion)) {
     const std::string pattern = pattern_for(motion);
     fail(ErrorKind::usage, "--motion {}: one frame's vectors say nothing of the others: give a pattern such as {}",
          motion, pattern.empty() ? "motion.####.exr" : pattern);
   }
-  shot_ = frames_on_disk(input->name, input->path.option);
+  shot_ = frames_on_disk(input->name, input->option().c_str());
   const std::vector<int> holes = holes_in(shot_);
   shot_.insert(shot_.end(), holes.begin(), holes.end());
   std::ranges::sort(shot_);
@@ -290,7 +279,7 @@ void FramePlan::refuse_missing_around() const {
   const std::vector<int> absent = missing_around();
   if (absent.empty()) return;
   const auto path = std::ranges::find_if(patterns_, [&](const Pattern& pattern) {
-    return !pattern.path.is_output && !exists(pattern.name.path(absent.front()));
+    return pattern.is_input() && !exists(pattern.name.path(absent.front()));
   });
   fail(ErrorKind::input, "{}: {} needs {} of the shot that {} missing: {}; --set missing=skip does without",
        path->name.path(absent.front()), shot_option(settings_.input), absent.size() == 1 ? "a frame" : "frames",
@@ -306,9 +295,11 @@ int around_of(const InputSettings& settings) { return settings.around_all ? kWho
 
 Settings FramePlan::at(int frame) const {
   Settings settings = settings_;
-  for (const auto& pattern : patterns_)
-    pattern.path.of(settings) =
-        pattern.name.path(pattern.path.is_output ? frame + settings_.frames.output_offset : frame);
+  for (const auto& [row, word, text, name] : patterns_) {
+    Words words = row->words(settings);
+    words[word] = name.path(row->role == FileRole::input ? frame : frame + settings_.frames.output_offset);
+    row->read(settings, words);
+  }
   return settings;
 }
 
@@ -335,32 +326,6 @@ void refuse_warnings(const Notes& notes, const Settings& settings, const std::st
   for (const auto& note : warnings) text += (text.empty() ? "" : "; ") + line_of(note, text.empty() ? file : "");
   fail(ErrorKind::input, "{}: an error by {}", text,
        settings.frames.warnings_as_errors ? "--set warnings-as-errors" : "--strict");
-}
-
-std::vector<OutputFile> outputs_of(const OutputSettings& output) {
-  std::vector<OutputFile> files{
-      {"--output", output.output}, {"--composite", output.composite}, {"--preview", output.preview}};
-  for (const auto* view : debug_views_of(output)) files.push_back({"--set debug", debug_path(output, *view)});
-  std::erase_if(files, [](const OutputFile& file) { return file.path.empty(); });
-  return files;
-}
-
-std::vector<OutputFile> reports_of(const OutputSettings& output) {
-  std::vector<OutputFile> files{{"--stats", output.stats},
-                                {"--log-json", output.log_json == "-" ? "" : output.log_json}};
-  std::erase_if(files, [](const OutputFile& file) { return file.path.empty(); });
-  return files;
-}
-
-void make_folders(const std::vector<OutputFile>& files, const OutputSettings& settings) {
-  if (settings.no_mkdir) return;
-  for (const auto& file : files) make_folder_of(file.path, file.option);
-}
-
-void require_endings(const OutputSettings& output) {
-  require_ending(output.output, "--output", ".exr", "OpenEXR");
-  require_ending(output.composite, "--composite", ".exr", "OpenEXR");
-  require_ending(output.preview, "--preview", ".png", "PNG");
 }
 
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks) {

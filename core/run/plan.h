@@ -2,29 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <set>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/formats/sequence.h"
-#include "core/frame/raw_plane.h"
+#include "core/options/files.h"
 
 namespace alcove {
-
-/// A file that the settings name, for every frame or with a place for the frame number.
-struct NamedPath {
-  const char* option;
-  std::function<std::string&(Settings&)> of;
-  bool is_output;
-};
-
-/// All files that settings can name for each frame, in the order in which people are told of them.
-std::span<const NamedPath> named_paths();
 
 /// Frames of the shot to both sides of one, in order.
 struct FramesAround {
@@ -43,7 +31,7 @@ class FramePlan {
  public:
   /// Finds the frames and looks for their inputs; opens nothing. A name is a pattern (core/formats/sequence.h) unless
   /// it is an input that is there.
-  /// Fails with ErrorKind::usage where two frames would write one file, or one overwrites another's input; with
+  /// Fails with ErrorKind::usage where all frames would write one file, or be computed from the same files; with
   /// ErrorKind::input where inputs are missing, listing the frames of each, unless the settings say to skip them, and
   /// where no frame is left.
   explicit FramePlan(const Settings& settings);
@@ -52,7 +40,9 @@ class FramePlan {
   bool is_sequence() const { return is_sequence_; }
   /// The frames to compute, in order.
   const std::vector<int>& frames() const { return frames_; }
-  /// The frames that are left out, since an input is missing.
+  /// The frames of all chunks.
+  const std::vector<int>& all() const { return all_; }
+  /// The frames that are left out, since an input is missing; with the first chunk, the holes too.
   const std::vector<int>& missing() const { return missing_; }
   /// The numbers between the frames on the disk that have no file; none where the settings list the frames. Frames on
   /// every second or third number have none where these are their only steps.
@@ -94,13 +84,19 @@ class FramePlan {
   std::ptrdiff_t place_of(int frame) const;
 
   struct Pattern {
-    NamedPath path;
+    const SettingRow* row;
+    std::size_t word;  // of the row's value
+    std::string text;
     FramePattern name;
+
+    bool is_input() const { return row->role == FileRole::input; }
+    std::string option() const { return row->long_name(); }
   };
-  void find_patterns();
+  void find_patterns(FileRole role);
+  const Pattern* first_input() const;
   std::vector<int> all_frames() const;
-  void refuse_shared_files(const std::vector<int>& all);
-  void find_evidence(const std::vector<int>& all);
+  void refuse_shared_files();
+  void find_evidence();
   void find_inputs(const std::vector<int>& chunk);
   bool has_inputs(int frame) const;
   void find_shot();
@@ -109,7 +105,7 @@ class FramePlan {
   Settings settings_;
   std::vector<Pattern> patterns_;
   bool is_sequence_ = false, has_contact_sheet_ = false;
-  std::vector<int> frames_, missing_, evidence_, holes_, shot_;
+  std::vector<int> all_, frames_, missing_, evidence_, holes_, shot_;
   std::set<int> absent_;  // of the shot
 };
 
@@ -124,22 +120,6 @@ int frame_number_of(const std::string& path);
 bool fails_on_warnings(const Settings& settings);
 /// Fails with ErrorKind::input, naming the file, where there is a warning and it counts as an error.
 void refuse_warnings(const Notes& notes, const Settings& settings, const std::string& file);
-
-/// All files that a frame writes.
-struct OutputFile {
-  const char* option;
-  std::string path;
-};
-std::vector<OutputFile> outputs_of(const OutputSettings& output);
-
-/// What a run writes once, whatever its frames.
-std::vector<OutputFile> reports_of(const OutputSettings& output);
-
-/// Makes the folders of these files, unless the settings say not to. Fails with ErrorKind::output.
-void make_folders(const std::vector<OutputFile>& files, const OutputSettings& settings);
-
-/// Fails with ErrorKind::usage where the name of an output ends as if it were of another format.
-void require_endings(const OutputSettings& output);
 
 /// The parts of a list, as long as each other to within one frame. 1 <= chunk <= chunks.
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks);

@@ -8,50 +8,31 @@
 #include <fstream>
 #include <optional>
 
-#include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
-#include "core/formats/color.h"
 #include "core/formats/exr.h"
 #include "core/formats/png.h"
-#include "core/frame/matte.h"
-#include "core/frame/raw_plane.h"
 #include "core/options/options.h"
 #include "core/run/frame_files.h"
+#include "core/run/run_files.h"
 #include "core/run/shot.h"
 
 namespace alcove {
 namespace {
 
-/// What the configuration of the display says; "" for the built-in one.
-std::string display_text(const std::string& ocio) {
-  const std::string file = display_config_file(ocio);
-  if (file.empty()) return "";
-  return read_text(file, "OpenColorIO configuration", ocio.empty() ? "the OCIO variable" : "--set ocio");
-}
-
-/// The words that tell results of this setting from others; none: its value does not matter.
+/// The words that tell results of this setting from others; none: its value does not matter. Of a file counts only that
+/// it is given.
 Words telling_words(const SettingRow& row, const Settings& settings) {
-  const Words words = row.words(settings);
-  switch (row.effect) {
-    case Effect::none: return {};
-    case Effect::pixels: return words;
-    case Effect::input: return Words(words.size(), "given");
-    case Effect::pixels_or_input: return words.empty() || number_of(words.front()) ? words : Words{"given"};
-    case Effect::pixels_or_picture: return words.empty() || !names_picture(words.front()) ? words : Words{"given"};
-    case Effect::content:
-      return words.empty() ? Words{} : Words{read_text(words.front(), row.key().c_str(), row.long_name().c_str())};
-    case Effect::display: return shows_composite(settings.output) ? Words{display_text(settings.output.ocio)} : Words{};
-  }
-  return {};
+  if (row.effect == Effect::none) return {};
+  Words words = row.words(settings);
+  const auto is_input = [&](const std::string& word) {
+    return row.role == FileRole::input && (!row.is_file || row.is_file(word));
+  };
+  std::ranges::replace_if(words, is_input, "given");
+  return words;
 }
 
 }  // namespace
-
-bool shows_composite(const OutputSettings& output) {
-  return !output.preview.empty() && !output.composite.empty() && output.preview_style != "ao";
-}
 
 std::string options_digest(const Settings& given) {
   Settings settings = given;
@@ -62,6 +43,7 @@ std::string options_digest(const Settings& given) {
   std::ranges::sort(estimator.further_radii);
   // Each word goes with its length, so that no two sets of values make one text.
   std::string text = kVersion;
+  if (shows_composite(settings.output)) text += "\na preview of the composite";
   for (const auto& row : option_table())
     if (row.is_key())
       for (const auto& word : telling_words(row, settings))
@@ -75,30 +57,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Adds the files of manifests that lie beside a file with Cryptomattes of a view. One that cannot be read has none.
-void add_manifests(std::vector<std::string>& files, const std::string& path, const std::string& view) {
-  try {
-    for (const auto& matte : cryptomattes_of(ExrFile(path, "INPUT"), view))
-      if (!matte.manifest_file.empty()) files.push_back(matte.manifest_file);
-  } catch (const Error&) {
-  }
-}
-
-std::vector<std::string> inputs_of(const Settings& frame) {
-  const InputSettings& input = frame.input;
-  std::vector<std::string> files;
-  if (!input.motion.empty()) files.push_back(input.motion);
-  if (!frame.output.environment.empty()) files.push_back(frame.output.environment);
-  for (const auto& file : plane_file_options()) files.push_back(file.of(input));
-  if (!input.matte_object.empty())
-    add_manifests(files, input.matte.empty() ? main_input(input) : input.matte, input.view);
-  if (!input.occluder_objects.empty() || !input.ignored_objects.empty())
-    add_manifests(files, input.objects.empty() ? main_input(input) : input.objects, input.view);
-  return files;
-}
-
-/// The bytes that are looked at of a file's beginning, and as many of its end.
+/// The bytes that are looked at of the beginning of a picture, and as many of its end.
 constexpr std::streamoff kLooked = 1 << 16;
+
+/// Other files are looked at whole up to this size: no part of a camera file tells of a change in another one.
+constexpr std::streamoff kMostWhole = 1 << 24;
+
+std::string bytes_of(std::ifstream& file, std::streamoff begin, std::streamoff end) {
+  std::string bytes(std::size_t(end - begin), '\0');
+  file.seekg(begin).read(bytes.data(), end - begin);
+  return bytes;
+}
 
 std::optional<fs::file_time_type> time_of(const std::string& path) {
   std::error_code error;
@@ -111,17 +80,16 @@ std::optional<fs::file_time_type> time_of(const std::string& path) {
 InputIdentities::Identity InputIdentities::identity_of(const Settings& frame) {
   std::string text;
   Identity identity;
-  for (const auto& path : inputs_of(frame)) {
-    text += '\n';
-    if (path.empty()) continue;
-    identity.newest = std::max(identity.newest, time_of(path).value_or(identity.newest));
+  for (const auto& [option, path] : inputs_of(frame)) {
+    if (option == "--preset") continue;  // what it says is in the settings
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     const std::streamoff size = file ? std::streamoff(file.tellg()) : 0;
-    std::string bytes(std::size_t(std::min(size, 2 * kLooked)), '\0');
-    const std::streamoff head = std::min(size, kLooked), tail = std::streamoff(bytes.size()) - head;
-    file.seekg(0).read(bytes.data(), head);
-    file.seekg(size - tail).read(bytes.data() + head, tail);
-    text += fmt::format("{} {:016x}", size, XXH3_64bits(bytes.data(), bytes.size()));
+    std::string bytes = bytes_of(file, 0, std::min(size, kLooked));
+    const bool is_whole = size <= kMostWhole && !bytes.starts_with("\x76\x2f\x31\x01");  // how EXR files begin
+    const std::streamoff beyond = std::streamoff(bytes.size());
+    bytes += bytes_of(file, is_whole ? beyond : std::max(beyond, size - kLooked), size);
+    text += fmt::format("\n{} {:016x}", size, XXH3_64bits(bytes.data(), bytes.size()));
+    if (!is_whole) identity.newest = std::max(identity.newest, time_of(path).value_or(identity.newest));
   }
   identity.text = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
   return identity;
@@ -135,7 +103,7 @@ InputIdentities::Identity InputIdentities::own(int frame) {
 }
 
 InputIdentities::Identity InputIdentities::all_of(int frame) {
-  const InputSettings input = plan_.at(frame).input;
+  const InputSettings& input = plan_.settings().input;
   Identity all = own(frame);
   if (!shot_option(input)) return all;
   if (input.accumulate > 0) all.text += fmt::format("\nturn {}", plan_.turn_of(frame));
@@ -143,8 +111,6 @@ InputIdentities::Identity InputIdentities::all_of(int frame) {
     const Identity identity = own(other);
     all.newest = std::max(all.newest, identity.newest);
     all.text += fmt::format("\n{} {}", other - frame, identity.text);
-    if (const std::string camera = plan_.at(other).input.camera; camera != input.camera)
-      all.text += read_text(camera, "camera", "--camera");
   }
   all.text = fmt::format("{:016x}", XXH3_64bits(all.text.data(), all.text.size()));
   return all;
@@ -154,7 +120,7 @@ namespace {
 
 /// Why an output is made again; "" if it is not there. Nothing if it is whole, no older than the newest input, and made
 /// with the options of this digest from inputs of this identity. Reads headers and the table of chunks; never fails.
-std::optional<std::string> reason_to_make(const OutputFile& output, const Settings& frame,
+std::optional<std::string> reason_to_make(const NamedFile& output, const Settings& frame,
                                           const std::string& options_digest, const std::string& inputs,
                                           fs::file_time_type newest_input) {
   const auto time = time_of(output.path);
@@ -182,7 +148,7 @@ std::optional<std::string> reason_to_make(const OutputFile& output, const Settin
 /// The same of the first output of a frame that is made again. `frame` names the files of one frame.
 std::optional<std::string> reason_to_compute(const Settings& frame, const std::string& options_digest,
                                              const std::string& inputs, fs::file_time_type newest_input) {
-  for (const auto& output : outputs_of(frame.output))
+  for (const auto& output : files_of(frame, FileRole::output))
     if (auto reason = reason_to_make(output, frame, options_digest, inputs, newest_input)) return reason;
   return std::nullopt;
 }
@@ -201,14 +167,10 @@ Notes notes_on_reasons(const std::vector<std::pair<std::string, std::vector<int>
 FramesToCompute frames_to_compute(const FramePlan& plan, const std::string& digest, InputIdentities& identities) {
   const FrameSettings& frames = plan.settings().frames;
   if (!frames.resume || frames.overwrite || plan.frames().empty()) return {plan.frames(), {}};
-  const Settings first = plan.at(plan.frames().front());
   FramesToCompute found;
   std::vector<std::pair<std::string, std::vector<int>>> reasons;
   for (const int frame : plan.frames()) {
-    const Settings of_frame = plan.at(frame);
-    const bool has_own_camera = of_frame.input.camera != first.input.camera;
-    const auto reason = reason_to_compute(of_frame, has_own_camera ? options_digest(of_frame) : digest,
-                                          identities.of(frame), identities.newest(frame));
+    const auto reason = reason_to_compute(plan.at(frame), digest, identities.of(frame), identities.newest(frame));
     if (!reason) continue;
     found.frames.push_back(frame);
     if (reason->empty()) continue;

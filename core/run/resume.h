@@ -15,23 +15,19 @@
 
 namespace alcove {
 
-/// 16 hexadecimal digits that change with every setting that changes the result, as the table of options says, and with
-/// what the camera file and the configuration of the display say. Fails as reading those files does.
+/// 16 hexadecimal digits that change with every setting that changes the result, as the table of options says.
 std::string options_digest(const Settings& settings);
 
-/// Whether the preview is the composite as a display shows it, and not the AO as data.
-bool shows_composite(const OutputSettings& output);
-
-/// The identities of all that the frames of a plan are made from: their own files with the manifests beside them, and
-/// those of the frames around them that they take others from. An identity tells the contents of files from others,
-/// wherever they lie: a hash of the size, the beginning and the end of each. The beginning of an EXR file holds the
-/// places of all its chunks. Never fails: a file that cannot be read counts as empty. Each file is looked at once. Any
-/// thread may ask.
+/// The identities of all that the frames of a plan are made from: their inputs_of(), and those of the frames around
+/// them that they take others from. An identity tells the contents of files from others, wherever they lie: a hash of
+/// each or, of an EXR or a large file, of its size, beginning and end. The beginning of an EXR file holds the places of
+/// all its chunks. Never fails: a file that cannot be read counts as empty. Each file is looked at once. Any thread may
+/// ask.
 class InputIdentities {
  public:
   explicit InputIdentities(const FramePlan& plan) : plan_(plan) {}
   std::string of(int frame) { return all_of(frame).text; }
-  /// When the last of these files was written.
+  /// When the last of those files was written whose bytes are not all looked at.
   std::filesystem::file_time_type newest(int frame) { return all_of(frame).newest; }
 
  private:

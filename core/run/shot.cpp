@@ -12,9 +12,9 @@
 #include "core/base/text.h"
 #include "core/chain/geometry/geometry.h"
 #include "core/chain/hidden/hidden.h"
-#include "core/frame/channels.h"
-#include "core/frame/motion.h"
-#include "core/frame/settle.h"
+#include "core/frame/find/channels.h"
+#include "core/frame/find/motion.h"
+#include "core/frame/settle/settle.h"
 #include "kernels/base/reprojection.h"
 
 namespace alcove {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include "core/base/error.h"
@@ -15,8 +16,9 @@
 #include "core/chain/results/confidence.h"
 #include "core/chain/results/outputs.h"
 #include "core/chain/results/reduce.h"
-#include "core/frame/evidence.h"
-#include "core/frame/settle.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/settle.h"
+#include "core/run/frame_files.h"
 #include "kernels/estimate/exact.h"
 #include "kernels/geometry/geometry.h"
 #include "kernels/hidden/hidden.h"
@@ -86,22 +88,31 @@ double sphere_reach(double radius, double nearest, double tangent, double pixels
 }  // namespace
 
 Window region_of(const FrameSource& source, const Region& roi) {
+  constexpr std::int64_t kFarthest = 1 << 30;  // px; no file has a window that reaches farther
   const Window& data = source.reading.data;
   const Window picture = picture_of(source.reading, source.reading.display);
-  const Window region = enlarged({picture.x + roi.x, picture.y + roi.y, roi.width, roi.height}, source.reading.display,
-                                 source.reading.supersampling);
-  const bool inside = region.x >= data.x && region.y >= data.y &&
+  const std::int64_t left = std::int64_t(picture.x) + roi.x, top = std::int64_t(picture.y) + roi.y;
+  const bool is_near = std::max({std::abs(left), std::abs(top), left + roi.width, top + roi.height}) < kFarthest;
+  Window region;
+  if (is_near)
+    region =
+        enlarged({int(left), int(top), roi.width, roi.height}, source.reading.display, source.reading.supersampling);
+  const bool inside = is_near && region.x >= data.x && region.y >= data.y &&
                       std::int64_t(region.x) + region.width <= std::int64_t(data.x) + data.width &&
                       std::int64_t(region.y) + region.height <= std::int64_t(data.y) + data.height;
   if (!inside)
-    fail(ErrorKind::usage, "{}: --roi is {}, and the data window is {}: give a region within it", source.depth_path(),
-         to_string(picture_of(source.reading, region)), to_string(picture_of(source.reading, data)));
+    fail(ErrorKind::usage, "{}: --roi is {}x{} at ({}, {}), and the data window is {}: give a region within it",
+         source.depth_path(), roi.width, roi.height, left, top, to_string(picture_of(source.reading, data)));
   return region;
 }
 
 Surroundings::Surroundings(const FrameSource& source, const Settings& settings, std::span<const float> depth)
+    : Surroundings(source, settings,
+                   [&data = source.reading.data, depth](const Window& rows) { return cropped(depth, data, rows); }) {}
+
+Surroundings::Surroundings(const FrameSource& source, const Settings& settings, DepthRows depth)
     : source_(source),
-      depth_(depth),
+      depth_(std::move(depth)),
       file_data_(source.reading.data),
       columns_((file_data_.width + kBlockWidth - 1) / kBlockWidth),
       blocks_(std::size_t(file_data_.height + kBlockHeight - 1) / kBlockHeight),
@@ -122,8 +133,7 @@ Window Surroundings::window_of(int block_row, int column) const {
 std::vector<float> Surroundings::nearest_depths(int block_row) {
   Window window = window_of(block_row, 0);
   window.width = file_data_.width;
-  const std::vector<float> depth = cropped(depth_, file_data_, window);
-  const auto planar = planar_depths(depth, depth_map_of(source_.reading), view_of(source_.reading, window));
+  const auto planar = planar_depths(depth_(window), depth_map_of(source_.reading), view_of(source_.reading, window));
   std::vector<float> nearest(std::size_t(columns_), kSkyDepth);
   for (std::size_t i = 0; i < planar.size(); i++) {
     float& of_block = nearest[i % std::size_t(window.width) / kBlockWidth];
@@ -211,12 +221,13 @@ std::vector<Window> columns_of(const Window& row, int count) {
 /// Cuts a window into columns, or into halves that are cut in turn, whichever computes fewer pixels.
 class Cutter {
   static constexpr std::uint64_t kNoWay = std::numeric_limits<std::uint64_t>::max();
+
+ public:
   struct Cut {
     TileRows rows;
     std::uint64_t pixels = kNoWay;  // that are computed
   };
 
- public:
   Cutter(Surroundings& surroundings, const WindowLimits& limits) : surroundings_(surroundings), limits_(limits) {}
 
   /// No way where one of the smallest tiles is still too large.
@@ -253,14 +264,22 @@ class Cutter {
   const WindowLimits& limits_;
 };
 
-/// What has to be computed for that one of the smallest tiles that needs the most around it.
-Window largest_least(const Window& whole, Surroundings& surroundings) {
-  Window largest{};
+/// That one of the windows of the smallest tiles which takes the most memory. Windows of one size take the same.
+Window largest_least(const Window& whole, Surroundings& surroundings, const FrameMemory& memory) {
+  std::map<std::pair<int, int>, Window> sizes;
   for (int y = 0; y < whole.height; y += kLeastRows)
     for (const auto& tile :
-         columns_of({whole.x, whole.y + y, whole.width, std::min(kLeastRows, whole.height - y)}, most_columns(whole)))
-      if (const Window window = surroundings.around(tile); window.pixels() > largest.pixels()) largest = window;
-  return largest;
+         columns_of({whole.x, whole.y + y, whole.width, std::min(kLeastRows, whole.height - y)}, most_columns(whole))) {
+      const Window window = surroundings.around(tile);
+      sizes.emplace(std::pair(window.width, window.height), window);
+    }
+  const auto bytes = [&](const auto& size) { return memory.of(size.second).host; };
+  return std::ranges::max_element(sizes, {}, bytes)->second;
+}
+
+/// The bytes of host memory of the frame at once, which is read whole where only a region of it is computed.
+std::uint64_t bytes_at_once(const FrameSource& source, Surroundings& surroundings, const WindowLimits& limits) {
+  return limits.memory.of(surroundings.around(written_of(source))).host + (source.region ? raw_bytes_of(source) : 0);
 }
 
 }  // namespace
@@ -281,22 +300,48 @@ void require_numbered_lines(const FrameSource& source, const EstimatorSettings& 
          source.depth_path(), reach, farthest);
 }
 
-std::uint64_t WindowLimits::with_larger_codecs(std::uint64_t bytes) const {
-  const std::uint64_t without = bytes - std::min(bytes, memory.codec_bytes(room.bytes));
-  // What codecs take grows step by step, and by less than what they may take, so that this ends.
-  for (std::uint64_t more; (more = without + memory.codec_bytes(bytes)) > bytes;) bytes = more;
-  return bytes;
+std::string MemoryNeeds::cost() const {
+  return fmt::format("in {} parts, about {} times as long", parts,
+                     factor < 10 ? fmt::format("{:.2g}", factor) : fmt::format("{:.0f}", factor));
 }
 
-WindowLimits WindowLimits::in_parts(const FrameSource& source) const {
+MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, const WindowLimits& limits) {
+  const Window& whole = written_of(source);
+  const Window row{whole.x, whole.y, whole.width, std::min(whole.height, kLeastRows)};
+  MemoryNeeds needs;
+  needs.at_once = bytes_at_once(source, surroundings, limits);
+  WindowLimits smallest = limits;
+  smallest.kept = raw_bytes_of(source);
+  needs.least =
+      smallest.kept + row_bytes(limits, row) + limits.memory.of(largest_least(whole, surroundings, limits.memory)).host;
+  smallest.room = {.bytes = needs.least, .buffer_bytes = Room::kEndless};
+  // All of it at once may take less than such parts.
+  const auto cut = needs.least < needs.at_once ? Cutter(surroundings, smallest).cut(whole) : Cutter::Cut();
+  if (cut.rows.empty()) return {needs.at_once, needs.at_once};
+  needs.parts = 0;
+  for (const auto& tiles : cut.rows) needs.parts += tiles.size();
+  needs.factor = double(cut.pixels) / double(surroundings.around(whole).pixels());
+  return needs;
+}
+
+MemoryNeeds memory_needs(FrameSource& source, const Settings& settings, const WindowLimits& limits) {
+  if (!source.evidence) settle_by_rows(source, settings.input, limits.room.bytes);
+  const auto& channels = source.channels[RawPlane::depth];
+  Surroundings surroundings(source, settings, [&](const Window& rows) {
+    std::vector<float> depth(channels.size() * rows.pixels());
+    read_planes(source, rows, {{&channels, depth.data()}});
+    return depth;
+  });
+  return memory_needs(source, surroundings, limits);
+}
+
+WindowLimits WindowLimits::in_parts(FrameSource& source, const Settings& settings) const {
   WindowLimits limits = *this;
   limits.kept = raw_bytes_of(source);
   if (limits.kept < room.bytes) return limits;
-  // That is enough to compute all of the frame at once; what its tiles take, only its depth tells.
-  const std::uint64_t enough = memory.of(source.reading.data).host + (source.region ? limits.kept : 0);
   refuse(fmt::format("{}: its pixels take {} MiB as they are read: use a smaller frame", source.depth_path(),
                      mebibytes_above(limits.kept)),
-         enough);
+         memory_needs(source, settings, limits));
 }
 
 bool WindowLimits::allow(const Window& computed, std::uint64_t beside) const {
@@ -321,18 +366,31 @@ std::string WindowLimits::why_not(const Window& computed) const {
 
 void WindowLimits::refuse(const std::string& what, const Window& computed) const {
   const std::uint64_t bytes = memory.of(computed).host + kept;
-  if (bytes > room.bytes) refuse(what, bytes);
+  if (bytes > room.bytes) refuse(what, MemoryNeeds{bytes, bytes});
   if (std::max(computed.width, computed.height) > longest_side)
     fail(ErrorKind::device, "{}, or give --search steps, since lines of an exact search have at most {} pixels", what,
          longest_side);
   fail(ErrorKind::device, "{}, or use another --device, with more memory or larger buffers", what);
 }
 
-void WindowLimits::refuse(const std::string& what, std::uint64_t least) const {
-  least = with_larger_codecs(least);
+std::string WindowLimits::option_for(std::uint64_t bytes) const {
+  const std::uint64_t without = bytes - std::min(bytes, memory.codec_bytes(room.bytes));
+  std::uint64_t mebibytes = mebibytes_above(room.program_bytes + without);
+  // Terminates: codec memory grows more slowly than the limit, whose last MiB counts too.
+  while (without + memory.codec_bytes(mebibytes * kMebibyte - room.program_bytes) + room.program_bytes >
+         mebibytes * kMebibyte)
+    mebibytes++;
+  return fmt::format("{}M", mebibytes);
+}
+
+void WindowLimits::refuse(const std::string& what, const MemoryNeeds& needs) const {
+  const std::string at_once = fmt::format("--memory {}", option_for(needs.at_once));
   fail(room.is_chosen ? ErrorKind::usage : ErrorKind::device,
-       "{}, or let the run take at least --memory {}M, of which {} MiB are for the program itself", what,
-       mebibytes_above(room.program_bytes + least), mebibytes_above(room.program_bytes));
+       "{}, or let the run take at least {}; {} MiB are for the program itself", what,
+       needs.parts == 1 ? at_once
+                        : fmt::format("--memory {} ({}), or {} for all of it at once", option_for(needs.least),
+                                      needs.cost(), at_once),
+       mebibytes_above(room.program_bytes));
 }
 
 TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowLimits& limits,
@@ -341,13 +399,9 @@ TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowL
   const std::string what = fmt::format(
       "{}: within --radius a tile of the frame depends on too many pixels to compute at once: use a smaller --radius",
       source.depth_path());
-  const Window largest = largest_least(whole, surroundings);
-  const Window row{whole.x, whole.y, whole.width, std::min(whole.height, kLeastRows)};
-  const std::uint64_t of_tiles = limits.memory.of(largest).host + limits.kept + row_bytes(limits, row);
-  if (of_tiles <= limits.room.bytes) limits.refuse(what, largest);
-  // All of it at once may take less than such tiles.
-  const std::uint64_t at_once = limits.memory.of(surroundings.around(whole)).host + (source.region ? limits.kept : 0);
-  limits.refuse(what, std::min(of_tiles, at_once));
+  const MemoryNeeds needs = memory_needs(source, surroundings, limits);
+  if (needs.least > limits.room.bytes) limits.refuse(what, needs);
+  limits.refuse(what, largest_least(whole, surroundings, limits.memory));
 }
 
 }  // namespace alcove

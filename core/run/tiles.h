@@ -4,12 +4,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 #include "core/run/memory.h"
 
 namespace alcove {
@@ -22,7 +23,12 @@ Window region_of(const FrameSource& source, const Region& roi);
 /// and the filters of the settings.
 class Surroundings {
  public:
-  /// Of a settled frame, by its depth as it was read, which must stay.
+  /// Gives the depth of whole rows, as it is read.
+  using DepthRows = std::function<std::vector<float>(const Window& rows)>;
+
+  /// Of a settled frame, by its depth, which is asked for when it is needed.
+  Surroundings(const FrameSource& source, const Settings& settings, DepthRows depth);
+  /// The same by the depth of all of it, which must stay.
   Surroundings(const FrameSource& source, const Settings& settings, std::span<const float> depth);
 
   /// The window to compute for the results in a part to be, to the bit, what they are in the whole frame.
@@ -50,7 +56,7 @@ class Surroundings {
   Window within(Reach Block::*reach, const Window& window);
 
   const FrameSource& source_;
-  std::span<const float> depth_;  // over file_data_, components one behind the other
+  const DepthRows depth_;
   const Window file_data_;
   const int columns_;                       // blocks across the frame
   std::vector<std::vector<Block>> blocks_;  // row by row; empty: not known yet
@@ -67,6 +73,16 @@ class Surroundings {
 /// the frame is cut.
 void require_numbered_lines(const FrameSource& source, const EstimatorSettings& settings);
 
+/// The host memory that a frame needs, in bytes, and the cost of having no more than the least.
+struct MemoryNeeds {
+  std::uint64_t least = 0, at_once = 0;
+  std::size_t parts = 1;  // with the least
+  double factor = 1;      // pixels that the parts compute, for each that is computed at once
+
+  /// "in 62 parts, about 12 times as long".
+  std::string cost() const;
+};
+
 /// What decides whether a window can be computed at once.
 struct WindowLimits {
   FrameMemory memory;
@@ -75,8 +91,8 @@ struct WindowLimits {
   std::uint64_t kept = 0;                              // bytes of host memory that are taken whatever is computed
 
   /// The limits of a frame's parts, whose planes stay in host memory as they were read. Fails as refuse() does where
-  /// that has no room for them, and names what the whole frame takes.
-  WindowLimits in_parts(const FrameSource& source) const;
+  /// that has no room for them.
+  WindowLimits in_parts(FrameSource& source, const Settings& settings) const;
 
   /// `beside`: bytes of host memory that are taken meanwhile.
   bool allow(const Window& computed, std::uint64_t beside = 0) const;
@@ -85,13 +101,18 @@ struct WindowLimits {
   /// Fails for a frame that cannot be computed since this window is too large. `what` says so, and names what would
   /// mend it beside more memory.
   [[noreturn]] void refuse(const std::string& what, const Window& computed) const;
-  /// The same where so many bytes of host memory would do. It is ErrorKind::usage where the user has given less.
-  [[noreturn]] void refuse(const std::string& what, std::uint64_t least) const;
+  /// The same where so much host memory would do. It is ErrorKind::usage where the user has given less.
+  [[noreturn]] void refuse(const std::string& what, const MemoryNeeds& needs) const;
 
- private:
-  /// So many bytes of host memory with what codecs take beyond their present bytes where a run has them.
-  std::uint64_t with_larger_codecs(std::uint64_t bytes) const;
+  /// The --memory that leaves a frame so many bytes, with what codecs take beyond their present bytes where a run has
+  /// them: "395M".
+  std::string option_for(std::uint64_t bytes) const;
 };
+
+/// What a frame needs, cut into parts or not. It must be settled.
+MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, const WindowLimits& limits);
+/// The same by a depth that is read for it, row by row. Settles the frame where nobody has.
+MemoryNeeds memory_needs(FrameSource& source, const Settings& settings, const WindowLimits& limits);
 
 /// Rows of tiles from the top, each from the left.
 using TileRows = std::vector<std::vector<Window>>;

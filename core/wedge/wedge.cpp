@@ -161,7 +161,7 @@ class WedgeMaker {
   const bool has_page_;
   const DeviceSettings& device_ = looks_.front().settings.device;
   Lanes lanes_{{device_.device, device_.require_gpu, device_.validate, !device_.no_pipeline_cache}, 1};
-  const RunMemory memory_ = memory_for_frames(device_, lanes_.device().info());
+  const RunMemory memory_ = memory_for_frames(looks_.front().settings, lanes_.device().info());
   std::deque<FirstLook> firsts_;        // of each look
   std::optional<FrameSource> settled_;  // as which all are read
   ReadPlanes planes_;                   // of the frame

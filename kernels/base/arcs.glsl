@@ -23,7 +23,7 @@ float angle_of(float cosine, float sine) {
   const float c = abs(cosine), s = abs(sine);
   const float r = min(c, s) / max(max(c, s), 1e-30), q = r * r;
   float a = r * ((((0.0208351 * q - 0.0851330) * q + 0.1801410) * q - 0.3302995) * q + 0.9998660);
-  if (s > c) a = kHalfPi - a;
-  if (cosine < 0.0) a = kPi - a;
-  return sine < 0.0 ? -a : a;
+  a = mix(a, kHalfPi - a, s > c);
+  a = mix(a, kPi - a, cosine < 0.0);
+  return mix(a, -a, sine < 0.0);
 }

@@ -12,6 +12,13 @@
 const float kLeastRise = 4e-3;
 const float kLeastElevation = 1e-3;  // sine
 
+/// Whether what stands so high above the tangent plane, at a distance whose square is given, stands above an elevation.
+/// per_elevation: one over its sine. The square of a small height would underflow where units are large.
+bool is_elevated(float height, float per_elevation, float distance_sq) {
+  const float height_by_sine = height * per_elevation;
+  return height_by_sine * height_by_sine > distance_sq;
+}
+
 /// What goes on beyond the border counts where it stands so high above the tangent plane, in radii: a floor that the
 /// border cuts stays open, whatever its normal map.
 const float kLeastRisen = 0.1;

@@ -16,8 +16,8 @@ uint pack_normal(vec3 n) {
 /// A vector of any length in the direction that the map holds at p.
 vec3 octahedral_direction(vec2 p) {
   vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-  if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * mix(vec2(-1), vec2(1), greaterThanEqual(n.xy, vec2(0)));
-  return n;
+  const vec2 folded = (1.0 - abs(n.yx)) * mix(vec2(-1), vec2(1), greaterThanEqual(n.xy, vec2(0)));
+  return vec3(mix(n.xy, folded, bvec2(n.z < 0.0)), n.z);
 }
 
 vec3 unpack_normal(uint word) { return normalize(octahedral_direction(unpackSnorm2x16(word))); }

@@ -4,6 +4,9 @@
 /// Surfaces are one if they are no farther apart than so many times what a depth may be off.
 const float kPrecisions = 4.0;
 
+/// A depth to reckon with; sums with that of sky would overflow.
+float finite_depth(float z) { return min(z, 1e18); }
+
 /// The width of a pixel at planar depth z, scene units.
 float pixel_width(View view, float z) { return view.tangent_per_pixel.x * (view.orthographic != 0 ? 1.0 : z); }
 

@@ -1,6 +1,10 @@
 // Pixel <-> view space, for perspective and orthographic projections. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 
+/// The largest power of two that is not above a depth. Lengths that are divided by it keep their bits, and products of
+/// several neither overflow nor underflow, whatever the scene's units.
+float power_of_two(float z) { return uintBitsToFloat(floatBitsToUint(clamp(z, 1e-30, 1e30)) & 0x7f800000u); }
+
 /// The point where the ray of an image point meets the plane at unit depth (perspective), or its place in the plane
 /// (orthographic).
 vec2 tangent_of(View view, vec2 point_px) { return (point_px - view.center) * view.tangent_per_pixel; }

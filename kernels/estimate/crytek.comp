@@ -114,7 +114,7 @@ void main() {
     const ivec2 aside = abs(hit - pixel);
     const bool clear =
         hit_height > clearance + least_rise(params.view) * float(max(aside.x, aside.y)) * (perspective ? hit_z : 1.0);
-    const bool above = clear && hit_height * hit_height > kLeastElevation * kLeastElevation * dot(offset, offset);
+    const bool above = clear && is_elevated(hit_height, 1.0 / kLeastElevation, dot(offset, offset));
     if (above && deeper > params.bias) blocked += range_weight(hit_z - z);
   }
   ao[ao_index] = valid > 0.0 ? max(0.0, 1.0 - blocked / valid) : 1.0;  // a / a may be more than 1

@@ -114,7 +114,7 @@ struct Clipped {
 /// slope_of() the back of an occluder that is endless: where the eye's ray through its front (across, toward) leaves
 /// the sphere.
 float back_of(vec2 front, float eye_distance, float radius_sq) {
-  const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1);
+  const vec2 ray = mix(vec2(0, -1), front - vec2(0, eye_distance), bvec2(eye_distance < kNone));
   const vec2 direction = ray * inversesqrt(dot(ray, ray));
   const float middle = dot(front, direction);
   const float leaves = sqrt(max(0.0, middle * middle - dot(front, front) + radius_sq)) - middle;
@@ -124,13 +124,13 @@ float back_of(vec2 front, float eye_distance, float radius_sq) {
 /// slope_of() where the eye's ray through a front (across, toward) enters what of a solid lies within the sphere, and
 /// where it leaves that; (-1, 1): nothing of it lies there. The solid is `thickness` deep. back: its end.
 vec2 depths_of(vec2 front, float eye_distance, float thickness, float radius_sq, out vec2 back) {
-  const vec2 ray = eye_distance < kNone ? front - vec2(0, eye_distance) : vec2(0, -1);
+  const vec2 ray = mix(vec2(0, -1), front - vec2(0, eye_distance), bvec2(eye_distance < kNone));
   const vec2 direction = ray * inversesqrt(dot(ray, ray));
   const float middle = dot(front, direction);
   const float outside_sq = dot(front, front) - radius_sq;
   const float inside_sq = middle * middle - outside_sq;
   const float inside = sqrt(max(0.0, inside_sq));
-  const float enters = outside_sq > 0.0 ? -inside - middle : 0.0;
+  const float enters = mix(0.0, -inside - middle, outside_sq > 0.0);
   const float leaves = min(thickness, inside - middle);
   back = front + thickness * direction;
   const bool exists =
@@ -155,9 +155,6 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
   precise const vec2 near = from + enters * along, far = from + leaves * along;
   return Clipped(near, far, both(inside_sq > 0.0, enters <= leaves));
 }
-
-/// The largest power of two that is not above a depth.
-float power_of_two(float z) { return uintBitsToFloat(floatBitsToUint(clamp(z, 1e-30, 1e30)) & 0x7f800000u); }
 
 /// The stroke that ends at a vertex `steps` from the receiver. It begins at the vertex before. Nothing is seen before
 /// the first vertex of a side, to which it begins at the pixel next to the receiver. A vertex that begins a run stands

@@ -81,7 +81,7 @@ float occlusion(Direction side, ivec2 pixel, vec3 position, float jitter) {
     const float height = dot(in_slice, side.normal);
     const bool clear =
         height > side.least_height + least_rise(params.view) * step_px * (params.view.orthographic == 0 ? z : 1.0);
-    const bool above = clear && height * height > kLeastElevation * kLeastElevation * squared_distance;
+    const bool above = clear && is_elevated(height, 1.0 / kLeastElevation, squared_distance);
     const float elevation = unit * (params.from_surface != 0 ? height : in_slice.y);
     if (!above || in_slice.x <= 0.0 || elevation <= horizon) continue;
     // 4.

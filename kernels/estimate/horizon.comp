@@ -384,7 +384,7 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
                                                                          : slopes.y);
     if (!kHard) add_faded(found, side, reach, draw, s.place);
     last = s;
-    last.distance_sq = s.above ? s.distance_sq : kNone;
+    last.distance_sq = s.above ? s.distance_sq : kBeyondSq;
   }
 }
 

@@ -21,10 +21,10 @@ struct LinePlane {
 };
 
 /// Steps of a line that goes over the whole image, and lines side by side.
-ivec2 extent_of(View view, Lines lines) { return lines.steep != 0 ? view.size.yx : view.size; }
+ivec2 extent_of(View view, Lines lines) { return mix(view.size, view.size.yx, bvec2(lines.steep != 0)); }
 
 int index_at(View view, Lines lines, int step, int across) {
-  return lines.steep != 0 ? step * view.size.x + across : across * view.size.x + step;
+  return mix(across * view.size.x + step, step * view.size.x + across, lines.steep != 0);
 }
 
 /// The pixels that lines have moved across at a step: whole ones, and the rest, in [-0.5, 0.5).
@@ -63,8 +63,8 @@ vec2 place_at(View view, LinePlane plane, float step, float z) {
 /// tangent_of() the centre of a pixel, counted along and across from the display window's corner, so that it is the
 /// same in a crop.
 vec2 tangent_at(View view, Lines lines, ivec2 along_and_across) {
-  const ivec2 origin = lines.steep != 0 ? lines.origin.yx : lines.origin;
-  const ivec2 pixel = lines.steep != 0 ? along_and_across.yx : along_and_across;
+  const ivec2 origin = mix(lines.origin, lines.origin.yx, bvec2(lines.steep != 0));
+  const ivec2 pixel = mix(along_and_across, along_and_across.yx, bvec2(lines.steep != 0));
   return (vec2(pixel) + 0.5 - (view.center + vec2(origin))) * view.tangent_per_pixel;
 }
 

@@ -16,6 +16,9 @@
 
 const float kNone = 1e30;
 
+/// A squared distance beyond every sphere.
+const float kBeyondSq = 3e38;
+
 /// A straight piece of a surface in the slice.
 struct Piece {
   vec2 near, far;
@@ -23,7 +26,9 @@ struct Piece {
 };
 
 /// The way from a place to the eye, of any length.
-vec2 toward_eye(Receiver r, vec2 place) { return r.perspective ? vec2(0, r.eye_distance) - place : vec2(0, 1); }
+vec2 toward_eye(Receiver r, vec2 place) {
+  return mix(vec2(0, 1), vec2(0, r.eye_distance) - place, bvec2(r.perspective));
+}
 
 /// A normal within the slice, as a unit vector; `word` is packed.
 vec2 normal_in_slice(Receiver r, Side side, uint word) {
@@ -101,7 +106,7 @@ Sample sample_at(Receiver r, Side side, Reach reach, float offset) {
 ivec2 pixel_at(Receiver r, Side side, float offset) { return r.pixel + ivec2(round(side.direction_px * offset)); }
 
 /// The sample before the first one.
-Sample receiver_sample(Receiver r) { return Sample(0.0, r.z, 1.0, vec2(0), 0.0, kNone, true, true); }
+Sample receiver_sample(Receiver r) { return Sample(0.0, r.z, 1.0, vec2(0), 0.0, kBeyondSq, true, true); }
 
 /// The samples of a search among which surfaces are interrupted, as bits: as many as a word has at a time.
 const int kWordBits = 32;
@@ -131,19 +136,20 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
   const Sample last = sample_at(r, side, reach, step_offset(at - 1, int(kSteps), count, side.reach, draw.jitter));
   const bool is_back = s.z > last.z;  // the sample itself goes on, towards the receiver
   const vec2 end = is_back ? s.place : last.place, hider = is_back ? last.place : s.place;
-  const int first_before = before != 0u ? findMSB(before) : 0, first_after = after != 0u ? findLSB(after) : kWordBits;
-  const int other = is_back ? min(found.first + first_before, at - 1) : min(found.first + first_after, behind_last) - 1;
+  const int first_before = max(findMSB(before), 0), first_after = mix(findLSB(after), kWordBits, after == 0u);
+  const int other =
+      mix(min(found.first + first_after, behind_last) - 1, min(found.first + first_before, at - 1), is_back);
   const ivec2 hit = pixel_at(r, side, is_back ? s.offset : last.offset);
   const vec2 n = normal_in_slice(r, side, normal[hit.y * reach.width + hit.x]);
   const Sample opposite = sample_at(r, side, reach, step_offset(other, int(kSteps), count, side.reach, draw.jitter));
   const bool hides_all = dot(n, opposite.place - end) > 0.0;
   vec2 until = hides_all ? opposite.place : hider;
-  const int next = is_back ? other - 1 : other + 1;
+  const int next = mix(other + 1, other - 1, is_back);
   const bool goes_on = both(hides_all, both(next >= 0, next < behind_last));
   const Sample beyond = sample_at(
       r, side, reach, step_offset(clamp(next, 0, behind_last - 1), int(kSteps), count, side.reach, draw.jitter));
   until = both(goes_on, both(beyond.above, dot(n, beyond.place - end) > 0.0)) ? beyond.place : until;
-  const vec2 onward = is_back ? vec2(-n.y, n.x) : vec2(n.y, -n.x);
+  const vec2 onward = mix(vec2(n.y, -n.x), vec2(-n.y, n.x), bvec2(is_back));
   Piece piece = piece_of(reach, end, onward, seen_at(r, end, onward, n, until));
   piece.exists = both(piece.exists, both(is_told_by(n, r, end), dot(n, hider - end) > 0.0));
   return piece;

@@ -45,11 +45,10 @@ struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
   float front_sq;                          // of the farthest front that may block, squared
   float thickness;                         // scene units, infinite allowed; 0: as deep as wide
-  // square of the sine of the elevation above the tangent plane below which nothing blocks
-  float least_elevation_sq;
-  float least_rise;  // of a sample: see clearance.glsl
-  float pixel_size;  // scene units at unit depth (orthographic: at any)
-  int width;         // of the image, px
+  float per_elevation;  // one over the sine of the elevation above the tangent plane below which nothing blocks
+  float least_rise;     // of a sample: see clearance.glsl
+  float pixel_size;     // scene units at unit depth (orthographic: at any)
+  int width;            // of the image, px
 };
 
 struct Receiver {
@@ -215,10 +214,8 @@ float height_of(Receiver r, vec2 offset, float z, float scale) {
 /// steps: from the receiver to the sample.
 bool is_above(Receiver r, Reach reach, vec2 place, float distance_sq, float steps, vec2 offset, float z, float scale) {
   const float height = height_of(r, offset, z, scale);
-  const bool clear = height > r.least_height + scale * (reach.least_rise * steps)
-                         ? height * height > reach.least_elevation_sq * distance_sq
-                         : false;
-  return place.x > 0.0 ? clear : false;
+  const bool clear = height > r.least_height + scale * (reach.least_rise * steps);
+  return both(place.x > 0.0, both(clear, is_elevated(height, reach.per_elevation, distance_sq)));
 }
 
 /// Stands for an angle: a number that is cheaper than its cotangent and falls as that does, from 1 at V to -1.
@@ -229,13 +226,13 @@ vec2 place_at(float slope) { return vec2(1.0 - abs(slope), slope); }
 
 Reach reach_of(View view, float radius, float falloff_start, float front, float thickness, float bias) {
   const float least = max(bias, kLeastElevation);
-  return Reach(radius, radius * radius, falloff_start, front * front, thickness, least * least, least_rise(view),
+  return Reach(radius, radius * radius, falloff_start, front * front, thickness, 1.0 / least, least_rise(view),
                view.tangent_per_pixel.x, view.size.x);
 }
 
 /// The exponent with which the distance grows with the sample's number.
 float step_exponent(int steps, float reach) {
-  return steps > kManySteps ? clamp(log2(max(reach, 1.0)) / log2(float(steps)), 1.0, 2.0) : 2.0;
+  return mix(2.0, clamp(log2(max(reach, 1.0)) / log2(float(steps)), 1.0, 2.0), steps > kManySteps);
 }
 
 /// Steps from the receiver to sample k of `steps`, of which `count` are pixels apart; never two samples in one pixel:
@@ -243,12 +240,12 @@ float step_exponent(int steps, float reach) {
 float step_offset(int k, int steps, int count, float reach, float jitter) {
   const float x = (float(k) + jitter) / float(steps);
   return count < steps ? float(k + 1)
-                       : max(float(k + 1), (steps > kManySteps ? pow(x, step_exponent(steps, reach)) : x * x) * reach);
+                       : max(float(k + 1), mix(x * x, pow(x, step_exponent(steps, reach)), steps > kManySteps) * reach);
 }
 
 /// Whether two samples `gap` steps apart are taken for one surface.
 bool same_surface(Receiver r, Reach reach, float z, float last_z, float gap) {
-  return abs(z - last_z) < kRunSlope * reach.pixel_size * gap * (r.perspective ? lesser(z, last_z) : 1.0);
+  return abs(z - last_z) < kRunSlope * reach.pixel_size * gap * mix(1.0, lesser(z, last_z), r.perspective);
 }
 
 /// Of the tolerance for two samples the part, beside that of a pixel, that the pixel in their middle has to each: more
@@ -276,7 +273,7 @@ float arc_to(Side side, vec2 place) {
 /// The direction of the eye's own ray at a place.
 vec2 away_from_eye(Receiver r, vec2 place) {
   const vec2 ray = place - vec2(0, r.eye_distance);
-  return r.perspective ? ray * inversesqrt(dot(ray, ray)) : vec2(0, -1);
+  return mix(vec2(0, -1), ray * inversesqrt(dot(ray, ray)), bvec2(r.perspective));
 }
 
 /// The back of an occluder whose front is at `front`: `thickness` further along the eye's own ray, but not beyond the
@@ -291,8 +288,8 @@ vec2 back_of(Receiver r, vec2 front, float thickness, float radius) {
 /// The thickness of a run by its width: a long one levels off, a wall is not as thick as it is long. most: the width
 /// from which it grows no more.
 float levelled(float width, float most) {
-  const float counted = lesser(width, most);
-  return counted - counted * counted * counted / (3.0 * most * most);
+  const float part = lesser(width / most, 1.0);  // a length's third power would overflow
+  return most * part * (1.0 - part * part / 3.0);
 }
 
 /// Whether a place lies outside of the sphere of the radius, and the eye's ray comes nearer to the receiver behind it.

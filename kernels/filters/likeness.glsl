@@ -18,7 +18,7 @@ const float kLeastSimilarity = 1e-4;
 
 struct Tap {
   float z;
-  float scale;  // scene units per unit of tangent_of(): z, or 1 where the view is orthographic
+  float scale;  // scene units per unit of tangent_of(): z, or 1 where the view is orthographic, and of sky
   // height above this tap's plane, in sigmas, of what is a unit further away, and a pixel along the axis at scale 1
   float ahead, across;
 };
@@ -31,7 +31,8 @@ Tap tap_at(ivec2 pixel) {
   Tap tap = Tap(known ? depth[index] : kSkyDepth, 1.0, kSkyDepth, 0.0);
   if (kByDepth != 0) return tap;
   const bool perspective = params.view.orthographic == 0;
-  tap.scale = perspective ? tap.z : 1.0;
+  // Sky keeps a scale of 1: times that of its depth, what is across a small surface would overflow.
+  tap.scale = perspective && tap.z < kSkyDepth ? tap.z : 1.0;
   const vec3 n = unpack_normal(normal[index]);
   const vec2 pixel_step = vec2(params.axis) * params.view.tangent_per_pixel;
   const vec2 tangent = tangent_of(params.view, vec2(nearest) + 0.5);

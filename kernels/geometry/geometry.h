@@ -27,6 +27,10 @@ ALCOVE_CONSTANT uint kNormalXy = 2;          // x, y of a unit vector with z >= 
 ALCOVE_CONSTANT uint kNormalOctahedral = 3;  // two coordinates in [-1, 1]
 ALCOVE_CONSTANT uint kNormalSpheremap = 4;   // two coordinates in [-1, 1]
 
+// Pixels of a column that one invocation of `prepare` makes. They share the atomics by which they are counted, each of
+// which takes lavapipe as long as several pixels.
+ALCOVE_CONSTANT uint kPrepareRun = 8;
+
 struct PrepareParams {
   View view;
   vec3 view_from_normal_x;  // rows of the rotation from the normals' space to view space

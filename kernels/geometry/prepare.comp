@@ -39,20 +39,25 @@ writeonly buffer Missing { GroupCount missing; };  // of reconstruct: z becomes 
 /// Normals shorter than this are no direction at all (a background of zeros).
 const float kLeastLength = 1e-6;
 
+/// The numbers of an invocation's pixels, as FrameCounts has them, and whether one is left to `reconstruct`.
+struct Tally {
+  uint sky, repaired_depth, repaired_normals;
+  bool leaves_one;
+};
+
 /// 1. Planar depth in scene units, kSkyDepth where there is no surface.
-float depth_at(ivec2 pixel) {
-  const int index = index_of(params.view, pixel), plane = params.view.size.x * params.view.size.y;
+float depth_at(View view, DepthTerms terms, ivec2 pixel) {
+  const int index = index_of(view, pixel), plane = view.size.x * view.size.y;
   vec3 raw = vec3(raw_depth[index], 0, 0);
   if (kDepthForm == kDepthPosition) raw.yz = vec2(raw_depth[index + plane], raw_depth[index + 2 * plane]);
-  return planar_depth(kDepthForm, params.depth, params.view, pixel, raw);
+  return planar_depth(kDepthForm, terms, view, pixel, raw);
 }
 
 /// 2. The file's normal as a vector, in its own space and of any length; zero where it is none.
-vec3 decoded_normal(int index) {
-  const int plane = params.view.size.x * params.view.size.y;
+vec3 decoded_normal(int index, int plane, bool is_unorm) {
   vec3 raw = vec3(raw_normal[index], raw_normal[index + plane], 0);
   if (kNormalForm == kNormalVector) raw.z = raw_normal[index + 2 * plane];
-  if (params.normal_unorm != 0) raw = 2.0 * raw - 1.0;
+  if (is_unorm) raw = 2.0 * raw - 1.0;
   const float squared = dot(raw.xy, raw.xy);
   switch (kNormalForm) {
     case kNormalXy: return vec3(raw.xy, sqrt(max(1.0 - squared, 0.0)));
@@ -63,34 +68,45 @@ vec3 decoded_normal(int index) {
   }
 }
 
+void add_to_counts(Tally tally) {
+  if (tally.sky > 0u) atomicAdd(counts.sky, tally.sky);
+  if (tally.repaired_depth > 0u) atomicAdd(counts.repaired_depth, tally.repaired_depth);
+  if (tally.repaired_normals > 0u) atomicAdd(counts.repaired_normals, tally.repaired_normals);
+  if (tally.leaves_one) missing.z = 1u;  // every invocation that writes it writes the same
+}
+
 void main() {
-  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (!inside(params.view, pixel)) return;
-  const int index = index_of(params.view, pixel);
-
-  const float z = depth_at(pixel);
-  depth[index] = z;
-  if (z >= kSkyDepth) {
-    normal[index] = pack_normal(vec3(0, 0, 1));
-    atomicAdd(counts.sky, 1u);
-    if (is_nan(raw_depth[index]) || raw_depth[index] < params.depth.sky_below) atomicAdd(counts.repaired_depth, 1u);
-    return;
-  }
-
-  vec3 n = vec3(0);
-  if (kNormalForm != kNormalNone) {
-    const vec3 raw = decoded_normal(index);
-    // 3.
-    n = vec3(dot(params.view_from_normal_x, raw), dot(params.view_from_normal_y, raw),
-             dot(params.view_from_normal_z, raw));
-  }
-  const float size = length(n);
-  const bool usable = is_finite(size) && size > kLeastLength;
-  const vec3 eye = toward_eye(params.view, position_of(params.view, vec2(pixel) + 0.5, z));
-  n /= size;
-  // 4.
-  const bool is_away = dot(n, eye) < -kLeastFacing;  // rounding does not make it face the eye
-  if (!usable || is_away) missing.z = 1u;            // every invocation that writes it writes the same
-  if (!usable && kNormalForm != kNormalNone) atomicAdd(counts.repaired_normals, 1u);
-  normal[index] = !usable ? kNoNormal : pack_normal(is_away ? n : facing(n, eye));
+  // lavapipe reads parameters anew in each round of a loop, so the loop has copies.
+  const View view = params.view;
+  const DepthTerms terms = params.depth;
+  const vec3 to_x = params.view_from_normal_x, to_y = params.view_from_normal_y, to_z = params.view_from_normal_z;
+  const bool is_unorm = params.normal_unorm != 0;
+  const ivec2 first = ivec2(gl_GlobalInvocationID.xy * uvec2(1u, kPrepareRun));
+  Tally tally = Tally(0u, 0u, 0u, false);
+  int i = 0;
+  do {
+    const ivec2 pixel = first + ivec2(0, i);
+    if (!inside(view, pixel)) continue;
+    const int index = index_of(view, pixel);
+    const float z = depth_at(view, terms, pixel);
+    const bool is_sky = z >= kSkyDepth;
+    vec3 n = vec3(0);
+    if (kNormalForm != kNormalNone) {
+      const vec3 raw = decoded_normal(index, view.size.x * view.size.y, is_unorm);
+      n = vec3(dot(to_x, raw), dot(to_y, raw), dot(to_z, raw));  // 3.
+    }
+    const float size = length(n);
+    const bool usable = is_finite(size) && size > kLeastLength;
+    const vec3 eye = toward_eye(view, position_of(view, vec2(pixel) + 0.5, z));
+    n /= size;
+    const bool is_away = dot(n, eye) < -kLeastFacing;               // rounding does not make it face the eye
+    const uint turned = pack_normal(is_away ? n : facing(n, eye));  // 4.
+    depth[index] = z;
+    normal[index] = is_sky ? pack_normal(vec3(0, 0, 1)) : usable ? turned : kNoNormal;
+    tally.sky += uint(is_sky);
+    tally.repaired_depth += uint(is_sky && (is_nan(raw_depth[index]) || raw_depth[index] < terms.sky_below));
+    tally.repaired_normals += uint(!is_sky && !usable && kNormalForm != kNormalNone);
+    tally.leaves_one = tally.leaves_one || (!is_sky && (!usable || is_away));
+  } while (++i < int(kPrepareRun));
+  add_to_counts(tally);
 }

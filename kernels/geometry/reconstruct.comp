@@ -74,8 +74,10 @@ vec3 tangent_along(ivec2 pixel, ivec2 axis, vec3 position, float here) {
 
 vec3 normal_from_depth(ivec2 pixel, vec3 position, vec3 eye) {
   const float here = affine_depth(pixel);
-  const vec3 right = tangent_along(pixel, ivec2(1, 0), position, here);
-  const vec3 down = tangent_along(pixel, ivec2(0, 1), position, here);
+  // Below are products of four lengths.
+  const float per_unit = 1.0 / power_of_two(-position.z);
+  const vec3 right = per_unit * tangent_along(pixel, ivec2(1, 0), position, here);
+  const vec3 down = per_unit * tangent_along(pixel, ivec2(0, 1), position, here);
   // With one tangent only, the surface is taken to be as flat towards the eye as it allows; with none, to face the eye.
   vec3 n = cross(down, right);
   const vec3 only = right + down;

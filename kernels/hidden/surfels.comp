@@ -29,7 +29,7 @@ bool has_alike(ivec2 pixel, ivec2 axis, vec3 position, vec3 n, float tolerance) 
   for (int side = -1; side <= 1; side += 2) {
     const ivec2 at = pixel + side * axis;
     const float z = inside(params.view, at) ? depth[index_of(params.view, at)] : kSkyDepth;
-    const float height = dot(n, position_of(params.view, vec2(at) + 0.5, min(z, 1e15)) - position);
+    const float height = dot(n, position_of(params.view, vec2(at) + 0.5, finite_depth(z)) - position);
     is_alike = is_alike || z < kSkyDepth && abs(height) <= tolerance;
   }
   return is_alike;
@@ -48,7 +48,7 @@ void main() {
   if (!inside(params.view, pixel)) return;
   const int index = index_of(params.view, pixel);
   const float z = depth[index];
-  const bool fits = z < kSkyDepth && is_fit(pixel, min(z, 1e15), normal[index]);
+  const bool fits = z < kSkyDepth && is_fit(pixel, finite_depth(z), normal[index]);
   uint near = 0u;
   for (int y = -1; y <= 1; y++)
     for (int x = -1; x <= 1; x++)

@@ -55,11 +55,11 @@ int index_in(TakenFrame other, vec3 here, vec3 n, out uint second) {
   const ivec2 place = pixel_of(to, position), nearest = clamp(place, ivec2(0), to.size - 1);
   const int index = index_of(to, nearest);
   const float z = abs(uintBitsToFloat(others[other.first + uint(index)]));
-  const vec3 beside = position_of(to, vec2(nearest) + 0.5, min(z, 1e15)) - position;
+  const vec3 beside = position_of(to, vec2(nearest) + 0.5, finite_depth(z)) - position;
   second = others[other.first + uint(index + pixels_of(to.size))];
   const vec3 seen = normalize(octahedral_direction(unpackSnorm4x8(second).xy));
   const float tolerance =
-      kPrecisions * error_at(other.depth_precision, min(z, 1e15)) + kHalfPixel * pixel_width(to, min(z, 1e15));
+      kPrecisions * error_at(other.depth_precision, finite_depth(z)) + kHalfPixel * pixel_width(to, finite_depth(z));
   const bool is_same = -position.z > 0.0 && place == nearest && z < kSkyDepth && (second & 0xffffu) != kNoTakenNormal &&
                        abs(dot(beside, facing)) <= tolerance && abs(dot(beside, seen)) <= tolerance &&
                        dot(facing, seen) >= kLeastAgreement;
@@ -105,7 +105,7 @@ void main() {
   const float z = depth[index];
   const uint word = normal[index];
   const bool is_surface = z < kSkyDepth && word != kNoNormal;
-  const vec3 here = position_of(params.view, vec2(in_frame) + 0.5, min(z, 1e15)), n = unpack_normal(word);
+  const vec3 here = position_of(params.view, vec2(in_frame) + 0.5, finite_depth(z)), n = unpack_normal(word);
   const Around cells = around(here);
   [[unroll]] for (int i = 0; i < kListed; i++) {
     const TakenFrame other = frames[i];

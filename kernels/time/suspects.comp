@@ -32,7 +32,7 @@ float depth_at(bool of_own, TakenFrame other, ivec2 pixel) {
   return abs(of_own ? own[index_of(params.view, pixel)] : others[other.first + uint(index_of(other.view, pixel))]);
 }
 
-vec3 position_in(View view, ivec2 pixel, float z) { return position_of(view, vec2(pixel) + 0.5, min(z, 1e15)); }
+vec3 position_in(View view, ivec2 pixel, float z) { return position_of(view, vec2(pixel) + 0.5, finite_depth(z)); }
 
 /// Whether a frame may see past a surface at a position in its view space: what it has there is farther than the
 /// position, and not on the surface's plane, which at a grazing angle is far off within a pixel.

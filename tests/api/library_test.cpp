@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <thread>
 
+#include "core/base/half.h"
 #include "core/base/version.h"
+#include "tests/support/difference.h"
 #include "tests/support/library.h"
 
 namespace alcove::library_test {
@@ -230,7 +232,103 @@ TEST_F(Library, takes_what_lies_behind) {
   EXPECT_EQ(ao, compute_ao(recorder(), known, settings).ao);
   EXPECT_NE(ao, truth());
   EXPECT_OK(handle, alcove_set(handle.get(), "behind-kind", "backs,fronts"));
-  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "--behind-kind");
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "'behind-kind'");
+}
+
+// What the program measures of files.
+
+TEST_F(Library, measures_how_depth_was_rounded) {
+  const Handle handle = with_camera();
+  give_planes(handle);
+  const alcove_layout one = packed(width(), height());
+  std::vector<float> depth = frame().depth;
+  for (float& z : depth) z = std::round(z * 50) / 50;
+  EXPECT_OK(handle, alcove_plane(handle.get(), "depth", depth.data(), &one));
+  HostFrame known = frame();
+  known.depth = depth;
+  EstimatorSettings settings;
+  settings.radius = 0.35;
+  const std::vector<float> unmeasured = compute_ao(recorder(), known, settings).ao;
+  known.depth_step = 0.02;
+  known.depth_is_coarse = true;
+  const std::vector<float> measured = compute_ao(recorder(), known, settings).ao, ao = ao_of(handle);
+  EXPECT_LT(difference(ao, measured).rmse, 1e-4);
+  EXPECT_GT(difference(ao, unmeasured).rmse, 0.01);
+  EXPECT_THAT(alcove_notes(handle.get()), HasSubstr("depth was rounded: at its median"));
+}
+
+TEST_F(Library, tells_of_half_floats_and_refuses_depth_of_8_bits) {
+  const Handle handle = with_camera();
+  give_planes(handle);
+  std::vector<std::uint16_t> halves;
+  for (const float z : frame().depth) halves.push_back(to_half(z));
+  alcove_layout one = packed(width(), height());
+  one.type = ALCOVE_HALF;
+  EXPECT_OK(handle, alcove_plane(handle.get(), "depth", halves.data(), &one));
+  EXPECT_OK(handle, alcove_run(handle.get(), 0));
+  EXPECT_THAT(alcove_notes(handle.get()), HasSubstr("depth is stored as half float"));
+  one.type = ALCOVE_FLOAT;
+  std::vector<float> bytes = frame().depth;
+  for (float& z : bytes) z = std::round(std::min(255.0F, 20 * z)) / 255;
+  EXPECT_OK(handle, alcove_plane(handle.get(), "depth", bytes.data(), &one));
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_INPUT, "depth holds only values of 8 bits");
+}
+
+// What is left.
+
+TEST_F(Library, writes_results_over_the_planes_that_were_given) {
+  const Handle handle = with_camera();
+  give_planes(handle);
+  std::vector<float> plane = frame().depth;
+  const alcove_layout one = packed(width(), height());
+  EXPECT_OK(handle, alcove_plane(handle.get(), "depth", plane.data(), &one));
+  for (int time = 0; time < 2; time++) {
+    EXPECT_OK(handle, alcove_run(handle.get(), 0));
+    EXPECT_OK(handle, alcove_get(handle.get(), "ao", plane.data(), &one));
+    EXPECT_EQ(plane, truth()) << time;
+  }
+}
+
+TEST_F(Library, stays_usable_after_calls_that_failed) {
+  const Handle handle = with_camera();
+  give_planes(handle);
+  EXPECT_EQ(ao_of(handle), truth());
+  // All but a run leaves the results, and what they are written into.
+  std::vector<float> untouched(frame().data.pixels(), -1);
+  const alcove_layout one = packed(width(), height()), narrow = packed(width() - 1, height());
+  EXPECT_NE(alcove_set(handle.get(), "radius", "none"), ALCOVE_OK);
+  EXPECT_NE(alcove_plane(handle.get(), "depth", untouched.data(), nullptr), ALCOVE_OK);
+  EXPECT_NE(alcove_get(handle.get(), "bent-normal", untouched.data(), &one), ALCOVE_OK);
+  EXPECT_NE(alcove_get(handle.get(), "ao", untouched.data(), &narrow), ALCOVE_OK);
+  EXPECT_NE(alcove_get(handle.get(), "ao", untouched.data(), nullptr), ALCOVE_OK);
+  EXPECT_EQ(untouched, std::vector<float>(untouched.size(), -1));
+  std::vector<float> ao(untouched);
+  EXPECT_OK(handle, alcove_get(handle.get(), "ao", ao.data(), &one));
+  EXPECT_EQ(ao, truth());
+  EXPECT_OK(handle, alcove_set(handle.get(), "aov", "nothing"));
+  EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "nothing");
+  EXPECT_EQ(alcove_components(handle.get(), "ao"), 0);
+  EXPECT_TRUE(std::isnan(alcove_number(handle.get(), "radius")));
+  EXPECT_REFUSED(handle, alcove_get(handle.get(), "ao", untouched.data(), &one), ALCOVE_USAGE, "nothing was computed");
+  EXPECT_EQ(untouched, std::vector<float>(untouched.size(), -1));
+  EXPECT_OK(handle, alcove_set(handle.get(), "aov", nullptr));
+  EXPECT_EQ(ao_of(handle), truth());
+}
+
+TEST_F(Library, takes_pictures_of_one_pixel_one_row_and_one_column) {
+  const Handle handle(alcove_new());
+  EXPECT_OK(handle, alcove_set(handle.get(), "device", device().info().name.c_str()));
+  EXPECT_OK(handle, alcove_set(handle.get(), "radius", "0.5"));
+  EXPECT_OK(handle, alcove_set(handle.get(), "fov", "60"));
+  const std::vector<float> depth(70'000, 1);
+  for (const auto& [width, height] : {std::pair(1, 1), {70'000, 1}, {1, 70'000}}) {
+    const alcove_layout one = packed(width, height);
+    std::vector<float> ao(std::size_t(width) * std::size_t(height), -1);
+    EXPECT_OK(handle, alcove_plane(handle.get(), "depth", depth.data(), &one));
+    EXPECT_OK(handle, alcove_run(handle.get(), 0));
+    EXPECT_OK(handle, alcove_get(handle.get(), "ao", ao.data(), &one));
+    EXPECT_GE(*std::ranges::min_element(ao), 0) << width << " x " << height;
+  }
 }
 
 TEST_F(Library, keeps_handles_of_several_threads_apart) {

@@ -4,6 +4,9 @@
 // After a change of what presets compute: ALCOVE_STORE_VALUES=1 build/tests/bench_tests device_check_test writes the
 // stored values anew, for the next build.
 #include "core/bench/device_check.h"
+
+#include <future>
+
 #include "core/options/options.h"
 #include "tests/support/device.h"
 #include "tests/support/program.h"
@@ -35,6 +38,14 @@ TEST(DeviceCheck, sees_one_block_that_is_wrong) {
   EXPECT_GT(deviation("draft", values), kMostDeviation);
   values[37] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(deviation("draft", values) <= kMostDeviation);
+}
+
+TEST(DeviceCheck, is_not_waited_for_longer_than_it_may_take) {
+  std::promise<std::vector<double>> end;
+  const std::shared_future<std::vector<double>> ended = end.get_future().share();
+  EXPECT_EQ(values_within(std::chrono::milliseconds(1), [ended] { return ended.get(); }), std::nullopt);
+  end.set_value({0.5});
+  EXPECT_EQ(values_within(std::chrono::hours(1), [ended] { return ended.get(); }), std::vector{0.5});
 }
 
 TEST(DeviceCheck, doctor_says_what_each_device_gives) {

@@ -9,7 +9,7 @@
 #include "cli/options.h"
 #include "core/bench/bench.h"
 #include "core/formats/exr.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 #include "tests/support/device.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/long_tests.h"

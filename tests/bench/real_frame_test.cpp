@@ -1,7 +1,7 @@
 // On a rendered frame AO without normals is near AO with them. What presets make of rendered frames against Cycles'
 // ray-traced AO, `preset_limits` measures.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 

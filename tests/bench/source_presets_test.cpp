@@ -9,7 +9,7 @@
 #include "cli/options.h"
 #include "core/chain/compute.h"
 #include "core/formats/exr.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 #include "core/measure/metrics.h"
 #include "core/reference/reference.h"
 #include "tests/support/device.h"

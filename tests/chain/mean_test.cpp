@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/time/accumulate.h"
 #include "tests/support/device.h"
+#include "tests/support/difference.h"
 
 namespace alcove::mean_test {
 namespace {
@@ -35,31 +36,36 @@ class Means : public testing::Test {
       return buffer;
     };
     std::vector<std::uint32_t> words;
-    for (const float z : other.depth) words.push_back(std::bit_cast<std::uint32_t>(z));
+    for (const float z : other.depth) words.push_back(std::bit_cast<std::uint32_t>(units_ * z));
     for (const std::uint32_t n : other.normal) words.push_back((n & 0xffffu) | std::uint32_t(kOther * 65535) << 16);
-    const std::vector<TakenFrame> frames{{kView, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {shift, 0, 0}, {1e-5f, 0, 0}, 0}};
+    const std::vector<TakenFrame> frames{
+        {kView, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {units_ * shift, 0, 0}, {units_ * 1e-5f, 0, 0}, 0}};
+    std::vector<float> own_depth = own.depth;
+    for (float& z : own_depth) z *= units_;
     EstimateSet estimates;
-    estimates.depth = &filled("own depth", own.depth);
+    estimates.depth = &filled("own depth", own_depth);
     estimates.normal = &filled("own normal", own.normal);
     estimates.values = &filled("own values", std::vector<float>(kPixels, kOwn));
     estimates.view = kView;
     estimates.groups = {{&filled("words", words), &filled("frames", frames), 1, 1}};
     const auto is_moving = [](float z) { return z < 0; };
     estimates.has_moving = std::ranges::any_of(own.depth, is_moving) || std::ranges::any_of(other.depth, is_moving);
-    std::vector<float> depth = own.depth;
+    std::vector<float> depth = own_depth;
     std::ranges::transform(depth, depth.begin(), [](float z) { return std::abs(z); });
     GBuffer gbuffer;
     gbuffer.view = kView;
     gbuffer.depth = &filled("depth", depth);
     gbuffer.normal = &filled("normal", own.normal);
     EstimatorSettings settings;
-    settings.radius = kRadius;
+    settings.radius = double(units_) * kRadius;
     const Accumulation result = accumulate(gpu_, gbuffer, estimates, settings, 0, false);
     gpu_.download(*result.visibility.ao);
     gpu_.run();
     const auto ao = result.visibility.ao->as<const float>();
     return {ao.begin(), ao.end()};
   }
+
+  float units_ = 1;  // scene units that a number here stands for
 
  private:
   gpu::Recorder gpu_;
@@ -154,6 +160,22 @@ TEST_F(Means, find_what_has_gone_whose_plane_is_nearly_edge_on) {
       EXPECT_EQ(values[at(17, 12)], kOwn) << "2 px beside it";
       EXPECT_NEAR(values[at(2, 2)], kMean, 1e-4);
     }
+}
+
+TEST_F(Means, are_the_same_in_any_units) {
+  Facing sky, gone;
+  std::ranges::fill(sky.depth, kSkyDepth);
+  const Facing near = near_and_far(-1, -9), still = near_and_far(1, 9);
+  for (int y = 0; y < 8; y++)
+    for (int x = 0; x < 8; x++) gone.depth[at(x, y)] = 3.85f, sky.depth[at(x, y)] = 4.0f;
+  const std::pair<const Facing*, const Facing*> pairs[]{{&near, &still}, {&gone, &sky}, {&sky, &gone}};
+  std::vector<std::vector<float>> expected;
+  for (const auto& [own, other] : pairs) expected.push_back(mean(*own, *other, 0.01f));
+  for (const float units : {0x1p-50f, 0x1p50f}) {
+    units_ = units;
+    for (std::size_t i = 0; i < expected.size(); i++)
+      EXPECT_TRUE(same_bits(mean(*pairs[i].first, *pairs[i].second, 0.01f), expected[i])) << units << " " << i;
+  }
 }
 
 TEST(Mean, of_fewer_frames_than_are_listed_runs_the_same_kernels) {

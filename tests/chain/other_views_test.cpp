@@ -170,6 +170,23 @@ TEST(OtherViews, their_order_changes_no_bit) {
   EXPECT_EQ(hidden_of(shot[2], others).planes, hidden.planes);
 }
 
+TEST(OtherViews, are_the_same_in_any_units) {
+  const std::vector<Rendering> shot = MovingBox::renderings();
+  const Hidden expected = hidden_of(shot[2], others_of(shot, 2, true));
+  ASSERT_GT(surfaces(expected), 100);
+  for (const int exponent : {-50, 50}) {
+    std::vector<Rendering> there = shot;
+    for (auto& rendering : there) {
+      rendering.frame = scaled(rendering.frame, exponent);
+      rendering.shot.eye = std::ldexp(1.0, exponent) * rendering.shot.eye;
+    }
+    Hidden hidden = hidden_of(there[2], others_of(there, 2, true));
+    for (float& z : hidden.planes) z = z < kSkyDepth ? std::ldexp(z, -exponent) : z;
+    EXPECT_TRUE(same_bits(hidden.planes, expected.planes)) << exponent;
+    EXPECT_EQ(hidden.counts.moved, expected.counts.moved) << exponent;
+  }
+}
+
 TEST(OtherViews, parts_of_the_frame_have_the_bits_of_the_whole_and_share_what_is_counted) {
   const std::vector<Rendering> shot = MovingBox::renderings();
   const std::vector<OtherView> others = others_of(shot, 2, true);

@@ -342,6 +342,35 @@ class ReuseOfFrames : public SequenceFolder {
     for (int i = first; i <= last; i++) frame.write(input(i));
   }
 
+  /// The third of four frames is seen from elsewhere: the planes are the same, and mean other directions.
+  void write_turning_cameras() const {
+    json cameras = wall_camera();
+    for (int frame = 1; frame <= 4; frame++) {
+      json entry{{"frame", frame}, {"world_to_camera", cameras["world_to_camera"]}};
+      if (frame == 3) entry["world_to_camera"] = {{0, -1, 0, 0.5}, {0, 0, 1, -2}, {-1, 0, 0, 3}, {0, 0, 0, 1}};
+      cameras["frames"].push_back(entry);
+    }
+    write_bytes(camera, cameras.dump());
+  }
+
+  /// A sky that is red to one side and of another colour to the other.
+  void write_sky(const std::string& name, const std::array<float, 3>& color) const {
+    FrameFile sky{{0, 0, 32, 16}, {0, 0, 32, 16}, 1, {}, {}, {}};
+    for (std::size_t c = 0; c < 3; c++)
+      for (std::size_t i = 0; i < 512; i++)
+        sky.planes[std::string(1, "RGB"[c])].push_back(i % 32 < 16 ? color[c] : c == 0 ? 1.0f : 0.2f);
+    sky.write(folder / name);
+  }
+
+  /// The values of the light that a frame's surfaces reflect.
+  std::vector<float> relight(int frame) const {
+    const Image image = read_exr_image(output(frame));
+    std::vector<float> values;
+    for (const char* channel : {"relight.R", "relight.G", "relight.B"})
+      std::ranges::copy(image.plane(channel), std::back_inserter(values));
+    return values;
+  }
+
   /// Runs, and expects the same files of a run that computes all of each frame. Returns the statistics. A GPU computes
   /// several frames at once: which one a frame comes after is not known there.
   json stats_of(const Options& more) const {
@@ -415,14 +444,7 @@ TEST_F(ReuseOfFrames, other_light_over_the_same_surfaces_is_composed_anew) {
 
 TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_directions) {
   write_frames(1, 4);
-  json cameras = wall_camera();
-  for (int frame = 1; frame <= 4; frame++) {
-    json entry{{"frame", frame}, {"world_to_camera", cameras["world_to_camera"]}};
-    // The third frame is seen from elsewhere: the planes are the same, and mean other directions.
-    if (frame == 3) entry["world_to_camera"] = {{0, -1, 0, 0.5}, {0, 0, 1, -2}, {-1, 0, 0, 3}, {0, 0, 0, 1}};
-    cameras["frames"].push_back(entry);
-  }
-  write_bytes(camera, cameras.dump());
+  write_turning_cameras();
   for (const std::string space : {"world", "view"}) {
     if (space == "view") write_with_view_normals(1, 4);
     stats_of({"--aov", "ao,normal,bent-normal", "--normal-space", space});
@@ -431,6 +453,37 @@ TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_directions) {
     const Image before = read_exr_image(output(2)), after = read_exr_image(output(3));
     EXPECT_FALSE(std::ranges::equal(before.plane(told), after.plane(told))) << space;
   }
+}
+
+TEST_F(ReuseOfFrames, light_that_changes_over_a_still_shot_is_each_frames_own) {
+  write_frames(1, 4);
+  write_sky("sky.1.exr", {1, 0.1f, 0.1f});
+  write_sky("sky.2.exr", {0.1f, 0.1f, 1});
+  write_sky("sky.3.exr", {0.1f, 1, 0.1f});
+  write_sky("sky.4.exr", {0.1f, 1, 0.1f});
+  for (const std::string threads : {"1", "2"}) {
+    std::map<std::string, std::string> files[2];
+    for (const bool reuses : {false, true}) {
+      remove_outputs();
+      done(joined({"--environment", folder / "sky.%d.exr", "--aov", "ao,relight", "--threads", threads},
+                  reuses ? Options{} : Options{"--no-skip"}));
+      files[reuses] = outputs();
+    }
+    for (const auto& [name, bytes] : files[0]) EXPECT_TRUE(files[1].at(name) == bytes) << name << ", " << threads;
+    EXPECT_NE(relight(1), relight(2)) << threads;
+    EXPECT_NE(relight(2), relight(3)) << threads;
+    EXPECT_EQ(relight(3), relight(4)) << threads;
+  }
+}
+
+TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_light) {
+  write_with_view_normals(1, 4);
+  write_turning_cameras();
+  write_sky("sky.exr", {0.1f, 0.1f, 1});
+  stats_of({"--environment", folder / "sky.exr", "--aov", "ao,relight,normal", "--set", "aov-space=view",
+            "--normal-space", "view"});
+  EXPECT_NE(relight(2), relight(3));
+  EXPECT_EQ(relight(1), relight(4));
 }
 
 }  // namespace

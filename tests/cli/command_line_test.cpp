@@ -106,6 +106,7 @@ TEST_F(CommandLine, complaints_are_sentences_of_ours_and_name_the_nearest_words)
       {run + "-- -x", "there is no option -x"},
       {run + "-o", "-o"},
       {run + "--radis 1", "there is no option --radis (did you mean --radius"},
+      {run + "-r 1", "there is no option -r (did you mean --resume or --radius?"},
       {run + "--preset prodction", "prodction (did you mean production?"},
       {run + "--falloff quadradic", "--falloff: quadradic"},
       {run + "--falloff quadradic", "did you mean quadratic?"},

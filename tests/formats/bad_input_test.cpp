@@ -1,5 +1,6 @@
 // Whatever is wrong with files, settings or devices: the exit code, one line that helps, and every output as it was.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <openexr.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -94,7 +95,7 @@ TEST_F(BadInput, of_every_kind_ends_with_its_code) {
            {3, good(file("cut8.exr", whole.substr(0, 8))), {"cut8.exr"}},
            {3, good(file("cut400.exr", whole.substr(0, 400))), {"cut400.exr"}},
            {3, good(file("cut.exr", whole.substr(0, whole.size() - 1))), {"cut.exr"}},
-           {5, good(file("wide.exr", claim)), {"wide.exr", "--memory"}},
+           {5, good(file("wide.exr", claim)), {"wide.exr", "more than Alcove takes"}},
            {3, good(deph), {"deph.exr", "--depth-channel", there, "did you mean ViewLayer.Deph.Z"}},
            {3, good(frame, {"--depth-channel", "ViewLayer.Dept.Z"}), {frame, "did you mean ViewLayer.Depth.Z"}},
            {3, good(frame, {"--normal-channels", "ViewLayer.Norml"}), {frame, "--normal-channels", "ViewLayer.Norml"}},
@@ -130,6 +131,17 @@ TEST_F(BadInput, of_every_kind_ends_with_its_code) {
            {2, good(frame, {"--beauty", frame}), {"--beauty", "--composite"}},
        })
     expect_refused(code, words, arguments);
+}
+
+TEST_F(BadInput, a_compression_that_openexr_does_not_know_is_named) {
+  std::string bytes = read_bytes(frame);
+  char& compression = bytes[bytes.find("compression") + sizeof("compression") + sizeof("compression") + sizeof(int)];
+  for (const auto& [number, name] : {std::pair(10, "JPEG 2000"), std::pair(99, "number 99")}) {
+    if (number < EXR_COMPRESSION_LAST_TYPE) continue;
+    compression = char(number);
+    write_bytes(folder / "new.exr", bytes);
+    expect_refused(3, {"new.exr", name, "ZIP"}, good(folder / "new.exr"));
+  }
 }
 
 TEST_F(BadInput, a_pipe_is_refused_and_not_waited_for) {

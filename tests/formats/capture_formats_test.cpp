@@ -1,7 +1,7 @@
 // Pictures that are no EXR: textures of RenderDoc, and normals of 8 and 16 bits; and files made to do harm.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/gbuffer.h"
-#include "core/frame/settle.h"
+#include "core/frame/find/frame_source.h"
+#include "core/frame/settle/settle.h"
 #include "tests/support/command_line.h"
 #include "tests/support/dds_file.h"
 #include "tests/support/difference.h"
@@ -257,19 +257,6 @@ TEST_F(Formats, hostile_headers_are_errors) {
   RawExr endless = raw_exr(channel("Z"), {0, 0, 63, 35});
   endless.add("comments", "string", std::string(40 << 20, 'x'));
   expect_refused("longer than any program writes", endless.bytes + '\0', "longer than");
-}
-
-TEST(Findings, blended_edges_tell_averaged_depth_from_point_samples) {
-  constexpr int kWidth = 64;
-  std::vector<float> sharp, blended;
-  for (int y = 0; y < 64; y++)
-    for (int x = 0; x < kWidth; x++) {
-      const int phase = x % 16;
-      sharp.push_back(phase < 8 ? 1.0f : 3.0f);
-      blended.push_back(phase == 8 || phase == 0 ? 2.0f : sharp.back());
-    }
-  EXPECT_EQ(blended_edges(sharp, kWidth), 0);
-  EXPECT_GT(blended_edges(blended, kWidth), 0.9);
 }
 
 }  // namespace

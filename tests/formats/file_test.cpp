@@ -73,6 +73,13 @@ TEST_F(Files, read_text_tells_what_is_no_file) {
   expect_error(ErrorKind::input, {"camera", "--camera"}, [&] { read_text("", "camera", "--camera"); });
 }
 
+TEST_F(Files, a_pointer_in_place_of_a_file_is_no_file) {
+  write_bytes(path, "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n");
+  expect_error(ErrorKind::input, {path, "--test", "git lfs pull"}, [&] { read_text(path, "test", "--test"); });
+  write_bytes(path, "../.git/annex/objects/4d/7a/SHA256E-s12345--4d7a.exr");
+  expect_error(ErrorKind::input, {path, "--test", "git annex get"}, [&] { read_text(path, "test", "--test"); });
+}
+
 TEST_F(Files, read_text_tells_that_the_disk_fails) {  // as page 0 of a process does
   expect_error(ErrorKind::input, {"/proc/self/mem", "camera", "--camera"},
                [] { read_text("/proc/self/mem", "camera", "--camera"); });
@@ -119,15 +126,23 @@ TEST_F(Files, what_may_not_be_read_or_written_is_said_with_the_reason) {
 TEST_F(Files, names_of_one_file_are_told_from_those_of_two) {
   write_bytes(path, "x");
   fs::create_symlink(path, folder / "link.exr");
-  for (const std::string& name : {path, folder / "./a.exr", folder / "link.exr", folder / "none/../a.exr"})
-    EXPECT_TRUE(same_file(path, name)) << name;
-  EXPECT_TRUE(same_file(folder / "none.exr", folder / "./none.exr"));  // that is not there yet
-  EXPECT_FALSE(same_file(path, folder / "b.exr"));
-  EXPECT_FALSE(same_file(folder / "b.exr", folder / "c.exr"));
-  const std::vector<std::string> inputs{"", path};
-  expect_error(ErrorKind::usage, {"link.exr", "--stats", "overwrite"},
-               [&] { require_no_input(folder / "link.exr", "--stats", inputs); });
-  EXPECT_NO_THROW(require_no_input(folder / "b.exr", "--stats", inputs));
+  fs::create_hard_link(path, folder / "hard.exr");
+  fs::create_directory_symlink(folder.path(), folder / "linked");
+  FileUses uses;
+  uses.add_input({"INPUT", ""});
+  uses.add_input({"INPUT", path});
+  for (const char* name : {"a.exr", "./a.exr", "link.exr", "hard.exr", "none/../a.exr", "linked/a.exr"})
+    expect_error(ErrorKind::usage, {folder / name, "--stats of frame 3 would overwrite an input: INPUT " + path}, [&] {
+      uses.add_output({"--stats", folder / name}, " of frame 3");
+    });
+  // Files that are not there yet.
+  uses.add_output({"--stats", folder / "new/b.exr"});
+  uses.add_output({"--output", folder / "new/c.exr"});
+  uses.add_output({"--output", folder / "new/c.exr"}, " of frame 4");
+  for (const char* name : {"new/./b.exr", "linked/new/b.exr", "new/none/../b.exr"})
+    expect_error(ErrorKind::usage, {folder / name, "--stats and --output name the same file"}, [&] {
+      uses.add_output({"--output", folder / name});
+    });
 }
 
 TEST_F(Files, nobody_can_tell_the_name_of_an_unfinished_file_beforehand) {

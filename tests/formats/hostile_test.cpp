@@ -3,7 +3,7 @@
 #include "core/formats/png.h"
 #include "core/formats/sequence.h"
 #include "core/frame/camera/camera.h"
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "tests/support/command_line.h"
 #include "tests/support/expect_error.h"
 

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/sequence.h"
 
+#include "core/base/text.h"
+#include "core/formats/absent_frames.h"
+
 #include "tests/support/expect_error.h"
 #include "tests/support/program.h"
 
@@ -69,6 +72,9 @@ TEST(ParseFrames, anything_else_is_an_error_that_quotes_it) {
                            "12345678901", "1-2147483648", "0x10", "1e3", "1-+3", "99999999999999999999"})
     EXPECT_THAT(error_of(ErrorKind::usage, [&] { parse_frames(list); }), HasSubstr(list)) << list;
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("  "); }), HasSubstr("empty"));
+  for (const char* number : {"1000000000", "-1000000000", "2000000000", "99999999999999999999"})
+    EXPECT_THAT(error_of(ErrorKind::usage, [&] { parse_frames(std::string("1-") + number); }),
+                HasSubstr(std::string(": ") + number + " is too far from 0: numbers have 9 digits at most"));
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-10x0"); }), HasSubstr("step"));
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-10x-2"); }), HasSubstr("backwards"));
   EXPECT_THAT(error_of(ErrorKind::usage, [] { parse_frames("1-100000000"); }), HasSubstr("more than 1000000 frames"));
@@ -80,6 +86,8 @@ TEST(FramesText, is_short_and_means_the_same) {
   EXPECT_EQ(frames_text({1010, 1003, 1012, 1011}), "1003, 1010-1012");
   EXPECT_EQ(frames_text({-2, -1, 1}), "-2--1, 1");
   EXPECT_EQ(frames_text({}), "");
+  EXPECT_EQ(short_frames_text({3, 1, 2}), "1-3");
+  EXPECT_EQ(short_frames_text({22, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20}), "11 frames from 2 to 22");
   EXPECT_EQ(parse_frames(frames_text({5, 1, 2, 3, -7})), (std::vector{-7, 1, 2, 3, 5}));
 }
 
@@ -112,6 +120,33 @@ TEST_F(OnDisk, none_is_an_error) {
   EXPECT_THAT(error_of(ErrorKind::input, [&] { frames("a.%04d.exr"); }),
               AllOf(HasSubstr("RESULT"), HasSubstr("a.0001.exr")));
   EXPECT_THAT(error_of(ErrorKind::input, [&] { frames("missing/a.%04d.exr"); }), HasSubstr("cannot be read"));
+}
+
+TEST_F(OnDisk, none_is_an_error_that_says_what_is_wrong_with_the_pattern) {
+  touch({"a.001.exr", "a.002.exr", "b.7.exr", "shot_C.1001.exr"});
+  for (const auto& [pattern, words] : std::vector<std::pair<std::string, std::string>>{
+           {"a.####.exr", "3 digits in a.001.exr: write " + (folder / "a.###.exr")},
+           {"b.%04d.exr", "1 digit in b.7.exr"},
+           {"shot_c_####.exr", "there is " + (folder / "shot_C.1001.exr")},
+           {"a.####.exr 1-2", (folder / "a.####.exr") + " with --frames 1-2"},
+           {"a.####.exr [1-20x2]", "--frames 1-20x2"},
+           {"a.1001-1005#.exr", (folder / "a.####.exr") + " with --frames 1001-1005"},
+           {"a.%V.####.exr", "%V is not a pattern"},
+           {"%v/a.####.exr", "--view"},
+           {"a.<layer>.####.exr", "<layer> is not a pattern"}})
+    EXPECT_THAT(error_of(ErrorKind::input, [&] { frames(pattern); }), HasSubstr(words));
+}
+
+TEST(ForeignPattern, is_known_in_a_name_without_a_place_for_the_number) {
+  for (const auto& [name, words] : {std::pair("a.[1001-1005].exr", "write a.####.exr with --frames 1001-1005"),
+                                    std::pair("a.{101..105}.exr", "write a.###.exr with --frames 101-105"),
+                                    std::pair("a.1001-1005.exr", "write a.####.exr with --frames 1001-1005"),
+                                    std::pair("a.%04i.exr", "%04i is not"), std::pair("a.%4d.exr", "%4d is not"),
+                                    std::pair("a.{frame:04d}.exr", "{frame:04d} is not"),
+                                    std::pair("a.<UDIM>.exr", "<UDIM> is not"), std::pair("a_%V.exr", "%V is not")})
+    EXPECT_THAT(foreign_pattern_in(name), HasSubstr(words));
+  for (const char* name : {"a.exr", "2024-11/a.exr", "a-1.exr", "a.1001.exr", "100%.exr"})
+    EXPECT_EQ(foreign_pattern_in(name), "") << name;
 }
 
 TEST_F(OnDisk, a_token_in_a_folders_name_needs_a_list) {

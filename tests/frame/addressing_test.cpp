@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <regex>
 
-#include "core/frame/matte.h"
+#include "core/frame/find/matte.h"
 #include "core/inspect/inspect.h"
 #include "tests/support/part_files.h"
 

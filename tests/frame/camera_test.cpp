@@ -144,6 +144,19 @@ TEST_F(CameraFiles, text_that_is_no_camera_is_refused_with_what_is_taken) {
   }
 }
 
+TEST_F(CameraFiles, those_of_other_programs_are_known_by_name) {
+  for (const auto& [text, word] :
+       {std::pair(R"({"camera_angle_x": 0.9, "frames": [{"file_path": "r_7", "transform_matrix": [[1, 0]]}]})",
+                  "inverse"),
+        std::pair(R"({"camera_angle_x": 0.9, "w": 64})", "transforms.json"),
+        std::pair(R"({"views": [], "intrinsics": [], "poses": []})", "Meshroom"),
+        std::pair(R"([{"cameras": {}, "shots": {}}])", "OpenSfM"),
+        std::pair(R"({"intrinsic": {"intrinsic_matrix": []}, "extrinsic": []})", "Open3D"),
+        std::pair("# Camera list with one line of data per camera:\n", "cameras.txt"), std::pair("PXR-USDC\1", "USD"),
+        std::pair("Ogawa\xff\1", "Alembic")})
+    expect_refused(text, word);
+}
+
 TEST_F(CameraFiles, senseless_fields_are_refused) {
   const json wrong_numbers[] = {"NaN", "60", nullptr, true, json::array({60}), json::object()};
   for (const char* field : {"fx", "fy", "cx", "cy"})

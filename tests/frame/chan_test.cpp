@@ -61,7 +61,7 @@ TEST_F(Chan, gives_frames_of_a_run_their_cameras) {
 }
 
 TEST_F(Chan, is_refused_where_it_makes_no_sense) {
-  expect_refused(kXyz, 2, {path, "no frame 2", "--camera"});
+  expect_refused(kXyz, 2, {path, "no frame 2, but 1, 3", "--camera"});
   expect_refused("1 2 3\n", 1, {"line 1", "3 numbers"});
   expect_refused("1 2 3 4 5 six 7 8\n", 1, {"line 1", "six"});
   expect_refused("1 2 3 4 5 6 nan 8\n", 1, {"nan"});

@@ -1,6 +1,6 @@
 // What the pixels refute is refused with what mends it, and what they cannot decide is said.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "tests/support/source_frame.h"
 
 namespace alcove::doubts_test {

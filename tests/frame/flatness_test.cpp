@@ -1,6 +1,6 @@
 // What depth means is judged by flat surfaces, however coarsely their depth is stored; noise and steps are measured.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/evidence.h"
+#include "core/frame/pixels/flatness.h"
 #include "tests/support/test.h"
 
 namespace alcove::flatness_test {
@@ -33,7 +33,7 @@ double ray_length(double x, double y) {
 }
 
 std::vector<DepthScore> scores_of(const std::vector<float>& raw, bool orthographic = false) {
-  return score_depth(raw, view_of_tests(orthographic), kSky, grain_of(raw, kSky));
+  return shape_of(raw, view_of_tests(orthographic), kSky, grain_of(raw, kSky)).scores;
 }
 
 using ValueAt = std::function<double(double x, double y)>;

@@ -2,8 +2,9 @@
 // refused.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/option_words.h"
-#include "core/frame/evidence.h"
-#include "core/frame/settle.h"
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/settle.h"
 #include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"

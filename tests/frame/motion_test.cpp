@@ -1,6 +1,6 @@
 // Motion vectors are read as the cameras prove them, and tell what moves.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/motion.h"
+#include "core/frame/find/motion.h"
 #include "tests/support/test.h"
 
 namespace alcove::motion_test {

@@ -1,6 +1,7 @@
 // Normals of the other side, of nearly the same space, without their signs, and with other lengths are told apart.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/evidence.h"
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/statistics.h"
 #include "tests/support/furnished.h"
 #include "tests/support/settled_file.h"
 
@@ -128,6 +129,65 @@ TEST_F(NormalFiles, that_are_all_flipped_are_still_found) {
     });
     EXPECT_EQ(to_string(settled().reading.flip_normal), to_string(flips));
   }
+}
+
+// Components that are not where they are looked for.
+
+TEST_F(NormalFiles, in_another_order_are_refused_with_the_order) {
+  write([&](Vec3 n, const test::Hit&) {
+    const Vec3 w = world(n);
+    return Vec3{w.z, w.y, w.x};
+  });
+  expect(Reply::refused, {"another order of components", "--normal-channels N.Z,N.Y,N.X"});
+}
+
+TEST_F(NormalFiles, of_two_channels_that_were_saved_as_three_are_refused_with_the_two) {
+  write([](Vec3 n, const test::Hit&) { return Vec3{0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0}; });
+  expect(Reply::refused, {"two components", "--normal-channels N.X,N.Y"});
+}
+
+TEST_F(NormalFiles, that_all_look_the_same_way_are_those_of_tangent_space) {
+  write([](Vec3, const test::Hit& hit) {
+    return unit(Vec3{0.05 * std::sin(double(hit.position.x) * 9), 0.05 * std::cos(double(hit.position.y) * 7), 1});
+  });
+  expect(Reply::refused, {"tangent space", "--normal none"});
+}
+
+/// The wall has its own normals, and nothing else has.
+TEST_F(NormalFiles, of_which_less_than_half_agree_are_used_only_where_that_is_allowed) {
+  write([&](Vec3 n, const test::Hit& hit) {
+    return world(hit.primitive == kWall ? n : unit(cross(n, Vec3{0.31, 0.52, 0.79})));
+  });
+  const auto lines = said();
+  ASSERT_EQ(lines.size(), 1);
+  EXPECT_THAT(lines[0], HasSubstr("--set allow=normals-disagree"));
+  settings.allow = "normals-disagree";
+  EXPECT_THAT(codes_of(noted()), Contains(NoteCode::normals_disagree));
+}
+
+TEST_F(NormalFiles, that_fit_neither_way_are_not_called_flipped) {
+  halves = {"Z"};  // by which nothing is refused
+  write([&](Vec3 n, const test::Hit&) { return world(unit(cross(n, Vec3{0.31, 0.52, 0.79}))); });
+  EXPECT_THAT(codes_of(noted()), Contains(NoteCode::normals_disagree));
+  EXPECT_THAT(codes_of(noted()), Not(Contains(NoteCode::turned_normals)));
+}
+
+TEST_F(NormalFiles, do_not_blame_the_camera_for_a_flip_that_is_given_wrongly) {
+  settings.normal_space = NormalSpace::view;
+  write([](Vec3 n, const test::Hit&) { return n; });
+  settings.flip_normal.y = true;
+  expect(Reply::refused, {"--flip-normal y does not fit", "leave it out"});
+}
+
+TEST_F(NormalFiles, show_square_pixels_beside_a_stale_pixel_aspect) {
+  settings.normal_space = NormalSpace::view;
+  leave_camera_out();
+  FrameFile file = file_of(rendering, 1e10f, planar,
+                           [&](const test::Hit& hit) { return rendering.shot.view_from_world(hit.normal); });
+  file.pixel_aspect = 2;
+  file.write(settings.input);
+  EXPECT_THAT(texts_of(noted()), Contains(HasSubstr("its normals show square pixels")));
+  EXPECT_THAT(codes_of(noted()), Not(Contains(NoteCode::field_of_view)));
 }
 
 // Spaces that are turned by little against each other.

@@ -1,6 +1,6 @@
 // The radius that is proposed fits what the frame shows.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/radius.h"
+#include "core/frame/pixels/radius.h"
 
 #include "tests/support/settled_file.h"
 

@@ -2,7 +2,8 @@
 // is noted or refused.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/option_words.h"
-#include "core/frame/evidence.h"
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/statistics.h"
 #include "tests/support/source_frame.h"
 
 namespace alcove::readings_test {

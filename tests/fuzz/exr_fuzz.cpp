@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/frame/camera/camera.h"
-#include "core/frame/input_rules.h"
+#include "core/frame/find/input_rules.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace alcove;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "core/base/text.h"
 #include "core/formats/sequence.h"
 #include "core/run/plan.h"
 #include "tests/fuzz/fuzz.h"

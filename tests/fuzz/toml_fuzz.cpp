@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/flat_toml.h"
 #include "core/bench/suite.h"
-#include "core/frame/input_rules.h"
+#include "core/frame/find/input_rules.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace alcove;

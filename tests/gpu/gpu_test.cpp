@@ -1,5 +1,7 @@
 // The Vulkan layer: reflection, checks between host and kernel, staging, and errors that name what is wrong.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <spirv/unified1/spirv.hpp>
+
 #include "kernels/estimate/estimate.h"
 #include "kernels/geometry/geometry.h"
 #include "kernels/results/results.h"
@@ -64,6 +66,55 @@ TEST(Reflection, tells_blocks_that_are_read_from_blocks_that_are_written) {
     EXPECT_EQ(block.is_written, !read.contains(block.name)) << block.name;
     EXPECT_EQ(block.is_read, !block.is_written || block.name == "Counts") << block.name;
   }
+}
+
+/// The blocks of a kernel that may be buffers of texels.
+std::map<std::string, VkFormat> texels_of(const char* stem) {
+  std::map<std::string, VkFormat> texels;
+  for (const auto& block : gpu::reflect(gpu::kernel_code(stem)).blocks)
+    if (block.texel != VK_FORMAT_UNDEFINED) texels[block.name] = block.texel;
+  return texels;
+}
+
+TEST(Reflection, tells_arrays_of_words_that_are_read_without_atomics) {
+  constexpr VkFormat kFloats = VK_FORMAT_R32_SFLOAT, kUints = VK_FORMAT_R32_UINT;
+  EXPECT_THAT(texels_of("classify"),
+              UnorderedElementsAre(testing::Pair("Depth", kFloats), testing::Pair("Changes", kUints),
+                                   testing::Pair("Needed", kUints), testing::Pair("Rows", kUints)))
+      << "Bounds is of vectors, Counts a struct, and the others are only written";
+  EXPECT_THAT(texels_of("interpolate"), AllOf(Contains(testing::Key("Ao")), Not(Contains(testing::Key("Runs")))))
+      << "Runs has atomics";
+  EXPECT_THAT(texels_of("reconstruct"), ElementsAre(testing::Pair("Depth", kFloats), testing::Pair("Normal", kUints)))
+      << "Normal is written too";
+}
+
+/// The number of a kernel's variables of that class.
+int variables(std::span<const std::uint32_t> code, spv::StorageClass of_class) {
+  int count = 0;
+  for (std::size_t at = 5; at < code.size(); at += code[at] >> spv::WordCountShift)
+    count += (code[at] & spv::OpCodeMask) == spv::OpVariable && code[at + 3] == std::uint32_t(of_class);
+  return count;
+}
+
+TEST(Texels, take_the_place_of_storage_buffers_that_may_be_such_and_of_nothing_else) {
+  for (const char* stem : {"classify", "reconstruct", "exact"}) {
+    const auto code = gpu::kernel_code(stem);
+    const auto blocks = gpu::reflect(code).blocks;
+    const auto edited = gpu::with_texels(code, blocks);
+    const int texels = int(texels_of(stem).size());
+    EXPECT_EQ(variables(edited, spv::StorageClassUniformConstant), texels) << stem;
+    EXPECT_EQ(variables(edited, spv::StorageClassStorageBuffer), int(blocks.size()) - texels) << stem;
+  }
+}
+
+TEST(Device, reads_texels_where_the_driver_is_slow_with_storage_buffers) {
+  EXPECT_TRUE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 22.3.6 (LLVM 15.0.6)"));
+  EXPECT_TRUE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 24.0.9-0ubuntu0.3"));
+  EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa 25.0.7-2 (LLVM 19.1.7)"));
+  EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, "Mesa of tomorrow"));
+  EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_LLVMPIPE, ""));
+  EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_MESA_RADV, "Mesa 22.3.6"));
+  EXPECT_FALSE(gpu::is_fast_with_texels(VK_DRIVER_ID_GOOGLE_SWIFTSHADER, ""));
 }
 
 TEST(Reflection, refuses_what_is_no_spirv) {
@@ -290,6 +341,18 @@ TEST(Buffer, that_is_replaced_lives_until_what_was_recorded_has_run) {
     std::ranges::fill(gpu.buffer("source", floats * sizeof(float), gpu::Use::upload).as<float>(), 0.25f);
   gpu.run();
   for (const float value : copy.as<const float>()) ASSERT_EQ(value, 0.5f);
+}
+
+TEST(Buffer, that_an_earlier_recording_asked_for_goes_as_soon_as_another_takes_its_place) {
+  constexpr std::size_t kBytes = 4 << 20;
+  gpu::Recorder gpu(device());
+  gpu.clear(gpu.buffer("first", kBytes));
+  gpu.clear(gpu.buffer("second", kBytes));
+  gpu.run();
+  gpu.clear(gpu.buffer("first", 3 * kBytes));
+  gpu.clear(gpu.buffer("second", 3 * kBytes));
+  EXPECT_EQ(gpu.bytes(), 6 * kBytes);
+  gpu.run();
 }
 
 TEST(Recorder, writes_small_values_in_the_order_of_what_is_recorded) {

@@ -143,6 +143,22 @@ class Arrays(unittest.TestCase):
         for kind in (numpy.float16, ">f2"):
             self.same(alcove.ao(self.depth.astype(kind), self.normal, camera=self.camera, radius=0.35), theirs)
 
+    def test_depth_that_was_rounded_is_measured(self):
+        rounded = self.folder / "rounded.exr"
+        depth = numpy.round(self.depth * 50) / 50
+        write_exr(rounded, {"Z": depth})
+        theirs = self.program(rounded, "--fov", "65", "--radius", "0.35", "--depth-kind", "planar")["Y"]
+        with self.assertWarnsRegex(UserWarning, "depth was rounded"):
+            self.same(alcove.ao(depth, radius=0.35, fov=65, depth_kind="planar"), theirs)
+        with self.assertWarnsRegex(UserWarning, "changes in steps of 1"):
+            millimetres = alcove.ao((self.depth * 1000).astype(numpy.uint16), radius=0.35, fov=65, depth_scale=0.001)
+        self.assertLess(numpy.sqrt(numpy.mean((millimetres - alcove.ao(self.depth, radius=0.35, fov=65))**2)), 0.02)
+        with self.assertWarnsRegex(UserWarning, "is it ray"):
+            height, width = self.depth.shape
+            y, x = numpy.mgrid[0:height, 0:width] + 0.5
+            pixel = 2 * numpy.tan(numpy.radians(65 / 2)) / width
+            alcove.ao(self.depth * numpy.hypot(1, numpy.hypot(x - width / 2, y - height / 2) * pixel), radius=0.35, fov=65)
+
     def test_many_results_have_the_bits_of_the_program(self):
         names = ["ao", "bent-normal", "transfer", "ao-scales", "confidence", "specular-occlusion", "normal", "depth"]
         theirs = self.program(self.frame, "--camera", self.camera_file, "--radius", "0.1,0.35", "--preset", "production", "--slices", "3", "--aov", ",".join(names))
@@ -188,20 +204,25 @@ class Arrays(unittest.TestCase):
     def test_what_is_wrong_is_an_exception(self):
         good = {"radius": 0.35, "fov": 65}
         for kind, sentence, arguments in (
-                (alcove.UsageError, "with radius how far", {"fov": 65}), (alcove.UsageError, "no camera.* fov ", {"radius": 0.35}),
+                (alcove.UsageError, "with 'radius' how far", {"fov": 65}), (alcove.UsageError, "no camera.* 'fov' ", {"radius": 0.35}),
                 (alcove.UsageError, r"no option slizes \(did you mean slices", {**good, "slizes": 3}), (alcove.UsageError, "out of range", {**good, "slices": 100}),
-                (alcove.UsageError, "is of files", {**good, "beauty": "b.exr"}), (alcove.UsageError, "there is no preset", {**good, "preset": "nothing"}),
+                (alcove.UsageError, "not available in the library", {**good, "beauty": "b.exr"}), (alcove.UsageError, "there is no preset", {**good, "preset": "nothing"}),
                 (alcove.UsageError, "there is no AOV", {**good, "aov": "oa"}), (alcove.InputError, "camera.json", {"radius": 1, "camera": "/nowhere/camera.json"}),
                 (alcove.InputError, "fx", {"radius": 1, "camera": {"fy": 1}}), (alcove.UsageError, r"normal.*\(H, W, 3\)", {**good, "normal": self.depth}),
                 (alcove.UsageError, "normal.*uint8", {**good, "normal": self.normal.astype(numpy.uint8)}), (alcove.UsageError, "masked", {**good, "matte": numpy.ma.array(self.depth)}),
+                (alcove.UsageError, "threads is not available", {**good, "threads": 4}), (alcove.UsageError, "behind.*uint8", {**good, "behind": self.depth.astype(numpy.uint8)}),
                 (alcove.UsageError, "whole number", {**good, "frame": "7"}), (alcove.UsageError, "too large", {**good, "frame": 2**40}), (alcove.UsageError, "zero byte", {**good, "device": "a\0b"}),
-                (alcove.UsageError, "only one of them", {**good, "camera": self.camera}), (alcove.InputError, "normal.*normal_space world", {"radius": 0.35, "camera": self.camera, "normal": self.normal, "normal_space": "view"}),
+                (alcove.UsageError, "only one of them", {**good, "camera": self.camera}), (alcove.InputError, "normal.*'normal_space' world", {"radius": 0.35, "camera": self.camera, "normal": self.normal, "normal_space": "view"}),
                 (alcove.InputError, "has 4 x 4 pixels", {**good, "matte": numpy.ones((4, 4))}), (alcove.UsageError, "complex", {**good, "matte": self.depth + 1j}),
                 (alcove.DeviceError, "no-such", {**good, "device": "no-such"})):
             with self.subTest(sentence=sentence), self.assertRaisesRegex(kind, sentence):
                 alcove.compute(self.depth, **arguments)
         with self.assertRaisesRegex(alcove.UsageError, "no depth"):
             alcove.compute(None, **good)
+        with self.assertRaisesRegex(alcove.UsageError, "uint8.*256 distances"):
+            alcove.ao((self.depth * 20).astype(numpy.uint8), **good)
+        with self.assertRaisesRegex(alcove.InputError, "divide integers"):
+            alcove.ao((self.depth * 1000).astype(numpy.uint16), depth_kind="normalized", far=60, **good)
         with self.assertRaisesRegex(alcove.InputError, "give -depth"):
             alcove.ao(-self.depth[:, :], sky=1e8, **good)
         with self.assertRaisesRegex(alcove.UsageError, "compute"):

@@ -89,8 +89,9 @@ TEST_F(Inspect, the_command_it_gives_has_the_settings_that_were_given) {
   lit.write(beauty);
   const std::string command =
       seen({"--beauty", beauty, "--preset", "draft", "--radius", "0.4", "--set", "intensity=0.5"})["command"];
-  EXPECT_THAT(command, AllOf(HasSubstr(" --beauty " + beauty), HasSubstr(" --composite composite.exr"),
-                             HasSubstr(" --preset draft --radius 0.4 --set intensity=0.5")));
+  EXPECT_THAT(command,
+              AllOf(HasSubstr(" --beauty " + beauty), HasSubstr(" --composite composite.exr"),
+                    HasSubstr(" --preset draft"), HasSubstr(" --radius 0.4"), HasSubstr(" --set intensity=0.5")));
   EXPECT_EQ(command.find("--radius"), command.rfind("--radius"));
   Options arguments = typed(command);
   arguments.erase(arguments.begin());
@@ -98,10 +99,25 @@ TEST_F(Inspect, the_command_it_gives_has_the_settings_that_were_given) {
   EXPECT_TRUE(fs::exists(folder / "composite.exr"));
 }
 
+TEST_F(Inspect, the_command_it_gives_has_every_option_that_was_typed_and_has_an_effect_there) {
+  const Options kept{"--slices 8",    "--denoise none",  "--aov ao,normal",
+                     "--set steps=9", "--thickness 0.5", "--roi 1,2,30,20"};
+  Options given = typed("--set gain=2 --depth-kind auto -v");
+  for (const auto& words : kept) given = joined(given, typed(words));
+  const std::string command = seen(given)["command"];
+  for (const auto& words : kept) EXPECT_THAT(command, HasSubstr(" " + words));
+  for (const char* words : {"gain", "auto", "-v", "--json"}) EXPECT_THAT(command, Not(HasSubstr(words)));
+  Options arguments = typed(command);
+  arguments.erase(arguments.begin());
+  run_well(arguments, {.folder = folder.path()});
+}
+
 TEST_F(Inspect, the_command_it_gives_has_no_option_that_does_not_apply) {
-  EXPECT_THAT(seen({"--set", "device-range=-1..1", "--set", "log-constant=2"})["command"],
-              Not(testing::AnyOf(HasSubstr("--set device-range"), HasSubstr("--set log-constant"))))
-      << "of planar depth";
+  for (const char* word : {"device-range=-1..1", "log-constant=2"}) {
+    const json all = seen({"--set", word});
+    EXPECT_EQ(all["command"], "") << "of planar depth";
+    EXPECT_THAT(all["missing"].dump(), HasSubstr("has no effect, since the depth is read as planar"));
+  }
   changed([](FrameFile& file) { file.change("Depth", [](float z) { return 0.1f * z; }); }).write(frame);
   json fields = wall_camera();
   fields.update({{"depth", "log"}, {"near", 0.1}, {"far", 100}});
@@ -302,7 +318,10 @@ TEST_F(InspectSequence, gives_distances_of_a_few_frames_and_the_command_of_all) 
   EXPECT_EQ(all["sequence"]["depth"][4]["frame"], 8);
   EXPECT_NEAR(all["sequence"]["depth"][0]["farthest"].get<double>(), 6, 1e-6);
   const std::string command = all["command"];
-  EXPECT_THAT(command, AllOf(HasSubstr("shot.####.exr"), HasSubstr("-o ao.%04d.exr")));
+  EXPECT_THAT(command, AllOf(HasSubstr("shot.####.exr"), HasSubstr("-o 'ao.####.exr'")));
+  const std::string shot = folder / "shot.####.exr";
+  EXPECT_THAT(json::parse(inspect_all({"--json", "--accumulate", "1", "--motion", shot}).out)["command"],
+              AllOf(HasSubstr(" --accumulate 1"), HasSubstr(" --motion '" + shot + "'")));
   const std::string text = inspect_all({}).out;
   for (const char* words : {"sequence: 6 frames, 1-4, 7-8", "missing frames: 5-6", "the same in all frames",
                             "its largest step is 0.75, to frame 7", "depth of frame 8: distances"})

@@ -183,12 +183,56 @@ TEST_F(Compare, nan_pixels_are_left_out_and_counted) {
   Plane broken = ramp;
   broken[7] = kNan;
   broken[100] = std::numeric_limits<float>::infinity();
-  const json j = measured({exr("a.exr", {{"Y", broken}}), exr("b.exr", {{"Y", ramp}})});
+  const auto a = exr("a.exr", {{"Y", broken}});
+  const json j = measured({a, exr("b.exr", {{"Y", ramp}})});
   EXPECT_EQ(j["excluded"], 2);
+  EXPECT_EQ(j["holes"], 2);
+  const json itself = measured({a, a, "--max-rmse", "0"});
+  EXPECT_EQ(itself["excluded"], 2);
+  EXPECT_EQ(itself["holes"], 0);
+  EXPECT_TRUE(itself["first_hole"].is_null());
+  EXPECT_EQ(itself["pass"], true) << "both have the same holes";
   EXPECT_EQ(j["count"], kWindow.pixels() - 2);
   EXPECT_EQ(j["rmse"], 0);
   EXPECT_EQ(j["flip"], 0);
   EXPECT_DOUBLE_EQ(j["ssim"], 1);
+}
+
+TEST_F(Compare, a_hole_in_one_file_breaks_every_limit_and_is_named_with_its_place) {
+  const std::size_t at = 3 * kFormulaWidth + 7;
+  Plane broken = ramp;
+  broken[at] = broken[at + 2] = kNan;
+  broken[at + 1] = -std::numeric_limits<float>::infinity();
+  const auto a = exr("a.exr", {{"X", ramp}, {"Y", broken}}, {5, -2, kFormulaWidth, kFormulaHeight});
+  const auto b = exr("b.exr", {{"X", ramp}, {"Y", ramp}}, {5, -2, kFormulaWidth, kFormulaHeight});
+  const std::string place = fmt::format("3 of {} pixels are NaN or infinite in one file only, the first in the ", 1920);
+  for (const auto& [option, value] : {std::pair{"--max-rmse", "1"},
+                                      {"--max-p99", "1"},
+                                      {"--min-ssim", "0"},
+                                      {"--max-flip", "1"},
+                                      {"--max-bias", "1"}}) {
+    expect_error(6, {a, b, option, value}, {place + "result at x 12, y 1, channel Y", "--max-excluded is 0"});
+    expect_error(6, {b, a, option, value}, {place + "reference at x 12, y 1, channel Y", "--max-excluded is 0"});
+  }
+  const json j = measured({a, b, "--max-rmse", "1"}, 6);
+  EXPECT_EQ(j["holes"], 3);
+  EXPECT_EQ(j["first_hole"], json({{"x", 12}, {"y", 1}, {"channel", "Y"}, {"in", "result"}}));
+  EXPECT_EQ(j["pass"], false);
+  EXPECT_EQ(measured({a, b, "--max-excluded", "0.0016"})["pass"], true);
+  expect_error(6, {a, b, "--max-excluded", "0.0015"}, {place, "--max-excluded is 0.0015"});
+  const auto mask = exr("m.exr", {{"m", with_left(constant(1), 0)}}, {5, -2, kFormulaWidth, kFormulaHeight});
+  EXPECT_EQ(measured({a, b, "--mask", mask, "--max-rmse", "0"})["holes"], 0);
+}
+
+TEST_F(Compare, a_hole_without_a_limit_is_a_warning) {
+  Plane broken = ramp;
+  broken[0] = kNan;
+  const auto a = exr("a.exr", {{"Y", broken}}), b = exr("b.exr", {{"Y", ramp}});
+  const Finished finished = compare({a, b});
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.err, AllOf(StartsWith("alcove: warning: 1 of 1920 pixels"), HasSubstr("x 0, y 0, channel Y"),
+                                  HasSubstr("[holes]")));
+  EXPECT_EQ(measured({a, b})["pass"], false);
 }
 
 TEST_F(Compare, a_mask_from_a_file_from_alpha_and_from_depth) {
@@ -354,6 +398,17 @@ TEST_F(CompareSequence, tells_every_frame_the_worst_the_mean_and_the_flicker) {
   EXPECT_EQ(j["count"], 4 * kWindow.pixels());
   EXPECT_DOUBLE_EQ(j["flicker"], std::sqrt((0 + 0.0625 + 0.0625) / 3));
   EXPECT_EQ(j["pass"], true);
+}
+
+TEST_F(CompareSequence, a_hole_is_named_with_its_frame) {
+  Plane broken = constant(0.5f);
+  broken[1] = kNan;
+  exr("ao.0002.exr", {{"Y", broken}});
+  expect_error(6, {result, reference, "--max-rmse", "1"}, {"frame 2: 1 of 1920 pixels", "x 1, y 0, channel Y"});
+  const json j = measured({result, reference, "--max-rmse", "1"}, 6);
+  EXPECT_EQ(j["holes"], 1);
+  EXPECT_EQ(j["frames"][1]["first_hole"]["x"], 1);
+  EXPECT_TRUE(j["frames"][0]["first_hole"].is_null());
 }
 
 TEST_F(CompareSequence, limits_hold_for_every_frame) {

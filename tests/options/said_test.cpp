@@ -104,7 +104,7 @@ const std::vector<Case>& cases_without_effect() {
       {"--chan-rotation xyz", {"", "--camera c.json"}, "--camera c.chan"},
       {"--set ao-name=AO", {"--aov depth"}, ""},
       {"--set filter=box", {"", "--set supersampling=1 " + composite}, "--set supersampling=2"},
-      {"--set filter-width=2", {""}, composite},
+      {"--set filter-width=2", {"", composite}, "--set supersampling=2"},
       {"--set fog-density=1", {""}, composite},
       {"--set ocio=a.ocio", {"", "--preview p.png"}, shown},
   };

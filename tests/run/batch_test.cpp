@@ -64,8 +64,8 @@ TEST_F(Batch, every_file_has_a_pattern_of_its_own_and_a_static_one_serves_all_fr
   EXPECT_THAT(names_in(out), ElementsAre("0098.exr", "0099.exr", "0100.exr"));
   remove_outputs();
   wall_frame().write(folder / "still.exr");
-  done_alone({folder / "still.exr", "-o", out + "/ao.#.exr", "--frames", "3,5"});
-  EXPECT_THAT(names_in(out), ElementsAre("ao.0003.exr", "ao.0005.exr"));
+  done_alone({folder / "still.exr", "-o", out + "/ao.#.exr", "--frames", "3"});
+  EXPECT_THAT(names_in(out), ElementsAre("ao.0003.exr"));
 }
 
 TEST_F(Batch, every_frame_has_its_camera) {
@@ -102,6 +102,11 @@ TEST_F(Batch, files_that_frames_would_share_are_refused) {
   write_frames(1, 3);
   expect_refused(2, {"-o", out + "/ao.exr"}, {"ao.exr", "all 3 frames", "%04d"});
   expect_refused(2, {"-o", in + "/f.%04d.exr", "--set", "output-offset=2"}, {"f.0003.exr", "overwrite an input"});
+  // The mirror of that: one frame with many numbers.
+  const Options still{"run",      input(1), "--frames", "1-100", "-o", out + "/ao.%d.exr",
+                      "--camera", camera,   "--radius", "1"};
+  test::expect_refused(run_program(still), 2, {input(1), "all 100 frames", "%04d"});
+  EXPECT_TRUE(names_in(out).empty());
 }
 
 TEST_F(Batch, a_preview_without_a_number_is_the_contact_sheet_of_the_shot) {

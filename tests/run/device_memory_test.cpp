@@ -98,6 +98,14 @@ TEST_F(DeviceMemory, that_six_frames_miss_side_by_side_halves_their_number_once)
   EXPECT_EQ(outputs().size(), std::size_t(kFrames));
 }
 
+TEST_F(DeviceMemory, that_is_too_little_lets_frames_that_were_begun_go_before_the_rest) {
+  const Options one_thread = typed("--threads 1 --noise animated --radius 0.1");
+  EXPECT_EQ(expect_whole(with(kRich, kRich, {{"ALCOVE_TOGETHER", "3"}}), one_thread)["totals"]["at_once"], 1);
+  const auto written = [&](int frame) { return fs::last_write_time(output(frame)); };
+  for (int begun = 1; begun <= 3; begun++)
+    for (int later = 4; later <= kFrames; later++) EXPECT_LE(written(begun), written(later)) << begun << " " << later;
+}
+
 TEST_F(DeviceMemory, that_is_missing_for_a_second_device_leaves_one_lane) {
   const Launch lacking{.environment = {{"ALCOVE_LACKS", "memory for a second device"}}, .preload = ALCOVE_POOR_DEVICE};
   EXPECT_EQ(expect_whole(lacking, typed("--device cpu --threads 2 --radius 0.1"))["totals"]["at_once"], 1);
@@ -140,7 +148,7 @@ class MemoryLimit : public SequenceFolder {
 TEST_F(MemoryLimit, holds_for_a_frame_in_tiles) {
   const std::string to = out + "/new/";
   EXPECT_GT(run_within(
-                330, 1, {0, 0, 2000, 800},
+                360, 1, {0, 0, 2000, 800},
                 "--slices 1 --steps 2 -o " + to + "ao.%04d.exr --composite " + to + "c.%04d.exr")["frames"][0]["parts"],
             1);
 }

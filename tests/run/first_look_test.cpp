@@ -26,6 +26,7 @@ TEST_F(Holes, of_a_pattern_without_a_list_are_a_warning) {
   EXPECT_THAT(lines_of(finished.err), Contains(AllOf(HasSubstr("alcove: warning: "), HasSubstr("f.%04d.exr"),
                                                      HasSubstr("3, 5-6"), HasSubstr("[sequence-hole]"))));
   EXPECT_EQ(json::parse(read_bytes(stats))["notes"][0]["code"], "sequence-hole");
+  EXPECT_EQ(json::parse(read_bytes(stats))["totals"]["missing"], json({3, 5, 6}));
   EXPECT_EQ(json::parse(lines_of(read_bytes(log))[0])["notes"][0]["code"], "sequence-hole");
   EXPECT_EQ(text_in(read_header(output(1)), "alcove/notes"), "(none)") << "it says nothing about this frame";
   EXPECT_THAT(run({"--dry-run"}).out, HasSubstr("3, 5-6"));
@@ -205,6 +206,19 @@ TEST_F(Missing, is_all_listed_at_once_with_the_command_that_would_do) {
                              HasSubstr("--radius NUMBER"), HasSubstr("such as:\nalcove run " + frame + " -o ao.exr")));
   EXPECT_EQ(lines_of(all.err).size(), 6) << all << "one for each thing, and the command alone on the last";
   EXPECT_EQ(run_program({"run", frame, "--dry-run"}).code, 2);
+
+  // An empty value says nothing, and no output has the name of the input.
+  fs::copy_file(frame, folder / "ao.exr");
+  const std::string rest = " --camera " + camera + " --radius 1";
+  for (const auto& [given, proposed] :
+       {std::pair(Options{"run", frame, "-o", ""}, "alcove run " + frame + rest + " -o ao.exr"),
+        {{"run", ""}, "alcove run frame.exr" + rest + " -o ao.exr"},
+        {{"run", "ao.exr", "--composite", ""}, "alcove run ao.exr" + rest + " -o new-ao.exr"}}) {
+    const Finished refused =
+        run_program(joined(given, {"--camera", camera, "--radius", "1"}), {.folder = folder.path()});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_EQ(lines_of(refused.err).back(), proposed);
+  }
 
   // The command works as it is proposed, with the radius that inspect proposes.
   const Finished some = run_program({"run", frame, "--camera", camera, "--type", "float"});

@@ -1,7 +1,7 @@
 // AO only where it is wanted: within a matte as without one, and nothing computed elsewhere.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/matte.h"
-#include "core/frame/channels.h"
+#include "core/frame/find/matte.h"
+#include "core/frame/find/channels.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 
@@ -272,7 +272,7 @@ TEST_F(Crypto, resume_redoes_what_another_manifest_beside_the_file_decided) {
   fs::last_write_time(beside, before - std::chrono::hours(1));
   says(" -> ");
   fs::last_write_time(beside, fs::last_write_time(ao) + std::chrono::seconds(1));
-  says(" -> ");
+  says("whole, kept");
 }
 
 TEST_F(Crypto, mistakes_are_named) {

@@ -192,5 +192,34 @@ TEST_F(Memory, is_expected_of_what_completed_surfaces_take) {
   }
 }
 
+// The parts of a frame differ in size, and each takes the buffers of the one before.
+TEST_F(Memory, of_parts_stays_within_any_limit_and_below_the_whole) {
+  settings.estimator.radius = 0.05;
+  const FrameMemory memory = memory_of(open_frame(settings, 0), settings);
+  WindowLimits limits{memory, {.bytes = Room::kEndless, .buffer_bytes = Room::kEndless}};
+  FrameSource first = open_frame(settings, 0);
+  const auto [least, whole, parts, factor] = memory_needs(first, settings, limits);
+  ASSERT_LT(least, whole);
+  for (const double share : {0.95, 0.7, 0.4, 0.2, 0.0}) {
+    gpu::Recorder gpu(device());
+    FrameSource source = open_frame(settings, 0);
+    ReadPlanes planes;
+    read_for_parts(source, settings, planes, whole);
+    Surroundings surroundings(source, settings, planes[RawPlane::depth]);
+    limits.room.bytes = least + std::uint64_t(share * double(whole - least));
+    limits.kept = raw_bytes_of(source);
+    std::uint64_t peak = 0;
+    for (const auto& row : tiles_of(window, surroundings, limits, source))
+      for (const auto& tile : row) {
+        const Window computed = surroundings.around(tile);
+        run_chain(gpu, load_frame(gpu, source, computed, settings, 0, &planes), settings.estimator, settings.output);
+        peak = std::max<std::uint64_t>(peak, gpu.bytes() + memory.fixed_bytes + limits.kept);
+        gpu.run();
+      }
+    EXPECT_LE(peak, limits.room.bytes) << share;
+    EXPECT_LT(peak, whole) << share;
+  }
+}
+
 }  // namespace
 }  // namespace alcove::memory_test

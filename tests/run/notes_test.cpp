@@ -169,6 +169,18 @@ TEST_F(SequenceNotes, of_single_frames_are_said_once_and_counted) {
   EXPECT_THAT(frames[3]["notes"][0]["text"].get<std::string>(), HasSubstr("4 pixels"));
 }
 
+TEST_F(SequenceNotes, tell_of_an_empty_frame_amid_others) {
+  write_frames(1, 3);
+  FrameFile black = wall_frame();
+  black.change("ViewLayer", [](float) { return 0.0f; });
+  black.write(input(2));
+  done({"--stats", folder / "stats.json"});
+  const json frames = json::parse(read_bytes(folder / "stats.json"))["frames"];
+  EXPECT_THAT(codes_in(frames[0]["notes"]), IsEmpty());
+  EXPECT_THAT(codes_in(frames[1]["notes"]), Contains("no-surfaces"));
+  EXPECT_THAT(codes_in(frames[2]["notes"]), IsEmpty());
+}
+
 TEST_F(SequenceNotes, that_are_warnings_fail_only_their_frames) {
   for (const int frame : {1, 2, 3}) frame_with_repairs(frame == 2).write(input(frame));
   ASSERT_EQ(run().code, 0);

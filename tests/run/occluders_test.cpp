@@ -1,6 +1,6 @@
 // What does not count blocks nothing: as if it were not there where it is known what is behind it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/matte.h"
+#include "core/frame/find/matte.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
 

@@ -24,25 +24,26 @@ TEST_F(OutputNames, that_end_in_another_format_are_refused) {
     test::expect_refused(finished, 2, {name, option, ending});
     EXPECT_EQ(names_in(folder.path()), before);
   };
-  for (const char* name : {"x.png", "x.tif", "x.JPG", "x.png.tmp", "x.png.0001", "x.json", "x.exr.zip"}) {
+  for (const char* name :
+       {"x.png", "x.tif", "x.JPG", "x.png.tmp", "x.png.0001", "x.json", "x.exr.zip", "x", "x.0001"}) {
     expect_refused(to(folder / name), name, "--output", ".exr");
     expect_refused(to(ao, {"--composite", folder / name}), name, "--composite", ".exr");
   }
-  for (const char* name : {"x.jpg", "x.exr", "x.tif", "x.jpg.part"}) {
+  for (const char* name : {"x.jpg", "x.exr", "x.tif", "x.jpg.part", "x"}) {
     const Options preview{"--preview", folder / name};
     expect_refused(to(ao, preview), name, "--preview", ".png");
     expect_refused(run_program(joined({"inspect", frame, "--camera", camera}, preview)), name, "--preview", ".png");
   }
-  expect_refused(to(folder / "x.####.png", {"--frames", "1-2"}), "x.0001.png", "--output", ".exr");
+  expect_refused(to(folder / "x.####.png", {"--frames", "1"}), "x.0001.png", "--output", ".exr");
   expect_refused(to(folder / "x.png", {"--dry-run"}), "x.png", "--output", ".exr");
 }
 
-TEST_F(OutputNames, without_an_ending_or_of_files_in_the_making_are_as_good) {
-  for (const char* name : {"ao", "ao.EXR", "ao.exr.tmp", "ao.0001", "ao.exr.0001", "v1.2.exr"}) {
-    const Finished finished = to(folder / name, {"--preview", folder / "preview"});
+TEST_F(OutputNames, of_files_in_the_making_are_as_good) {
+  for (const char* name : {"ao.EXR", "ao.exr.tmp", "ao.exr.0001", "v1.2.exr"}) {
+    const Finished finished = to(folder / name, {"--preview", folder / "preview.png.part"});
     EXPECT_EQ(finished.code, 0) << finished;
     EXPECT_EQ(read_exr_image(folder / name).data, kWallWindow) << name;
-    EXPECT_EQ(read_bytes(folder / "preview").substr(1, 3), "PNG");
+    EXPECT_EQ(read_bytes(folder / "preview.png.part").substr(1, 3), "PNG");
   }
 }
 
@@ -75,6 +76,31 @@ TEST_F(OutputNames, in_folders_that_cannot_be_made_are_refused_before_any_work) 
 }
 
 class InputNames : public SequenceFolder {};
+
+TEST_F(InputNames, of_a_folder_are_told_from_those_of_a_file) {
+  write_frames(1, 1);
+  for (const std::string& name : {in, in + "/"})
+    for (const Options& more : {Options{"-o", out + "/ao.exr", "--camera", camera, "--radius", "1"}, {}}) {
+      const Finished finished = run_program(joined({"run", name}, more));
+      test::expect_refused(finished, 3, {name + ": is a folder; INPUT takes a file", in + "/shot.####.exr"});
+    }
+}
+
+TEST_F(InputNames, of_another_frame_are_a_warning) {
+  FrameFile lit = wall_frame();
+  add_beauty(lit);
+  write_frames(5, 6, lit);
+  const auto run_with = [&](const std::string& name, const std::string& beauty, const Options& more = {}) {
+    return run_program(joined({"run", name, "--beauty", beauty, "--composite", out + "/c.exr", "-o", out + "/ao.exr",
+                               "--camera", camera, "--radius", "1"},
+                              more));
+  };
+  const std::string said = "--beauty " + input(6) + ": by the digits 0006 of its name it is of frame 6, and the frame ";
+  EXPECT_THAT(run_with(input(5), input(6)).err, AllOf(HasSubstr(said + "is 5"), HasSubstr("[other-frame]")));
+  EXPECT_THAT(run_with(in + "/f.%04d.exr", input(6), {"--frames", "5"}).err, HasSubstr("[other-frame]"));
+  EXPECT_THAT(run_with(input(6), input(6)).err, Not(HasSubstr("[other-frame]")));
+  test::expect_refused(run_with(input(5), input(6), {"--strict"}), 3, {said, "--strict"});
+}
 
 TEST_F(InputNames, that_are_globs_are_answered_with_the_pattern) {
   write_frames(1, 2);

@@ -56,6 +56,21 @@ TEST_F(Streams, a_log_on_a_full_disk_ends_with_4) {
   unmount(disk);
 }
 
+TEST_F(Streams, a_log_whose_disk_gets_full_ends_with_4_once_all_frames_are_whole) {
+  constexpr int kFrames = 40;  // whose events are longer than the page that is left
+  write_frames(1, kFrames);
+  const std::string disk = folder / "disk";
+  fs::create_directory(disk);
+  if (!mount_memory(disk, "size=8k")) GTEST_SKIP() << "this process may not mount";
+  write_bytes(disk + "/ballast", std::string(4096, 'x'));
+  const Finished finished = run({"--log-json", disk + "/log"});
+  EXPECT_EQ(finished.code, 4) << finished;
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("40 frames done"), HasSubstr(disk + "/log"), HasSubstr("No space")));
+  EXPECT_EQ(outputs().size(), std::size_t(kFrames));
+  EXPECT_THAT(read_bytes(disk + "/log"), StartsWith("{\"event\":\"begin\""));
+  unmount(disk);
+}
+
 // Reports and inputs.
 
 TEST_F(Streams, no_report_overwrites_a_file_of_any_frame) {
@@ -177,6 +192,9 @@ TEST_F(Refusals, settings_that_contradict_each_other_name_what_mends_them) {
     expect_rows_refused({{std::string("--roi ") + roi, {"--roi", "X,Y,WIDTH,HEIGHT"}}});
   for (const char* roi : {"100,0,8,8", "0,0,65,10", "-1,0,5,5", "60,30,4,7", "2147483647,0,2147483647,1"})
     expect_rows_refused({{std::string("--roi ") + roi, {frame, "--roi", "data window"}}});
+  for (const auto& [roi, said] : {std::pair("2147483647,0,2147483647,5", "--roi is 2147483647x5 at (2147483647, 0)"),
+                                  {"0,-2147483647,4,5", "--roi is 4x5 at (0, -2147483647)"}})
+    expect_rows_refused({{std::string("--roi ") + roi, {said}}});
 }
 
 TEST_F(Refusals, outputs_that_the_frame_has_nothing_for_name_what_gives_it) {

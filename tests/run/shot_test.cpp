@@ -4,6 +4,7 @@
 #include "core/run/frame_files.h"
 #include "core/run/memory.h"
 #include "core/run/plan.h"
+#include "core/run/resume.h"
 #include "tests/support/deep_file.h"
 #include "tests/support/device.h"
 #include "tests/support/walked_shot.h"
@@ -98,6 +99,20 @@ TEST_F(Shots, resumed_runs_compute_what_a_changed_neighbour_changes) {
     if (frame["state"] == "done") computed.push_back(frame["frame"]);
   // Frame 1 tells what moves in 2 and 3, which 4 takes.
   EXPECT_THAT(computed, ElementsAre(1, 2, 3, 4));
+}
+
+TEST_F(Shots, have_an_identity_when_a_camera_beside_theirs_goes_away) {
+  Settings settings = settings_of_shot();
+  settings.input.camera = folder / "camera.%d.json";
+  settings.input.around = 1;
+  for (int frame = 1; frame <= kFrames; frame++)
+    fs::copy_file(camera, fmt::format("{}/camera.{}.json", folder.path(), frame));
+  const FramePlan plan(settings);
+  const std::string before = InputIdentities(plan).of(2);
+  fs::remove(folder / "camera.3.json");
+  std::string after;
+  EXPECT_NO_THROW(after = InputIdentities(plan).of(2));
+  EXPECT_NE(after, before);
 }
 
 TEST_F(Shots, need_to_know_where_every_camera_stands_and_one_projection) {

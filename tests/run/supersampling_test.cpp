@@ -121,14 +121,15 @@ TEST_F(Supersampling, a_picture_has_the_pixels_whose_middle_the_depth_has) {
   }
 }
 
-TEST_F(Supersampling, a_smaller_beauty_asks_for_it_and_takes_the_filtered_ao) {
+TEST_F(Supersampling, a_smaller_beauty_needs_it_and_takes_the_filtered_ao) {
   for (const auto& [factor, window] : {std::pair(2, kSmall), {3, Window{-3, 2, 40, 50}}, {4, Window{-3, 2, 40, 50}}}) {
     const Window display = times(kSmall, factor);
     write_frame(display, display);
-    const Image filtered_ao = computed({"--set", fmt::format("supersampling={}", factor)});
+    const std::string mend = fmt::format("--set supersampling={}", factor);
+    const Image filtered_ao = computed(typed(mend));
     write_beauty(window, kSmall);
-    const Finished noted = done(joined(composed, typed("--type float --set append-ao=AO")));
-    EXPECT_THAT(noted.err, HasSubstr("--set supersampling")) << "nobody has asked for it";
+    expect_refused(3, composed, {"beauty.exr", fmt::format("{} times as large", factor), mend});
+    done(joined(composed, typed("--type float --set append-ao=AO " + mend)));
     EXPECT_EQ(read_exr_image(ao).pixels, filtered_ao.pixels);
     const Image result = read_exr_image(composite);
     EXPECT_EQ(result.data, window);
@@ -152,7 +153,8 @@ TEST_F(Supersampling, a_region_counts_in_pixels_of_the_picture_and_has_the_bits_
   write_frame(display, display);
   write_beauty(kSmall, kSmall);
   // A filter that reaches farther than all else.
-  const Options options = joined(composed, typed("--set filter=box --set filter-width=16 --denoise none --radius 0.1"));
+  const Options options = joined(
+      composed, typed("--set supersampling=3 --set filter=box --set filter-width=16 --denoise none --radius 0.1"));
   const Image whole = computed(options), whole_composite = read_exr_image(composite);
   const Image part = computed(joined(options, {"--roi", "11,7,30,20"}));
   EXPECT_EQ(part.data, region);
@@ -198,7 +200,8 @@ TEST_F(Supersampling, a_preview_is_as_large_as_the_picture) {
   write_frame(display, display);
   write_beauty(kSmall, kSmall);
   for (const char* style : {"ao", "composite"}) {
-    done(joined(composed, {"--preview", preview, "--set", std::string("preview-style=") + style}));
+    done(joined(composed,
+                {"--preview", preview, "--set", std::string("preview-style=") + style, "--set", "supersampling=2"}));
     EXPECT_EQ(open_image(preview, "the test", Formats::all).parts()[0].data, kSmall);
   }
   // Two bytes of a PNG may differ by rounding.

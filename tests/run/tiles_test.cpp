@@ -228,7 +228,7 @@ TEST_F(Tiles, too_little_memory_is_refused_with_the_least_that_is_enough) {
     return joined(options, {"--memory", std::to_string(megabytes) + "M"});
   };
   EXPECT_EQ(run_with(0, with(named)).done, 1);
-  EXPECT_NEAR(double(memory_named_in(expect_refused_with(0, with(named - 2), {}))), double(named), 1);
+  EXPECT_EQ(memory_named_in(expect_refused_with(0, with(named - 1), {})), named);
   const auto expect_enough_is_named = [&](const char* more) {
     const std::string enough = std::to_string(memory_named_in(expect_refused_with(1 << 20, typed(more), {})));
     const RunReport report = run_with(0, joined(typed(more), {"--memory", enough + "M"}));
@@ -242,6 +242,28 @@ TEST_F(Tiles, too_little_memory_is_refused_with_the_least_that_is_enough) {
   wall_frame(tall, tall).write(frame);
   write_bytes(camera, wall_camera(tall).dump());
   expect_enough_is_named("--radius 50 --threads 4");
+}
+
+TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough_for_the_whole) {
+  const std::string refusal = expect_refused_with(3 << 20, {"--radius", "0.2"}, {"times as long", "at once"});
+  const std::uint64_t least = memory_named_in(refusal);
+  const std::uint64_t at_once = memory_named_in(refusal.substr(refusal.find("), or --memory")));
+  ASSERT_GT(at_once, least);
+  const auto frame_within = [&](std::uint64_t megabytes) {
+    const RunReport report = run_with(0, {"--radius", "0.2", "--memory", std::to_string(megabytes) + "M"});
+    EXPECT_EQ(report.done, 1) << megabytes << (report.stop ? report.stop->what() : "");
+    return report.done == 1 ? report.frames[0] : FrameReport();
+  };
+  EXPECT_EQ(frame_within(at_once).parts, 1);
+  EXPECT_GT(frame_within(at_once - 1).parts, 1);
+  const FrameReport parts = frame_within(least);
+  // At the least, rounded up to whole MiB, a part or two fewer may do.
+  const double told = std::strtod(refusal.c_str() + refusal.find("M (in ") + 6, nullptr);
+  EXPECT_LE(parts.parts, told);
+  EXPECT_GE(parts.parts, told / 2);
+  const Finished planned = run_program({"run", shot, "-o", ao, "--camera", shot_camera, "--radius", "0.2", "--type",
+                                        "float", "--stats", folder / "stats.json", "--dry-run"});
+  EXPECT_THAT(planned.out, HasSubstr(fmt::format("{}M computes a frame at once, {}M is the least", at_once, least)));
 }
 
 TEST_F(Tiles, that_cannot_be_are_refused) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/chain.h"
 
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 
 namespace alcove::test {
 

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <vulkan/vulkan.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -77,9 +78,13 @@ VkResult vkEnumerateDeviceExtensionProperties(VkPhysicalDevice device, const cha
 void vkGetPhysicalDeviceProperties2(VkPhysicalDevice device, VkPhysicalDeviceProperties2* properties) {
   NEXT(vkGetPhysicalDeviceProperties2)(device, properties);
   if (fake().is_discrete) properties->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-  for (auto* next = static_cast<VkBaseOutStructure*>(properties->pNext); next; next = next->pNext)
-    if (fake().is_discrete && next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES)
-      reinterpret_cast<VkPhysicalDeviceVulkan12Properties*>(next)->driverID = VK_DRIVER_ID_NVIDIA_PROPRIETARY;
+  for (auto* next = static_cast<VkBaseOutStructure*>(properties->pNext); next; next = next->pNext) {
+    if (next->sType != VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES) continue;
+    auto& properties12 = *reinterpret_cast<VkPhysicalDeviceVulkan12Properties*>(next);
+    if (fake().is_discrete) properties12.driverID = VK_DRIVER_ID_NVIDIA_PROPRIETARY;
+    if (!fake().version.empty()) *std::ranges::copy(fake().version, properties12.driverInfo).out = 0;
+  }
+  if (fake().most_texels) properties->properties.limits.maxTexelBufferElements = fake().most_texels;
   if (fake().most_allocations) properties->properties.limits.maxMemoryAllocationCount = fake().most_allocations;
 }
 

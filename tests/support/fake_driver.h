@@ -17,6 +17,8 @@ struct FakeDriver {
   bool is_discrete = false;            // by its type and driver
   bool is_portable = false;            // has VK_KHR_portability_subset
   std::uint32_t most_allocations = 0;  // 0: as many as the driver says
+  std::uint32_t most_texels = 0;       // of a buffer; 0: as many as the driver says
+  std::string version = {};            // of the driver, as "Mesa 25.0.7"; empty: its own
   bool hangs = false;                  // no submission ends
   int failing_submission = 0;          // from now on; 0: none
   bool lists_no_extensions = false;    // of its device: the call fails

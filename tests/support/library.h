@@ -4,7 +4,7 @@
 
 #include "api/alcove/alcove.h"
 #include "core/chain/compute.h"
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 #include "core/frame/reading.h"
 #include "tests/support/device.h"
 #include "tests/support/program.h"

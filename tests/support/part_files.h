@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/frame/gbuffer.h"
+#include "core/frame/find/frame_source.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/openexr.h"
 #include "tests/support/program.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/frame/settle.h"
+#include "core/frame/settle/settle.h"
 #include "tests/support/program.h"
 #include "tests/support/scenes.h"
 #include "tests/support/wall_frame.h"

@@ -82,7 +82,10 @@ HostFrame mirrored(const HostFrame& frame, bool left_right) {
 }
 
 HostFrame scaled(HostFrame frame, int exponent) {
-  for (float& z : frame.depth) z = std::ldexp(z, exponent);
+  for (auto* depths : {&frame.depth, &frame.behind_depth})
+    for (float& z : *depths) z = std::ldexp(z, exponent);
+  if (frame.camera.orthographic)
+    frame.camera.fx = std::ldexp(frame.camera.fx, -exponent), frame.camera.fy = std::ldexp(frame.camera.fy, -exponent);
   frame.sky = std::ldexp(frame.sky, exponent);
   return frame;
 }

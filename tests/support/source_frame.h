@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/frame/input_rules.h"
+#include "core/frame/find/input_rules.h"
 #include "tests/support/device.h"
 #include "tests/support/difference.h"
 #include "tests/support/openexr.h"

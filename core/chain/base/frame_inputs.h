@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
-#include "core/frame/environment.h"
+#include "core/frame/find/environment.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"
@@ -15,30 +17,45 @@
 
 namespace alcove {
 
+/// What kernels share with the host, and know no comparison of, is compared by its bytes: it has no padding.
+template <class T>
+requires std::same_as<T, View> || std::same_as<T, vec3> || std::same_as<T, ivec2> || std::same_as<T, DepthTerms> ||
+    std::same_as<T, PrepareParams>
+bool operator==(const T& a, const T& b) { return std::memcmp(&a, &b, sizeof(T)) == 0; }
+
 /// The terms by which kernels read a plane of depth behind the first surface.
 struct LayerTerms {
   uint form;  // kDepth*
   BehindKind kind;
   DepthTerms depth;
+  bool operator==(const LayerTerms&) const = default;
 };
 
 /// Pixels around a frame.
 struct Margin {
   ivec2 before{};  // to the left and above
   ivec2 after{};   // to the right and below
+  bool operator==(const Margin&) const = default;
 };
 
-/// The prepared depth and normals of another frame of the shot, or of another view of the same instant.
-struct OtherView {
+/// The meaning of another frame's planes, or of another view's of the same instant, and which planes they are.
+struct OtherTerms {
   View view{};
   // its view space -> this frame's: x' = dot(row.xyz, x) + row.w, scene units
   std::array<std::array<float, 4>, 3> to_here{};
-  vec3 depth_precision{};               // of planar depth: see DepthPrecision
+  vec3 depth_precision{};     // of planar depth: see DepthPrecision
+  std::uint64_t content = 0;  // a hash of all three planes; 0: nobody has made it
+  bool operator==(const OtherTerms&) const = default;
+};
+
+/// Its prepared depth and normals.
+struct OtherView : OtherTerms {
   const gpu::Buffer* depth = nullptr;   // a plane: planar, kSkyDepth for sky
   const gpu::Buffer* normal = nullptr;  // a plane of packed normals, in its own view space
   // a plane of uints, not 0 where it shows what moves or may move; null: nothing does
   const gpu::Buffer* moving = nullptr;
-  std::uint64_t content = 0;  // a hash of all three planes; 0: nobody has made it
+  /// Whether the planes hold the same, in whichever buffers they lie.
+  bool operator==(const OtherView& other) const { return content != 0 && OtherTerms::operator==(other); }
 };
 
 /// Other frames, in upload buffers.
@@ -66,16 +83,11 @@ struct EstimateSet {
   bool is_further_part = false;   // of the frame of the part before, by the same recorder: what has moved is known
 };
 
-struct FrameInputs {
-  /// The buffer of a plane, its components one behind the other; null: the frame has no such plane, or nobody asked for
-  /// it.
-  gpu::Buffer*& operator[](RawPlane plane) { return planes[plane]; }
-  gpu::Buffer* operator[](RawPlane plane) const { return planes[plane]; }
-
-  RawPlaneArray<gpu::Buffer*> planes;
+/// All that decides a frame's results beside its own planes and the settings. As one value it is compared with that of
+/// the frame before, so nothing that is added here can be forgotten there.
+struct FrameRecipe {
   View view{};
   ivec2 noise_origin{};  // px: the data window's corner, so that a crop has the noise of the whole
-  int frame = 0;
   DepthMap depth_map;
   DepthPrecision depth_precision{};     // of the planar depth that it gives
   DepthPrecision hidden_precision{};    // of the least precise of it and of what lies behind
@@ -84,7 +96,6 @@ struct FrameInputs {
   std::vector<LayerTerms> behind;       // of each plane of RawPlane::behind
   bool behind_lists_all = false;        // see list_all()
   std::vector<OtherView> others;        // in any order: what they see behind the first surface counts as hidden
-  EstimateSet estimates;                // of which its AO is the mean
   int turn = 0;                         // of its sites, see site_rule_of()
   int supersampling = 1;                // px of the frame for each of its picture, in x and in y
   Margin margin{};                      // where others show what lies around the frame: see margin_of()
@@ -95,7 +106,19 @@ struct FrameInputs {
   Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
   Environment environment;                                   // its light, for relighting; in world space:
   Matrix3 world_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  bool is_sky = false;  // no pixel shows a surface, and none had to be repaired for that
+  bool operator==(const FrameRecipe&) const = default;
+};
+
+struct FrameInputs : FrameRecipe {
+  /// The buffer of a plane, its components one behind the other; null: the frame has no such plane, or nobody asked for
+  /// it.
+  gpu::Buffer*& operator[](RawPlane plane) { return planes[plane]; }
+  gpu::Buffer* operator[](RawPlane plane) const { return planes[plane]; }
+
+  RawPlaneArray<gpu::Buffer*> planes;
+  int frame = 0;          // by which animated noise goes on
+  EstimateSet estimates;  // of which its AO is the mean: such a frame has nothing of the one before
+  bool is_sky = false;    // no pixel shows a surface, and none had to be repaired for that
   // how the blocks differ from the frame before, whose estimate the buffers still hold: see classify.comp; null: the
   // buffers hold none
   const gpu::Buffer* changes = nullptr;

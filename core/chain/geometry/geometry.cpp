@@ -84,7 +84,8 @@ GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string&
                 {"Normal", gbuffer.normal},
                 {"Counts", gbuffer.counts},
                 {"Missing", gbuffer.missing}},
-               extent_of(frame.view), {frame.depth_map.form, raw_normal ? frame.normal_form : kNormalNone});
+               {uint(frame.view.size.x), groups_of(frame.view.size.y, kPrepareRun)},
+               {frame.depth_map.form, raw_normal ? frame.normal_form : kNormalNone});
   return gbuffer;
 }
 

@@ -12,6 +12,7 @@
 #include "core/base/file.h"
 #include "core/base/option_words.h"
 #include "core/base/text.h"
+#include "core/frame/camera/foreign_camera.h"
 
 namespace alcove {
 
@@ -20,6 +21,7 @@ namespace alcove {
 namespace {
 
 constexpr std::size_t kWithoutView = 7, kWithView = 8;  // numbers of a line
+constexpr double kMostFrameNumber = 1e9;
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
@@ -36,10 +38,17 @@ std::vector<double> numbers_in(const std::string& path, const std::string& line,
   return numbers;
 }
 
+/// Fails: a camera file does not list a frame.
+[[noreturn]] void refuse_absent(const std::string& path, int frame, const std::vector<int>& listed) {
+  fail(ErrorKind::input, "{}: it has no frame {}, {}: the camera must count as the frames do (--camera)", path, frame,
+       listed.empty() ? "nor any other" : "but " + short_frames_text(listed));
+}
+
 /// The line of a frame. Of several with one number it is the first.
 std::vector<double> line_of(const std::string& path, int frame) {
   std::istringstream lines(read_text(path, "camera", "--camera"));
   std::vector<double> found;
+  std::vector<int> listed;
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     number++;
@@ -51,8 +60,9 @@ std::vector<double> line_of(const std::string& path, int frame) {
            "view (--camera)",
            path, number, numbers.size());
     if (found.empty() && numbers[0] == frame) found = numbers;
+    if (std::abs(numbers[0]) < kMostFrameNumber) listed.push_back(int(numbers[0]));
   }
-  if (found.empty()) fail(ErrorKind::input, "{}: it has no frame {} (--camera)", path, frame);
+  if (found.empty()) refuse_absent(path, frame, listed);
   return found;
 }
 
@@ -179,6 +189,8 @@ Json object_of(const std::string& text, const std::string& path) {
       fail(ErrorKind::input, "{}: JSON that nests deeper than {}; --camera takes a camera file", path, kDeepest);
     return true;
   };
+  if (const std::string why = why_foreign_camera(text); !why.empty())
+    fail(ErrorKind::input, "{}: {} (--camera; docs/inputs.md describes a camera file)", path, why);
   Json top = Json::parse(text, bounded, false);
   if (!top.is_object())
     fail(
@@ -196,12 +208,14 @@ Json frame_entry(const CameraFile& file, int frame) {
   if (!file.top.contains("frames")) return Json::object();
   const Json& frames = file.top["frames"];
   if (!frames.is_array()) file.refuse("frames", "must be a list");
+  std::vector<int> listed;
   for (const auto& entry : frames) {
     if (!entry.is_object() || !entry.contains("frame") || !entry["frame"].is_number_integer())
       file.refuse("frames", "must list objects with a whole number \"frame\"");
     if (entry["frame"] == frame) return entry;
+    listed.push_back(entry["frame"].get<int>());
   }
-  file.refuse("frames", fmt::format("has no frame {}", frame));
+  refuse_absent(file.path, frame, listed);
 }
 
 /// Gives the entry of `views` with that name, in any case; an empty object where there are no `views`.

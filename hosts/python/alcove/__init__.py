@@ -214,7 +214,8 @@ def compute(depth: Optional["numpy.ndarray"] = None, normal: Optional["numpy.nda
     device.
 
     depth: (H, W), planar and positive in scene units, upper left pixel first; other kinds by depth_kind. 0, infinite and
-        NaN are sky. float16 and float32 are read in place, with any strides; other types are converted to float32.
+        NaN are sky. float16 and float32 are read in place, with any strides; other types are converted to float32. Integers of 8 bits
+        are too few distances and refused; divide those of 16 bits by 65535 for kinds within 0 to 1.
     normal: (H, W, 3), or (H, W, 2) by normal_encoding; None: reconstructed from depth. If the camera has a position,
         normal_space must be "world" or "view", here or in the camera. normal_encoding is "signed" by default.
     camera: the fields of a camera file as a dict (without resolution: that of the arrays), or its path, with the entry of

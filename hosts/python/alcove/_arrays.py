@@ -76,6 +76,8 @@ def _as_plane(name: str, values: Any) -> numpy.ndarray:
         array = array[:, :, None]
     if array.dtype.kind not in "fiub" or array.dtype.kind in "iub" and name == "normal":
         raise UsageError(f"{name}: an array of {array.dtype}, where {'floats belong' if name == 'normal' else 'numbers belong'}")
+    if array.dtype.kind != "f" and array.dtype.itemsize == 1 and name in ("depth", "behind", "position"):
+        raise UsageError(f"{name}: an array of {array.dtype} holds 256 distances at most, too few for AO: give floats, or uint16")
     is_half = array.dtype.kind == "f" and array.dtype.itemsize == 2
     array = array.astype(numpy.float16 if is_half else numpy.float32, copy=False)
     # A value that is repeated by a stride of 0 needs a copy, since 0 means packed to the library.
@@ -150,7 +152,7 @@ class _Session:
 
 def _in_keywords(text: bytes) -> str:
     """A sentence of the library, with options under their Python names."""
-    return re.sub(r"--(?:set )?([a-z][a-z-]*)", lambda match: match.group(1).replace("-", "_"), text.decode("utf-8", "replace"))
+    return re.sub(r"'([a-z]+(?:-[a-z]+)*)'", lambda match: match.group(0).replace("-", "_"), text.decode("utf-8", "replace"))
 
 
 _of_thread = threading.local()

@@ -34,13 +34,13 @@ const std::vector<Axis>& axes() {
   using N = NormalDefect;
   static const Axis sizes = [] {
     Axis changes;
-    for (const auto& [width, height] :
+    for (const auto& size :
          {std::pair{1, 1}, {1, 37}, {37, 1}, {3, 5}, {13, 31}, {47, 43}, {64, 48}, {16383, 1}, {1, 16383}, {16383, 2}})
-      changes.push_back([=](Spec& spec) { spec.width = width, spec.height = height; });
+      changes.push_back([=](Spec& spec) { spec.width = size.first, spec.height = size.second; });
     return changes;
   }();
   static const std::vector<Axis> all{
-      axis(&Spec::scale, {1e-6, 1e-3, 1e3, 1e6, 1e9}),
+      axis(&Spec::scale, {1e-15, 1e-6, 1e-3, 1e3, 1e9, 1e15}),
       axis(&Spec::range, {1e2, 1e4, 1e6}),
       axis(&Spec::fov, {0.0, 0.5, 5.0, 90.0, 120.0, 150.0, 170.0}),
       axis(&Spec::shift, {-3.0, 0.4, 1.0}),

@@ -65,8 +65,8 @@ TEST(Grid, every_axis_by_itself) {
 // The frames of the other tests are a few tiles large.
 TEST(Grid, frames_of_many_tiles) {
   const std::vector<Spec> specs{{},
-                                {.scale = 1e-6},
-                                {.scale = 1e9},
+                                {.scale = 1e-15},
+                                {.scale = 1e15},
                                 {.range = 1e4},
                                 {.fov = 0},
                                 {.fov = 5},

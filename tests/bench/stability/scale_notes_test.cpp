@@ -2,7 +2,7 @@
 // --stability` holds together.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench/stability.h"
-#include "core/frame/radius.h"
+#include "core/frame/pixels/radius.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"

@@ -1,0 +1,262 @@
+// Finds a pass of positions, picks points of it, and holds the camera that was given, and the depth, against them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/find/position_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/ranks.h"
+#include "core/frame/camera/resection.h"
+
+namespace alcove {
+namespace {
+
+constexpr int kColumns = 48;
+constexpr int kRows = 8;  // of a place
+
+/// A surface bends less from pixel to pixel, as part of the step; more where a filter has put two together.
+constexpr double kMostBend = 0.1;
+
+/// Rows of a pass.
+struct Band {
+  Window window;
+  std::array<std::vector<float>, 3> planes;
+
+  Vector3 at(int x, int y) const {
+    const auto i = std::size_t(y - window.y) * std::size_t(window.width) + std::size_t(x - window.x);
+    return {planes[0][i], planes[1][i], planes[2][i]};
+  }
+};
+
+bool is_surface(const Vector3& p, double sky) { return dot(p, p) > 0 && dot(p, p) < sky * sky; }
+
+/// The difference of the steps to the pixels on both sides, relative to them; infinite if one is no surface.
+double bend(const Vector3& before, const Vector3& here, const Vector3& after) {
+  const double step = length(difference(after, before));
+  const Vector3 second = difference(difference(after, here), difference(here, before));
+  return step > 0 ? length(second) / step : std::numeric_limits<double>::infinity();
+}
+
+/// The bend of the surface about a pixel; infinite if the pixel shows none.
+double roughness(const Band& band, int x, int y, double sky) {
+  const Vector3 here = band.at(x, y);
+  const std::array<Vector3, 4> about{band.at(x - 1, y), band.at(x + 1, y), band.at(x, y - 1), band.at(x, y + 1)};
+  const bool shows =
+      is_surface(here, sky) && std::ranges::all_of(about, [&](const Vector3& p) { return is_surface(p, sky); });
+  if (!shows) return std::numeric_limits<double>::infinity();
+  return std::max(bend(about[0], here, about[1]), bend(about[2], here, about[3]));
+}
+
+/// A pixel of a cell that shows a smooth surface; any of them, since the smoothest are all of walls. Else the
+/// smoothest.
+std::optional<std::pair<int, int>> place_in(const Band& band, const Window& cell, double sky, std::mt19937& random) {
+  std::vector<std::pair<int, int>> smooth;
+  std::optional<std::pair<int, int>> best;
+  double least = std::numeric_limits<double>::infinity();
+  const Window& whole = band.window;
+  for (int y = std::max(cell.y, whole.y + 1); y < std::min(cell.y + cell.height, whole.y + whole.height - 1); y++)
+    for (int x = std::max(cell.x, whole.x + 1); x < std::min(cell.x + cell.width, whole.x + whole.width - 1); x++) {
+      const double rough = roughness(band, x, y, sky);
+      if (rough < kMostBend) smooth.emplace_back(x, y);
+      if (rough < least) least = rough, best = {x, y};
+    }
+  return smooth.empty() ? best : smooth[random() % smooth.size()];
+}
+
+/// The error of a point's place, px, since its numbers are rounded.
+double rounding_at(const Band& band, int x, int y, double relative) {
+  const double across = length(difference(band.at(x + 1, y), band.at(x - 1, y)));
+  const double down = length(difference(band.at(x, y + 1), band.at(x, y - 1)));
+  return relative * length(band.at(x, y)) / (0.5 * std::min(across, down));
+}
+
+}  // namespace
+
+std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameSource& source,
+                                       const InputSettings& settings) {
+  const auto& depth = source.channels[RawPlane::depth];
+  if (depth.size() == 3) return depth;
+  const std::size_t file = depth.front().file;
+  auto found =
+      search.find_by_rules(file, kPositionNames, settings.position_channels, source.program.rules->position).channels;
+  if (found.empty()) found = search.find(file, kPositionNames, settings.position_channels, false);
+  const auto fits = [&](const ChannelRef& ref) {
+    return source.part_of(ref).data == source.part_of(found.front()).data;
+  };
+  return std::ranges::all_of(found, fits) ? found : std::vector<ChannelRef>{};
+}
+
+std::vector<SeenPoint> points_of(FrameSource& source, double sky, int bands) {
+  const auto& positions = source.channels.positions;
+  ExrFile& file = source.file_of(positions.front());
+  const ExrPart& part = file.parts()[std::size_t(positions.front().part)];
+  const Window& data = part.data;
+  const bool is_half = std::ranges::any_of(positions, [&](const ChannelRef& ref) { return source.is_half(ref); });
+  const double relative = is_half ? kHalfPrecision : kFloatPrecision;
+  const int together = std::max(part.rows_together, 1);
+  const int rows = (kRows + together - 1) / together * together;
+  const int step = std::max(rows, data.height / bands / together * together);
+  const Window& display = file.display();
+  std::mt19937 random(1);  // the same frame has the same points
+  std::vector<SeenPoint> points;
+  for (int top = 0; top < data.height; top += step) {
+    Band band{{data.x, data.y + top, data.width, std::min(rows, data.height - top)}, {}};
+    std::vector<ExrRead> reads;
+    for (std::size_t k = 0; k < 3; k++) {
+      band.planes[k].resize(band.window.pixels());
+      reads.push_back({positions[k].part, positions[k].channel, band.planes[k].data()});
+    }
+    file.read(reads, top, band.window.height);
+    for (int first = band.window.y; first < band.window.y + band.window.height; first += kRows)
+      for (int column = 0; column < kColumns; column++) {
+        const int left = int(std::int64_t(data.width) * column / kColumns);
+        const int right = int(std::int64_t(data.width) * (column + 1) / kColumns);
+        const Window cell{data.x + left, first, right - left, kRows};
+        const auto place = place_in(band, cell, sky, random);
+        if (!place) continue;
+        const auto [x, y] = *place;
+        points.push_back({band.at(x, y), x + 0.5 - display.x, y + 0.5 - display.y, rounding_at(band, x, y, relative)});
+      }
+  }
+  return points;
+}
+
+// Camera and depth against the positions.
+
+namespace {
+
+/// The share of the points, nearest to their pixels first, that counts: the rest may be of edges.
+constexpr double kCounted = 0.9;
+/// px, and part of the picture's width: a lens that is off by less is one that was rounded.
+constexpr double kLeastBeside = 1, kLeastPart = 1e-3;
+/// px. Where half of the points are farther off by the camera that fits best, they are of no camera; filtered ones are
+/// nearer.
+constexpr double kNoCamera = 2;
+
+/// The largest distance, px, from most points to their pixels by a lens, beyond their rounding. `standing` is the
+/// camera that places them.
+double beside(const Camera& lens, const Camera& standing, std::span<const SeenPoint> points) {
+  std::vector<double> distances;
+  for (const auto& point : points) {
+    Vector3 view = point.position;
+    if (standing.view_from_world) {
+      view = times(*standing.view_from_world, point.position);
+      for (std::size_t k = 0; k < 3; k++) view[k] += standing.view_from_world_offset[k];
+    } else if (standing.left_handed) {
+      view[2] = -view[2];
+    }
+    const double over = lens.orthographic ? 1 : -1 / view[2];
+    const double x = lens.cx + lens.fx * view[0] * over, y = lens.cy - lens.fy * view[1] * over;
+    distances.push_back(std::hypot(x - point.x, y - point.y) - point.rounding);
+  }
+  return value_at_rank(distances, std::size_t(kCounted * double(distances.size() - 1)));
+}
+
+bool is_centred(const Camera& camera, double pixel_aspect) {
+  constexpr double kSame = 2e-3;
+  return std::abs(camera.cx - 0.5 * camera.width) < kSame * camera.width &&
+         std::abs(camera.cy - 0.5 * camera.height) < kSame * camera.height &&
+         std::abs(camera.fy / camera.fx / pixel_aspect - 1) < kSame;
+}
+
+/// The options that give this lens, or its numbers where no option does.
+std::string text_of(const Camera& camera, double pixel_aspect) {
+  const double width = camera.width / camera.fx;
+  if (!is_centred(camera, pixel_aspect))
+    return fmt::format("{} camera with fx {:.6g}, fy {:.6g}, cx {:.2f}, cy {:.2f} (--camera)",
+                       camera.orthographic ? "an orthographic" : "a", camera.fx, camera.fy, camera.cx, camera.cy);
+  if (camera.orthographic) return fmt::format("an orthographic camera (--ortho-width {:.6g})", width);
+  const double degrees = 2 * std::atan(0.5 * width) * 180 / std::numbers::pi;
+  return fmt::format("a field of view of {:.5g} degrees (--fov {:.5g})", degrees, degrees);
+}
+
+/// Names the source of the lens for messages.
+std::string name_of_lens(const FrameSource& source, const InputSettings& settings) {
+  if (!source.camera_from.empty()) return source.camera_from;
+  if (!settings.camera.empty()) return "the camera of " + settings.camera;
+  if (settings.fov) return fmt::format("--fov {:g}", *settings.fov);
+  return settings.focal ? "--focal with --aperture" : "--ortho-width";
+}
+
+/// The planar depth of a point, scene units.
+double planar_of(const SeenPoint& point, const Camera& camera) {
+  if (!camera.view_from_world) return std::abs(point.position[2]);
+  return -(dot((*camera.view_from_world)[2], point.position) + camera.view_from_world_offset[2]);
+}
+
+/// The median difference of numbers from their median, relative to it.
+double spread(std::vector<double> numbers) {
+  const double median = median_of(numbers);
+  for (double& number : numbers) number = std::abs(number / median - 1);
+  return median_of(std::move(numbers));
+}
+
+}  // namespace
+
+std::string settle_camera(FrameSource& source, const InputSettings& settings) {
+  if (source.channels.positions.empty() || source.open.camera || source.camera_from == kByPositions) return "";
+  ExrFile& file = source.file_of(source.channels.positions.front());
+  const auto points = points_of(source, settings.sky, kFewBands);
+  const double limit = std::max(kLeastBeside, kLeastPart * source.reading.display.width);
+  if (points.empty() || beside(source.reading.camera, source.reading.camera, points) <= limit) return "";
+  const auto found = resection_of(points, source.reading.display);
+  const auto* seen = std::get_if<Resection>(&found);
+  const std::string& held = file.path();
+  std::string text;
+  if (!seen) {
+    if (const std::string panorama = panorama_of(points, source.reading.display); !panorama.empty())
+      refuse_panorama(file.path(), panorama + " by its positions");
+    const auto& none = std::get<NoResection>(found);
+    if (none.median <= kNoCamera || !source.camera_from.empty()) return "";
+    text = fmt::format(
+        "no camera fits the positions of {}: by the best of all half of them lie {:.3g} px and more from the pixels "
+        "that "
+        "hold them, so they are of a panorama, or no positions (--position-channels); {} is taken",
+        held, none.median, name_of_lens(source, settings));
+  } else {
+    const double px = beside(source.reading.camera, seen->camera, points);
+    if (px <= limit) return "";
+    text = fmt::format("by {} most positions of {} lie up to {:.3g} px from the pixels that hold them; they show {}{}",
+                       name_of_lens(source, settings), held, px, text_of(seen->camera, source.reading.pixel_aspect),
+                       source.camera_from.empty() ? ": give that, or leave the option out" : "");
+  }
+  source.notes.push_back({NoteCode::field_of_view, text});
+  return text;
+}
+
+std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
+  constexpr double kSame = 0.005;  // of depth that is that of the positions, in whatever unit
+  constexpr double kOther = 4;     // times as far is another kind
+  if (source.channels.positions.empty() || source.channels[RawPlane::depth].size() != 1) return std::nullopt;
+  const Window &data = raw.window, &display = source.reading.display;
+  const View view = view_of(source.reading, data);
+  std::vector<double> planar, ray, inverse;
+  for (const auto& point : points_of(source, settings.sky, kFewBands)) {
+    const int x = int(point.x) + display.x - data.x, y = int(point.y) + display.y - data.y;
+    if (x < 0 || y < 0 || x >= data.width || y >= data.height) continue;
+    const double value = std::abs(raw.depth[std::size_t(y) * std::size_t(data.width) + std::size_t(x)]);
+    const double z = planar_of(point, source.reading.camera);
+    if (!(value > 0 && value < settings.sky && z > 0)) continue;
+    planar.push_back(value / z);
+    ray.push_back(value / (z * ray_length(view, x, y)));
+    inverse.push_back(value * z);
+  }
+  if (planar.size() < kLeastPoints) return std::nullopt;
+  const std::array spreads{std::pair{spread(planar), DepthKind::planar}, std::pair{spread(ray), DepthKind::ray},
+                           std::pair{spread(inverse), DepthKind::inverse}};
+  const auto best = std::ranges::min_element(spreads);
+  const auto fits_too = [&](const auto& other) {
+    return other.second != best->second && other.first < kOther * std::max(best->first, 1e-5);
+  };
+  if (best->first > kSame || std::ranges::any_of(spreads, fits_too)) return std::nullopt;
+  return best->second;
+}
+
+}  // namespace alcove

@@ -1,0 +1,42 @@
+// The faults that a frame's pixels may show: a table of detectors, each a function of the walk's findings.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/base/note.h"
+#include "core/frame/pixels/findings.h"
+#include "core/frame/reading.h"
+
+namespace alcove {
+
+/// A row of the table.
+struct Detector {
+  NoteCode code;
+  const char* looks_at;  // for lists: the pixels that it looks at
+  const char* speaks;    // when it does; both end without a full stop
+  const char* mend;      // what mends it
+  // The sentence of its note, where it speaks.
+  std::optional<std::string> (*sentence)(const Findings&);
+};
+
+/// The sentence on a frame in which nothing is a surface.
+std::string no_surfaces_text(const std::string& depth_channel);
+
+/// The number that depth must be added to be in proportion to distances, as it is read.
+double said_offset(const Reading& reading);
+/// Whether the curve of the values speaks against the kind of depth that is read.
+bool speaks_against(const Curve& curve, const Reading& reading);
+
+/// The table. A code may have several rows.
+std::span<const Detector> detectors();
+
+/// What they say of a frame.
+Notes detected(const Findings& findings);
+
+/// The table as docs/troubleshooting.md shows it.
+std::string detector_table_markdown();
+
+}  // namespace alcove

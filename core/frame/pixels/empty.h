@@ -1,0 +1,29 @@
+// Parts of a picture without surfaces: along its borders, and as rectangles.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/frame/pixels/findings.h"
+#include "core/frame/pixels/lines.h"
+#include "core/frame/reading.h"
+
+namespace alcove {
+
+/// The rows and columns along the borders of a whole frame that have no surface.
+Borders borders_of(std::span<const float> depth, const Window& window, const DepthMap& map);
+
+/// The stretches of a row, and its place.
+struct PlacedRuns {
+  int row;
+  std::vector<EmptyRun> runs;
+};
+
+/// The largest rectangle without surfaces that has one value and does not reach from border to border. `rows` are some
+/// of the frame's.
+std::optional<EmptyRectangle> empty_rectangle(std::span<const float> depth, const Window& window,
+                                              std::span<const PlacedRuns> rows);
+
+}  // namespace alcove

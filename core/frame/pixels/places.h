@@ -1,0 +1,34 @@
+// Places of a picture: pixels, the rays through them, and the points that depth gives them.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+#include "core/frame/camera/camera.h"
+
+namespace alcove {
+
+/// The step between places, of which some 160 stand in the longer side: enough for shares to a percent.
+inline int sparseness(const View& view) {
+  constexpr int kAcross = 160;
+  return std::max(1, std::max(view.size.x, view.size.y) / kAcross);
+}
+
+inline std::size_t index_of(const View& view, int x, int y) {
+  return std::size_t(y) * std::size_t(view.size.x) + std::size_t(x);
+}
+
+/// Gives the point where the pixel's ray meets the plane at unit depth; orthographic: the pixel's place in the plane.
+inline Vector3 tangent_at(const View& view, int x, int y) {
+  return {(x + 0.5 - view.center.x) * view.tangent_per_pixel.x, (y + 0.5 - view.center.y) * view.tangent_per_pixel.y,
+          -1};
+}
+
+/// The value of a pixel: one, or a position's three.
+inline Vector3 value_at(std::span<const float> raw, std::size_t plane, std::size_t i) {
+  return raw.size() == 3 * plane ? Vector3{raw[i], raw[i + plane], raw[i + 2 * plane]} : Vector3{raw[i], 0, 0};
+}
+
+}  // namespace alcove

@@ -1,0 +1,105 @@
+// The values of a frame's depth, and the steps that settle it.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/settlement.h"
+
+namespace alcove {
+
+/// The values on one side of a limit. One value alone stands for something that is no surface.
+struct Side {
+  std::size_t count = 0, others = 0;  // others: all but the most frequent value
+  float usual = 0;                    // the most frequent value
+
+  bool varies() const { return others > 0; }
+  /// Edges blend one value with others.
+  bool is_mostly_one() const { return 10 * others <= count; }
+};
+
+/// The values of a depth plane as they stand in the file. All pixels of a small picture are looked at.
+struct DepthValues {
+  DepthValues(std::span<const float> depth, double sky);
+
+  std::size_t step;                // from one pixel that is looked at to the next
+  Side below_0, above_0, above_1;  // finite, and nearer than the sky
+  ValueStatistics all;             // of all pixels
+  ValueStatistics surfaces;        // above 0 and before the sky: of distances, all that are surfaces
+  bool has_any = false;            // that may be a surface
+};
+
+/// If a smaller part of the smooth places is straight, the frame has no flat surfaces that could tell.
+inline constexpr double kLeastStraight = 0.02;
+/// From this part of the smooth places on, flat surfaces speak for a kind by themselves.
+inline constexpr double kSurelyStraight = 0.1;
+/// If this part of the pixels is exactly 1, that is a background.
+inline constexpr double kPlateau = 0.001;
+/// A range of 0 to 1 may exceed 1 by so much because it was computed.
+inline constexpr double kRounded = 1e-3;
+/// If a smaller part of the values lies on the other side of 0, or none of them is so far from it as rounding may
+/// bring them, these are errors.
+inline constexpr double kFewErrors = 0.005;
+
+/// What is known of a depth beside its planes.
+struct DepthFacts {
+  Program program;
+  bool is_kind_open = false;
+  // Gives the kind by which it is the depth of positions beside it, if those tell. Null: there are none.
+  std::function<std::optional<DepthKind>()> kind_by_positions = nullptr;
+  const char* said_by = "--depth-kind, --source or the camera file";  // what may say the kind that is not open
+};
+
+/// Settles kind and sign of the depth, or the space of positions; where they are said, notes what speaks against them.
+void settle_depth(const PlanesToSettle& planes, const DepthFacts& facts);
+
+/// Depth that is being settled.
+class DepthSettlement : protected Settlement {
+ public:
+  DepthSettlement(const PlanesToSettle& planes, const DepthFacts& facts, const DepthValues& values)
+      : Settlement(planes), facts_(facts), values_(values) {}
+
+ protected:
+  /// Whether all surfaces lie within 0 to 1, whatever stands for the sky.
+  bool is_fraction() const { return values_.surfaces.positive && values_.surfaces.most <= 1 + kRounded; }
+  std::string text_of_range() const;
+  std::string straight(const DepthScore& score) const;
+  double straightness(const std::vector<DepthScore>& scores, DepthKind kind) const;
+  /// The straightness of flat surfaces if the depth falls from 1 at the eye to 0 at its far end.
+  double straightness_from_1() const;
+  /// The options that read normalized depth, and the meaning of their number.
+  static std::string normalized_line(bool reversed);
+
+  bool has_vectors() const { return raw_.normal.size() == 3 * raw_.window.pixels(); }
+
+  const DepthFacts& facts_;
+  const DepthValues& values_;
+};
+
+/// Decides an open kind: by flat surfaces, else by positions, else by normals, else by the program, else the usual
+/// one.
+void settle_depth_kind(const DepthSettlement& depth);
+
+/// Depth within 0 to 1 is the part of a range more often than a distance, and no pixel shows how long that range is.
+/// It is refused where nothing supports distances, and noted where straight lines do: z / far has them too. `usual`:
+/// the kind that the program writes.
+void refuse_fractions(const DepthSettlement& depth, DepthKind usual);
+
+/// Notes where the pixels, or two sources of planes, speak against the kind of depth that is said. It is read so all
+/// the same.
+void doubt_depth_kind(const DepthSettlement& depth);
+/// Notes near planes that differ.
+void compare_near_planes(const DepthSettlement& depth);
+
+/// Settles the sign, depth at the ends of a range and beyond them, and one distance that may be the sky.
+void settle_depth_ends(const DepthSettlement& depth);
+
+/// Settles the space of positions.
+void settle_position_space(const PlanesToSettle& planes);
+
+}  // namespace alcove

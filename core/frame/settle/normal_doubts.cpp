@@ -1,0 +1,180 @@
+// Holds normals against depth and camera.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/option_words.h"
+#include "core/frame/pixels/detectors.h"
+#include "core/frame/settle/normal_settlement.h"
+#include "core/frame/settle/other_cameras.h"
+#include "core/frame/settle/other_components.h"
+#include "core/frame/settle/settle.h"
+
+namespace alcove {
+namespace {
+
+/// From so many on the field of view is not doubted. With half or twice the right one it was 41 % at most.
+constexpr double kSurelyClose = 0.5;
+/// If a smaller share of the normals agrees with depth, they are not used unless --set allow=normals-disagree says so:
+/// most of them would be wrong.
+constexpr double kUsable = 0.5;
+
+class NormalDoubts : private NormalSettlement {
+ public:
+  explicit NormalDoubts(const NormalSettlement& normals) : NormalSettlement(normals) {}
+
+  /// Notes normals that depth speaks against, and refuses normals that it refutes.
+  void run(const std::vector<NormalScore>& scores) {
+    if (source_.open.camera) return;
+    const NormalScore* chosen = score_of(scores, reading_.normal_space, reading_.flip_normal);
+    if (!chosen) return;
+    const NormalScore* straighter = straighter_than(*chosen, scores);
+    if (straighter)
+      return note(NoteCode::normals_disagree,
+                  fmt::format("normals are read as {}; better fits {}: {} ({})", text_of(*chosen), text_of(*straighter),
+                              turn_of(*straighter, *chosen), kSpaceOptions));
+    note_other_cause(*chosen, scores);
+    doubt_centre(*chosen);
+    if (doubt_rotation(*chosen)) return;
+    if (chosen->explained() < kLeastAgreement || chosen->agreement < kRefuted) refuse_normals(*chosen, scores);
+    if (scores[0].agreement >= kLeastAgreement && !explains(*chosen, scores))
+      note(NoteCode::normals_disagree, fmt::format("normals are read as {}; better fits {} ({})", text_of(*chosen),
+                                                   text_of(scores[0]), kSpaceOptions));
+    else if (chosen->explained() < kLeastAgreement)
+      note(NoteCode::normals_disagree, fmt::format("only {:.0f} % of the normals agree with depth, read as {}: {}",
+                                                   100 * chosen->agreement, text_of(*chosen), kCheck));
+    else if (const auto turned = turned_world(*chosen))
+      note(NoteCode::normals_disagree, fmt::format("{} ({})", *turned, kSpaceOptions));
+    else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(reading_))
+      note(NoteCode::normals_disagree,
+           fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
+                       chosen->angle, kCheck));
+  }
+
+  /// Refuses the camera where the normals agree with depth by one that is turned in a usual way, and by the given one
+  /// do not. `sharpest` is the share that another reading of the normals brings close.
+  void refuse_turned_camera(const NormalScore& chosen, double sharpest) const {
+    const auto turned = best_turned_camera(planes(), chosen);
+    if (!turned || turned->score.agreement < kLeastAgreement || turned->score.close < sharpest ||
+        turned->score.agreement < kClear * chosen.agreement)
+      return;
+    fail(ErrorKind::input,
+         "{}: the camera{} does not fit: by it {:.0f} % of the normals in {} space agree with depth; {}, then {:.0f} % "
+         "agree; {}",
+         path_, from(), 100 * chosen.agreement, word_of(chosen.space), turned->what, 100 * turned->score.agreement,
+         kWithout);
+  }
+
+ private:
+  /// Notes that normals which are turned round may be those of a flipped axis: depth fits both ways alike.
+  void note_other_cause(const NormalScore& chosen, const std::vector<NormalScore>& scores) {
+    const auto other = std::ranges::find_if(
+        scores, [&](const auto& s) { return s.space == chosen.space && s.agreement >= kAsMany * chosen.explained(); });
+    // Where neither way fits, something else is wrong.
+    if (chosen.explained() < kLeastAgreement) return;
+    if (other == scores.end() || chosen.agreement >= kAsMany * other->agreement) return;
+    note(NoteCode::turned_normals,
+         fmt::format("{:.0f} % of the normals are opposite to depth and are turned round, as for mirrored things; if "
+                     "an axis of all normals is flipped, as in DirectX, give --flip-normal {}",
+                     100 * chosen.opposite, to_string(other->flips)));
+  }
+
+  /// Refuses normals that hardly agree with depth, where another reading or another camera has clearly more of them
+  /// agree, or where nothing is left that could be right.
+  void refuse_normals(const NormalScore& chosen, const std::vector<NormalScore>& scores) const {
+    const NormalScore& best = scores[0];
+    refuse_flips(chosen, scores);
+    refuse_turned_camera(chosen, best.close);
+    const std::string read =
+        fmt::format("{}: its normals, read as {}, are not those of this depth and this camera", path_, text_of(chosen));
+    if (best.agreement >= kLeastAgreement && best.agreement > kClear * chosen.agreement)
+      fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
+    // Coarse depth turns the normals of depth themselves by so much.
+    if (chosen.explained() >= kUsable || has_coarse_depth(reading_)) return;
+    const bool is_tangent = are_alike(raw_.normal, raw_.depth, depth_map_of(reading_));
+    if (chosen.explained() >= kRefuted && is_allowed(NoteCode::normals_disagree)) return;
+    fail(ErrorKind::input, "{}, nor in any other space{}: {}; {}{}", read,
+         is_tangent ? ", but all look the same way, as those of tangent space" : "", kCheck, kWithout,
+         chosen.explained() >= kRefuted ? "; --set allow=normals-disagree takes them as they are" : "");
+  }
+
+  /// Refuses flips that are given where the normals agree with depth without them.
+  void refuse_flips(const NormalScore& chosen, const std::vector<NormalScore>& scores) const {
+    const NormalScore* plain = score_of(scores, chosen.space, {});
+    if (to_string(settings_.flip_normal) == "none" || to_string(chosen.flips) == "none" || !plain) return;
+    if (plain->agreement < kLeastAgreement || plain->agreement < kClear * chosen.agreement) return;
+    fail(ErrorKind::input,
+         "{}: --flip-normal {} does not fit: with it {:.0f} % of the normals agree with depth, without "
+         "it {:.0f} %: leave it out",
+         path_, to_string(settings_.flip_normal), 100 * chosen.agreement, 100 * plain->agreement);
+  }
+
+  /// Refuses a principal point that fits elsewhere, and says where no pixel can tell.
+  void doubt_centre(const NormalScore& chosen) {
+    if (!is_off_centre(reading_.camera)) return;
+    const auto other = best_other_point(planes(), chosen);
+    if (!other) return;
+    if (is_sharper(other->score, chosen))
+      fail(ErrorKind::input,
+           "{}: the camera{} does not fit: by it {:.0f} % of the normals agree with depth to 3 degrees; {}, then "
+           "{:.0f} % do; {}",
+           path_, from(), 100 * chosen.close, other->what, 100 * other->score.close, kWithout);
+    if (is_sharper(chosen, other->score)) return;
+    note_centre(source_);
+  }
+
+  /// Notes where the angles of a .chan file fit better in another order. Returns whether they do.
+  bool doubt_rotation(const NormalScore& chosen) {
+    const auto other = best_other_rotation(planes(), chosen);
+    if (!other || !is_sharper(other->score, chosen) || chosen.agreement < kLeastAgreement) return false;
+    note(NoteCode::normals_disagree,
+         fmt::format("by the camera{} {:.0f} % of the normals agree with depth to 3 degrees; {}, then {:.0f} % do",
+                     from(), 100 * chosen.close, other->what, 100 * other->score.close));
+    return true;
+  }
+
+  /// Notes where the normals show square pixels, and better than another field of view explains them. Returns whether
+  /// they do.
+  bool doubt_aspect(const NormalScore& chosen, const std::optional<OtherCamera>& width) {
+    const auto square = square_pixels(planes(), chosen);
+    if (reading_.pixel_aspect == 1 || !square || !is_sharper(*square, chosen)) return false;
+    if (width && width->score.close >= square->close) return false;
+    note(NoteCode::said_otherwise,
+         fmt::format(
+             "the frame's pixelAspectRatio is {:.4g}, and its normals show square pixels: {:.0f} % of them agree "
+             "with depth to 3 degrees then, {:.0f} % as it is; write the file with pixelAspectRatio 1, or give "
+             "--camera with fx = fy",
+             reading_.pixel_aspect, 100 * square->close, 100 * chosen.close));
+    return true;
+  }
+
+  /// Notes where another field of view fits better, as it also may where the depth is read wrongly. Returns whether it
+  /// does.
+  bool doubt_width(const NormalScore& chosen) {
+    // By depth that counts from elsewhere, or along a curve, another lens may seem to fit.
+    if (chosen.close >= kSurelyClose || speaks_against(seen_.curve, reading_)) return false;
+    const auto other = best_other_width(planes(), chosen);
+    if (doubt_aspect(chosen, other)) return true;
+    if (!other || !is_sharper(other->score, chosen)) return false;
+    note(NoteCode::field_of_view,
+         fmt::format("{} fits the normals better: {:.0f} % of them agree with depth to 3 degrees then, {:.0f} % as it "
+                     "is given: {}",
+                     other->what, 100 * other->score.close, 100 * chosen.close, kCheck));
+    return true;
+  }
+};
+
+}  // namespace
+
+void refuse_turned_camera(const NormalSettlement& normals, const NormalScore& chosen, double sharpest) {
+  NormalDoubts(normals).refuse_turned_camera(chosen, sharpest);
+}
+
+void doubt_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores) {
+  NormalDoubts(normals).run(scores);
+}
+
+}  // namespace alcove

@@ -1,0 +1,147 @@
+// Settles the encoding of normals.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/option_words.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/samples.h"
+#include "core/frame/settle/faults.h"
+#include "core/frame/settle/normal_alterations.h"
+#include "core/frame/settle/normal_settlement.h"
+#include "core/frame/settle/other_components.h"
+#include "core/frame/settle/settle.h"
+
+namespace alcove {
+namespace {
+
+class EncodingSettlement : private NormalSettlement {
+ public:
+  explicit EncodingSettlement(const NormalSettlement& normals) : NormalSettlement(normals) {}
+
+  NormalStatistics run() {
+    const bool is_open = source_.open.normal_encoding;
+    NormalStatistics n = normal_statistics(raw_.normal, raw_.depth, depth_map_of(reading_), kSparse);
+    if (n.count == 0) n = normal_statistics(raw_.normal, raw_.depth, depth_map_of(reading_));
+    if (!is_open) doubt_encoding(n);
+    const bool in_unit_range = n.count && n.least >= 0 && n.most <= 1;
+    const NormalEncoding said = reading_.normal_encoding;
+    std::string why = source_.channels[RawPlane::normal].size() == 2
+                          ? fmt::format("all in {:.2g} to {:.2g}", n.least, n.most)
+                          : fmt::format("of unit length on {:.0f} %", 100 * n.unit_share);
+    if (said == NormalEncoding::octahedral || said == NormalEncoding::spheremap ||
+        source_.channels[RawPlane::normal].size() == 2) {
+      reading_.normal_unorm =
+          said == NormalEncoding::unorm || (in_unit_range && (is_open || said != NormalEncoding::signed_float));
+    } else {
+      const bool is_unorm =
+          is_open && in_unit_range && n.unorm_unit_share > 0.5 && n.unit_share < 0.5 * n.unorm_unit_share;
+      if (is_unorm)
+        why = fmt::format("all in 0 to 1, and 2 n - 1 is of unit length on {:.0f} %", 100 * n.unorm_unit_share);
+      reading_.normal_unorm = is_unorm || said == NormalEncoding::unorm;
+    }
+    if (has_lengths(source_)) refuse_altered(n);
+    const double unit = reading_.normal_unorm ? n.unorm_unit_share : n.unit_share;
+    const double otherwise = reading_.normal_unorm ? n.unit_share : n.unorm_unit_share;
+    const bool tells = has_lengths(source_) && std::max(unit, otherwise) > kUnit;
+    const bool differs = !tells && compare_encodings(in_unit_range, why);
+    if (has_lengths(source_)) refuse_missing(n);
+    if (!is_open) return n;
+    const std::string name = encoding_name(reading_.normal_encoding, reading_.normal_unorm);
+    if (tells && unit > kUnit && otherwise < kNotUnit)
+      take_down("normal encoding", name, why, "--normal-encoding", reading_.normal_unorm, true);
+    else
+      guess("normal encoding", name, why, "--normal-encoding", differs || reading_.normal_unorm);
+    return n;
+  }
+
+ private:
+  std::vector<NormalScore> scores_of(NormalEncoding encoding, bool unorm) const {
+    NormalPlanes read = planes();
+    read.encoding = encoding;
+    read.unorm = unorm;
+    return score_normals(read);
+  }
+
+  /// Refuses two components that were saved as three: the third one has one value, and lengths are not 1.
+  void refuse_missing(const NormalStatistics& n) const {
+    constexpr double kMostBare = 0.02;  // of the surfaces
+    constexpr double kUnitAxes = 0.97;  // from there on only normals along the third axis can be missing, and are 0
+    const auto missing = constant_component(raw_.normal, raw_.depth, depth_map_of(reading_));
+    if (!missing) return;
+    const double unit = std::max(n.unit_share, n.unorm_unit_share);
+    if (unit > kUnitAxes || (unit > kNotUnit && missing->bare < kMostBare)) return;
+    refuse_other_components(*this, {}, {});
+    const auto& all = source_.channels[RawPlane::normal];
+    fail(ErrorKind::input,
+         "{}: {} is {:.3g} everywhere, so that its normals lack a component: name the two channels that are there "
+         "(--normal-channels {},{}), which rebuilds z for those of view space; --normal-encoding octahedral or "
+         "spheremap "
+         "reads those of two channels in any space; {}",
+         path_, all[missing->channel].channel, missing->value, all[missing->channel == 0 ? 1 : 0].channel,
+         all[missing->channel == 2 ? 1 : 2].channel, kWithout);
+  }
+
+  /// Refuses vectors whose lengths show that they were treated as colours.
+  void refuse_altered(const NormalStatistics& n) const {
+    if (std::max(n.unit_share, n.unorm_unit_share) > kUnit || n.usual_share > kUnit) return;
+    if (const auto what = alteration_of(raw_, depth_map_of(reading_)))
+      fail(ErrorKind::input, "{}: its normals ({}) are of unit length on {:.0f} % only: they look like {}; {}", path_,
+           channels(), 100 * n.unit_share, *what, kWithout);
+  }
+
+  /// If the normals do not agree with depth, and do so much better in another encoding, that one is chosen where nobody
+  /// says one, and else noted. Returns whether it was chosen.
+  bool compare_encodings(bool in_unit_range, std::string& why) {
+    const auto scores = scores_of(reading_.normal_encoding, reading_.normal_unorm);
+    if (scores.empty()) return false;
+    const NormalScore* const own = sharpest_of(scores);
+    const NormalScore& as_is = own ? *own : scores[0];
+    if (agrees(as_is) && as_is.close > kUnit) return false;
+    std::optional<std::pair<NormalEncoding, NormalScore>> best;
+    for (const auto encoding : {NormalEncoding::signed_float, NormalEncoding::octahedral, NormalEncoding::spheremap}) {
+      const auto others = scores_of(encoding, in_unit_range);
+      const NormalScore* const other = sharpest_of(others);
+      if (!other || !agrees(*other) || (best && other->close <= best->second.close)) continue;
+      if (is_sharper(*other, as_is) || as_is.agreement < kAsGood * other->agreement) best = {encoding, *other};
+    }
+    if (!best) return false;
+    why = fmt::format(
+        "as {} {:.0f} % of the normals agree with depth within 3 degrees, as {} {:.0f} %, and {:.0f} % agree "
+        "at all",
+        encoding_name(best->first, in_unit_range), 100 * best->second.close,
+        encoding_name(reading_.normal_encoding, reading_.normal_unorm), 100 * as_is.close, 100 * as_is.agreement);
+    if (!source_.open.normal_encoding) {
+      note(NoteCode::said_otherwise, why + ": is --normal-encoding right?");
+      return false;
+    }
+    reading_.normal_encoding = best->first;
+    reading_.normal_unorm = in_unit_range;
+    return true;
+  }
+
+  /// Notes where the lengths of the normals speak against the encoding that is said.
+  void doubt_encoding(const NormalStatistics& n) {
+    if (source_.channels[RawPlane::normal].size() != 3) return;
+    const bool is_signed = n.unit_share > kUnit && n.unorm_unit_share < kNotUnit;
+    const bool is_unorm = n.unorm_unit_share > kUnit && n.unit_share < kNotUnit;
+    if (is_signed && reading_.normal_encoding != NormalEncoding::signed_float)
+      note(NoteCode::said_otherwise,
+           fmt::format("the normals are signed vectors by their lengths (of 1 on {:.0f} %), and --normal-encoding or "
+                       "the camera file says otherwise",
+                       100 * n.unit_share));
+    if (is_unorm && reading_.normal_encoding == NormalEncoding::signed_float)
+      note(NoteCode::said_otherwise,
+           fmt::format("2 n - 1 of the normals is of unit length on {:.0f} %: are they unorm (--normal-encoding)?",
+                       100 * n.unorm_unit_share));
+  }
+};
+
+}  // namespace
+
+NormalStatistics settle_normal_encoding(const NormalSettlement& normals) { return EncodingSettlement(normals).run(); }
+
+}  // namespace alcove

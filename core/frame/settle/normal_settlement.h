@@ -1,0 +1,90 @@
+// A frame whose normals are being settled: what the steps share.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/frame/pixels/normal_scores.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/settlement.h"
+
+namespace alcove {
+
+/// If the normals agree with depth less than this part of the best agreement, another reading of them is chosen or
+/// noted.
+inline constexpr double kNoBetter = 0.95;
+/// Another reading of the camera is taken for the right one if so many times as many normals are close by it.
+inline constexpr double kSharper = 1.2;
+/// If this part of the normals has unit length, and less than the other part by another encoding, they are vectors.
+inline constexpr double kUnit = 0.9, kNotUnit = 0.5;
+/// A reading explains the normals as well as the best one if, with those of the other side turned round, it explains
+/// this part of as many, and this part of those need not be turned.
+inline constexpr double kAsMany = 0.98, kLeastOwn = 0.2;
+/// Degrees. If all normals are turned by more than this against those of depth, they are of another space or another
+/// camera. Bumps do not turn them as a whole; half depth does so by up to a degree.
+inline constexpr double kLeastTurn = 1, kLeastTurnOfHalf = 3;
+
+class NormalSettlement : protected Settlement {
+ public:
+  NormalSettlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen)
+      : Settlement({source.reading, source.notes, settings, raw, seen, source.path_of(RawPlane::normal),
+                    source.normal_file()}),
+        source_(source) {}
+
+ protected:
+  NormalPlanes planes() const { return {over(reading_, raw_.window), raw_.normal, raw_.depth}; }
+  static bool agrees(const NormalScore& score);
+  /// Whether a reading does as well as any, if need be with the normals of the other side turned round: they are a
+  /// fault of some objects, and flips are one of all.
+  static bool explains(const NormalScore& score, const std::vector<NormalScore>& scores);
+  static bool explains_most(const NormalScore& score, const std::vector<NormalScore>& scores);
+  /// Whether one reading has nothing of a turn that the normals as a whole have by the other, as those of a camera that
+  /// is turned by little have in the wrong space.
+  bool is_straighter(const NormalScore& score, const NormalScore& other) const;
+  /// The same reading in the other space, where it is straighter.
+  const NormalScore* straighter_than(const NormalScore& score, const std::vector<NormalScore>& scores) const;
+  static std::string turn_of(const NormalScore& chosen, const NormalScore& other);
+  /// Tells whether normals that are read in view space are those of a world in which the camera is turned by little, if
+  /// no matrix places it.
+  std::optional<std::string> turned_world(const NormalScore& score) const;
+  static std::string text_of(const NormalScore& s);
+  /// Names the file of the camera, or the header's attributes.
+  std::string from() const;
+  /// As "N.X, N.Y, N.Z".
+  std::string channels() const;
+
+  static constexpr const char* kSpaceOptions = "--normal-space, --flip-normal";
+  static constexpr const char* kWithout = "--normal none reconstructs them from depth";
+  static constexpr const char* kCheck =
+      "check --normal-space, --normal-encoding, --depth-kind with --near, --far and --reversed-z, and --camera, "
+      "--chan-rotation or --fov: "
+      "it may also be the camera of another frame";
+
+  FrameSource& source_;
+};
+
+/// Settles the encoding of the normals, and refuses vectors that were treated as colours. Gives the statistics of some
+/// of them.
+NormalStatistics settle_normal_encoding(const NormalSettlement& normals);
+/// Settles their space.
+void settle_normal_space(const NormalSettlement& normals, const NormalStatistics& statistics);
+
+/// Takes normals without components below 0 if depth says that they lost some: the file does not hold the lost ones.
+/// Returns whether they are such.
+bool settle_cut_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores,
+                        const NormalStatistics& statistics);
+
+/// Refuses normals whose components are in another order, or in two of the three channels, unless another camera
+/// explains them. `scores`: of the normals as they stand; none: they have no reading.
+void refuse_other_components(const NormalSettlement& normals, const std::vector<NormalScore>& scores,
+                             const NormalStatistics& statistics);
+
+/// Refuses the camera where the normals agree with depth by one that is turned in a usual way, and by the given one do
+/// not. `sharpest` is the share that another reading of the normals brings close.
+void refuse_turned_camera(const NormalSettlement& normals, const NormalScore& chosen, double sharpest);
+/// Notes normals that depth speaks against, and refuses normals that it refutes.
+void doubt_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores);
+
+}  // namespace alcove

@@ -1,0 +1,124 @@
+// Settles the space of normals.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/option_words.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/normal_settlement.h"
+#include "core/frame/settle/other_cameras.h"
+
+namespace alcove {
+namespace {
+
+class SpaceSettlement : private NormalSettlement {
+ public:
+  explicit SpaceSettlement(const NormalSettlement& normals) : NormalSettlement(normals) {}
+
+  void run(const NormalStatistics& statistics) {
+    const bool has_world = reading_.camera.view_from_world.has_value();
+    // The usual reading, and that of view space where the camera knows no world.
+    const bool has_usual = has_world || source_.program.normal_space == NormalSpace::view;
+    if (statistics.count == 0) {
+      seen_.tells = false;
+      if (source_.open.normal_space)
+        reading_.normal_space = has_usual ? source_.program.normal_space : NormalSpace::view;
+      return;
+    }
+    if (!source_.open.normal_space && is_plainly_right()) return;
+    const auto all_scores = score_normals(planes());
+    if (settle_cut_normals(*this, all_scores, statistics)) return;
+    if (!all_scores.empty()) refuse_other_components(*this, all_scores, statistics);
+    if (!source_.open.normal_space) return doubt_normals(*this, all_scores);
+    const std::string given = to_string(settings_.flip_normal);
+    auto scores = all_scores;
+    if (given != "none") std::erase_if(scores, [&](const auto& s) { return to_string(s.flips) != given; });
+    const NormalScore* plain =
+        score_of(scores, has_usual ? source_.program.normal_space : NormalSpace::view, settings_.flip_normal);
+    const bool tells = plain && best_of(scores).explained() >= kLeastAgreement;
+    if (!tells) {
+      seen_.tells = false;
+      if (!has_usual) refuse_without_matrix(scores);
+      reading_.normal_space = source_.program.normal_space;
+      guess("normal space", word_of(reading_.normal_space), "the frame does not tell", "--normal-space", false);
+      return doubt_normals(*this, all_scores);
+    }
+    const bool is_plain = explains(*plain, scores);
+    // By a camera along an axis of the world, normals in view space look like those of a turned world.
+    if (!is_plain && has_usual) refuse_turned_camera(*this, *plain, kSharper * scores[0].close);
+    const NormalScore& best = is_plain ? *plain : best_of(scores);
+    const NormalScore* straighter = straighter_than(best, scores);
+    if (!straighter && !is_plain) refuse_ambiguous(best, scores);
+    if (!has_world && !source_.open.camera) refuse_turned_world(best);
+    take(straighter ? *straighter : best, straighter ? turn_of(*straighter, best) : text_of(best), has_world);
+    doubt_normals(*this, all_scores);
+  }
+
+ private:
+  /// Whether the reading that is said fits so well that no other one need be tried.
+  bool is_plainly_right() const {
+    constexpr double kAgreement = 0.95, kClose = 0.8;
+    if (source_.open.camera || is_off_centre(reading_.camera) || !reading_.camera.view_from_world) return false;
+    const auto score = score_normals_as(reading_.normal_space, reading_.flip_normal, planes());
+    return score && score->agreement >= kAgreement && score->close >= kClose && score->turn_degrees() < kLeastTurn;
+  }
+
+  /// Takes a reading, and says so where it is not the usual one, or where no matrix would turn normals of the world.
+  void take(const NormalScore& score, const std::string& why, bool has_world) {
+    reading_.normal_space = score.space;
+    reading_.flip_normal = score.flips;
+    const bool is_flipped = to_string(score.flips) != to_string(settings_.flip_normal);
+    const bool is_proven = score.close > kUnit && !has_coarse_depth(reading_);
+    guess("normal space", word_of(score.space), why,
+          is_flipped || !has_world ? "--normal-space with --flip-normal" : "--normal-space",
+          score.space != source_.program.normal_space || is_flipped, is_proven);
+  }
+
+  /// The best reading: of those that explain as many normals as any, one without flips, else the one by which most face
+  /// as depth does.
+  static const NormalScore& best_of(const std::vector<NormalScore>& scores) {
+    const auto does = [&](const NormalScore& s) { return explains_most(s, scores); };
+    const auto plain =
+        std::ranges::find_if(scores, [&](const auto& s) { return does(s) && to_string(s.flips) == "none"; });
+    if (plain != scores.end()) return *plain;
+    const auto any = std::ranges::find_if(scores, does);
+    return any != scores.end() ? *any : scores[0];
+  }
+
+  /// Refuses a reading where one in the other space does about as well.
+  void refuse_ambiguous(const NormalScore& best, const std::vector<NormalScore>& scores) const {
+    const auto other = std::ranges::find_if(scores, [&](const auto& s) { return s.space != best.space; });
+    if (other == scores.end() || other->agreement < kAsGood * best.explained() || is_straighter(best, *other)) return;
+    fail(ErrorKind::input,
+         "{}: its normals may be in {} or in {} space ({}; {}): say which with --normal-space, and --flip-normal",
+         path_, word_of(best.space), word_of(other->space), text_of(best), text_of(*other));
+  }
+
+  /// Refuses normals that are read in view space where they look like those of a world that nothing turns.
+  void refuse_turned_world(const NormalScore& score) const {
+    if (source_.program.normal_space == NormalSpace::view) return;
+    if (const auto turned = turned_world(score))
+      fail(ErrorKind::input, "{}: {}: give a --camera file with world_to_camera; {}", path_, *turned, kWithout);
+  }
+
+  /// Refuses normals that are not those of view space where no matrix turns those of the world.
+  [[noreturn]] void refuse_without_matrix(const std::vector<NormalScore>& scores) const {
+    if (!source_.program.by.empty()) throw NoWorldToCamera(path_);
+    fail(
+        ErrorKind::input,
+        "{}: {:.0f} % of its normals at most agree with depth in view space; those of world space need a --camera file "
+        "with world_to_camera; if they are in view space, {}; {}",
+        path_, scores.empty() ? 0 : 100 * scores[0].agreement, kCheck, kWithout);
+  }
+};
+
+}  // namespace
+
+void settle_normal_space(const NormalSettlement& normals, const NormalStatistics& statistics) {
+  SpaceSettlement(normals).run(statistics);
+}
+
+}  // namespace alcove

@@ -1,0 +1,39 @@
+// Other ways in which three channels may hold normals: in another order, or in two of them.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/frame/pixels/normal_scores.h"
+
+namespace alcove {
+
+/// Channels that were tried, by their places among the three, and how they are read.
+struct OtherComponents {
+  std::vector<std::size_t> channels;
+  NormalEncoding encoding;
+  bool unorm;
+  NormalScore score;
+};
+
+/// Gives the order of the components of vectors, or else the encoding of the first two channels, by which most of the
+/// normals agree with depth within 3 degrees, of those that are clearly better than `score`. None where none is, or
+/// where too little of the frame is smooth.
+std::optional<OtherComponents> best_other_components(const NormalPlanes& planes, bool are_vectors,
+                                                     const NormalScore& score);
+
+/// The place of a channel that has one value on all surfaces while the two others vary, and that value.
+struct ConstantComponent {
+  std::size_t channel;
+  float value;
+  double bare;  // the share of surfaces without a normal
+};
+std::optional<ConstantComponent> constant_component(std::span<const float> normal, std::span<const float> depth,
+                                                    const DepthMap& map);
+
+/// Whether nearly all normals look the same way, as those of tangent space do.
+bool are_alike(std::span<const float> normal, std::span<const float> depth, const DepthMap& map);
+
+}  // namespace alcove

@@ -1,0 +1,96 @@
+// Looks at depth for what its values cannot tell.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/settle/precision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/empty.h"
+#include "core/frame/pixels/flatness.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/pixels/walk.h"
+#include "core/frame/samples.h"
+
+namespace alcove {
+namespace {
+
+/// Refuses depth that was saved as a grey picture: it has no more than 256 distances.
+void refuse_8_bits(std::span<const float> depth, const std::string& name) {
+  constexpr std::size_t kLeastLevels = 16;  // fewer may be a few walls that happen to lie there
+  std::set<double> levels;
+  for (std::size_t i = 0; i < depth.size(); i += kSparse) {
+    const double level = 255.0 * depth[i];
+    if (!(level >= 0 && level <= 255) || std::abs(level - std::round(level)) > 1e-4) return;
+    levels.insert(std::round(level));
+  }
+  if (levels.size() >= kLeastLevels)
+    fail(ErrorKind::input,
+         "{} holds only values of 8 bits, too few distances for AO: give --depth as floats, as EXR and DDS hold them",
+         name);
+}
+
+/// Takes down how the values were rounded.
+void take_down(Reading& reading, const Grain& grain, std::span<const float> depth) {
+  reading.depth_is_coarse = grain.is_coarse;
+  const auto is_beyond = [&](float d) { return std::abs(d) > kLargestHalf && std::abs(d) < reading.sky; };
+  if (grain.is_half && std::ranges::none_of(depth, is_beyond)) reading.found_sky = kLargestHalf;
+  if (!grain.is_coarse) return;
+  if (grain.is_fixed)
+    reading.depth_step = grain.step;
+  else
+    reading.depth_rounding =
+        grain.is_half ? kHalfPrecision : 0.5 * std::exp2(std::ceil(std::log2(grain.step / grain.median)));
+}
+
+}  // namespace
+
+Grain measure_rounding(Reading& reading, const Window& window, std::span<const float> depth, const std::string& name) {
+  Grain grain;
+  if (depth.size() == window.pixels()) {
+    refuse_8_bits(depth, name);
+    grain = grain_of(depth, reading.sky);
+  }
+  take_down(reading, grain, depth);
+  return grain;
+}
+
+void measure_levels(Reading& reading, std::span<const float> depth) {
+  if (is_between_planes(reading.depth_kind)) reading.depth_step = std::max(reading.depth_step, step_of(depth));
+}
+
+Notes overflown_depth(const Reading& reading, std::span<const float> depth, const std::string& name) {
+  constexpr float kNear = 0.9f * float(kLargestHalf);
+  if (!is_distance(reading.depth_kind) || !(reading.depth_is_half || reading.found_sky == kLargestHalf)) return {};
+  std::size_t beyond = 0, near = 0;
+  for (const float d : depth) {
+    beyond += std::abs(d) >= kLargestHalf;
+    near += std::abs(d) >= kNear && std::abs(d) < kLargestHalf;
+  }
+  if (!beyond || !near) return {};
+  return {{NoteCode::overflown_depth,
+           fmt::format(
+               "{:.0f} % of {} is infinite or 65504, the largest half float, and surfaces reach up to it: what lies "
+               "beyond counts as sky; write depth as float, or in larger units",
+               100 * double(beyond) / double(depth.size()), name)}};
+}
+
+Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& seen, const std::string& name,
+                     bool has_read_normals) {
+  const Reading reading = over(frame, raw.window);
+  Findings found{.depth_channel = name,
+                 .depth_kind = reading.depth_kind,
+                 .has_half_type = reading.depth_is_half,
+                 .grain = seen.grain,
+                 .curve = seen.curve,
+                 .said_offset = said_offset(reading)};
+  found.jitter = jitter_of(raw.depth, depth_map_of(reading), view_of(reading, raw.window), seen.grain);
+  if (raw.window == frame.data && raw.depth.size() == raw.window.pixels())
+    found.borders = borders_of(raw.depth, raw.window, depth_map_of(reading));
+  walk({reading, raw.depth, raw.normal, has_read_normals}, found);
+  return found;
+}
+
+}  // namespace alcove

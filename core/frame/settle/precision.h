@@ -1,0 +1,33 @@
+// What the pixels of planes, from files or from memory, show: how depth was rounded, and what detectors look at.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/base/image.h"
+#include "core/base/note.h"
+#include "core/frame/evidence.h"
+#include "core/frame/find/frame_source.h"
+#include "core/frame/pixels/findings.h"
+#include "core/frame/reading.h"
+
+namespace alcove {
+
+/// Measures how the depth of a window was rounded, and takes it down in `reading`: it changes how the values are
+/// judged, and how near occluders may be. Positions are not measured. Fails with ErrorKind::input, calling the depth
+/// `name`, if it holds 256 values at most, as a grey picture does.
+Grain measure_rounding(Reading& reading, const Window& window, std::span<const float> depth, const std::string& name);
+
+/// Takes down the step of depth between planes that was stored as integers. The kind of the depth must be settled.
+void measure_levels(Reading& reading, std::span<const float> depth);
+
+/// Notes half floats, called `name`, whose sky may be surfaces: those beyond the largest number became infinite.
+Notes overflown_depth(const Reading& reading, std::span<const float> depth, const std::string& name);
+
+/// What a walk over the pixels shows, for the detectors. The depth, called `name`, is settled; `has_read_normals` says
+/// that the normals are.
+Findings findings_of(const Reading& reading, const RawPart& raw, const Evidence& seen, const std::string& name,
+                     bool has_read_normals);
+
+}  // namespace alcove
