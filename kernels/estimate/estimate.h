@@ -68,6 +68,13 @@ ALCOVE_CONSTANT uint kCompletesHidden = 8;   // another one: they go on behind w
 ALCOVE_CONSTANT uint kInSectors = 16;        // another one: all that blocks is counted in sectors, no horizon is exact
 ALCOVE_CONSTANT uint kHiddenSurface = 32;
 
+ALCOVE_CONSTANT int kBacksGroup = 16;
+
+struct BacksParams {
+  View view;
+  float radius;  // scene units
+};
+
 struct HorizonParams {
   View view;
   float radius;          // scene units

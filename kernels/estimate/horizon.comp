@@ -45,6 +45,7 @@
 #include "kernels/base/clearance.glsl"
 #include "kernels/estimate/slice.glsl"
 #include "kernels/estimate/sectors.glsl"
+#include "kernels/estimate/backs.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kSlices = 3;  // slices per pixel
@@ -74,6 +75,7 @@ layout(binding = 8) writeonly buffer Moments { float moments[]; };
 layout(binding = 9) writeonly buffer Completed { float completed[]; };
 // planes of hidden surfaces that may block, see GBuffer; with layers only
 layout(binding = 10) readonly buffer Hidden { float hidden[]; };
+layout(binding = 11) readonly buffer Backs { uint backs[]; };  // one uint per pixel, from backs; only with kThicknessWidth
 
 // How many surfaces a pixel has at most: 1, or for horizon_layers as kSolid says. CMakeLists.txt makes kernels of
 // this file, since drivers take long over code that is left out by a specialization constant alone.
@@ -109,6 +111,8 @@ struct Run {
   vec2 start, end;  // its outer samples
   float near, far;  // largest and smallest of the samples that block
   float gap;        // steps from the sample before it
+  bool round;
+  float back;
 };
 
 /// The blocked directions: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors
@@ -158,7 +162,8 @@ mat2x3 blocked_arcs(Side side, Blocked blocked, float shift) {
 float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width, float gap) {
   if (kThickness != kThicknessWidth) return reach.thickness;
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0), wider = 1.0 + kGapPart * (run.gap + gap);
-  return levelled(per_width * (length(run.end - run.start) + wider * pixel), kWidestRun * reach.radius);
+  const float by_width = levelled(per_width * (length(run.end - run.start) + wider * pixel), kWidestRun * reach.radius);
+  return run.round ? 0.0 : by_width;
 }
 
 /// 6. The sectors that a run blocks whose front lies within the sphere. is_open: it has samples without a known back.
@@ -285,7 +290,7 @@ void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach rea
 void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, float gap) {
   Sample last = border;
   const vec2 at_border = slopes_of(border, false, 0.0);
-  Run run = Run(border.place, border.place, at_border.x, at_border.y, 0.0);
+  Run run = Run(border.place, border.place, at_border.x, at_border.y, 0.0, false, 0.0);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
   int k = 0;
@@ -299,7 +304,7 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
       take_before(before, run, is_before, thickness, within_of(run, thickness));
     }
     is_before = joins ? is_before : false;
-    run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0, gap);
+    run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0, gap, false, 0.0);
     const vec2 slopes = slopes_of(s, kHard && both(joins, s.within != last.within), mix(s.slope, last.slope, 0.5));
     run.near = max(run.near, slopes.x);
     run.far = min(run.far, slopes.y);
@@ -393,26 +398,30 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   bool own = true;
   Sample last = receiver_sample(r);
   ivec2 last_pixel = r.pixel;
-  Run run = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0);
+  Run run = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0, false, 0.0);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = false;  // the run has samples before the sphere
+  const uint outline = outline_of(side.direction_px);
   int k = 0;
   if (count > 0) {
     do {
       const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
       const uint sectors = kHard ? sectors_of(r, reach, run, true, thickness, draw.shift) : 0u;
-      const float within = within_of(run, thickness);
+      const float deep = max(thickness, run.back);
+      const float within = within_of(run, deep);
       const vec2 beside = round(side.direction_px * offset);
       const ivec2 here = r.pixel + ivec2(beside);
       const ivec2 middle = last_pixel + here >> 1;
       const float z = occluder_depth[here.y * reach.width + here.x];
       // The receiver itself need be no occluder.
       const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
+      const uint back = kThickness == kThicknessWidth ? backs[here.y * reach.width + here.x] : 0u;
+      const float mirrored = unpack_mirrored(back >> outline, reach.radius);
       const Sample s = sample_of(r, side, reach, offset, beside, z);
       last_pixel = here;
-      const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
+      const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap, mix(1.0, 0.5, own));
       // A run that crosses the sphere between two samples blocks half way to the one beyond.
       const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
       const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
@@ -420,16 +429,26 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       const bool ends = both(connected, s.above) ? false : true;
       if (kHard) {
         found.blocked.sectors |= ends ? sectors : 0u;
-        take_before(before, run, both(ends, is_before), thickness, within);
+        take_before(before, run, both(ends, is_before), deep, within);
       }
       own = ends ? !s.above : own;
       run.start = ends ? s.place : run.start;
       run.end = s.place;
       run.near = greater(own ? -1.0 : slopes.x, ends ? -1.0 : run.near);
-      run.far = lesser(own ? 1.0 : slopes.y, ends ? 1.0 : run.far);
+      run.round = ends ? mirrored >= 0.0 : run.round;
+      const float told = both(run.round, mirrored >= 0.0) ? mirrored : unpack_depth(back, reach.radius);
+      float far = slopes.y;
+      if (kThickness == kThicknessWidth) {
+        const float back_z = s.z + told, scale = r.perspective ? back_z : 1.0;
+        const float bottom = slope_of(place_of(r, side, beside, back_z, scale));
+        far = lesser(far, both(s.above, s.within) ? bottom : 1.0);
+      }
+      run.far = lesser(own ? 1.0 : far, ends ? 1.0 : run.far);
       run.gap = ends ? gap : run.gap;
       found.blocked.near = greater(own ? slopes.x : -1.0, found.blocked.near);
-      is_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place)) ? true : both(is_before, !ends);
+      const bool here_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place));
+      is_before = here_before ? true : both(is_before, !ends);
+      run.back = greater(here_before ? told : 0.0, ends ? 0.0 : run.back);
       if (!kHard) {
         const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 0.0);
         found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
@@ -445,7 +464,8 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   if (kHard) {
     const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 0.0);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
-    take_before(before, run, is_before, thickness, within_of(run, thickness));
+    const float deep = max(thickness, run.back);
+    take_before(before, run, is_before, deep, within_of(run, deep));
     found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   }
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
@@ -519,7 +539,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
   ivec2 last_pixel = r.pixel;
-  const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0);
+  const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0, false, 0.0);
   Slot slots[kMostSurfaces];
   for (int i = 0; i < kSurfaces; i++)
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
@@ -542,7 +562,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       const int from[kMostSurfaces] = links_of(r, reach, here, middle_z, last_z, gap);
       if (kBehindOthers) {
         const bool goes_on = here.at[0].z > last.z ? from[0] >= 0 : is_taken(from, 0);
-        const bool connected = is_through(r, reach, here.at[0].z, middle_z[0], last.z, gap);
+        const bool connected = is_through(r, reach, here.at[0].z, middle_z[0], last.z, gap, 1.0);
         take_down(interrupted, k, here.at[0], last, connected, goes_on, reach);
       }
       // Runs end that no surface continues, and those of surfaces that sink below the tangent plane.

@@ -123,6 +123,9 @@ const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skip
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, const Reach& reach,
                   const Sites& sites, const Estimate& out, const std::string& prefix = "");
 
+/// How far back what each pixel shows is solid, a word per pixel.
+const gpu::Buffer* backs_of(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach);
+
 /// gtao and bitmask. Tiles that have hidden surfaces within reach are searched by horizon_layers.
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out);
