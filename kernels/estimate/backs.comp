@@ -23,6 +23,9 @@ readonly buffer Normal { uint normal[]; };   // one uint per pixel, from prepare
 readonly buffer Told { uint told[]; };       // from the rows; only with kSteep
 buffer Backs { uint backs[]; };
 
+/// As kRunSlope of slice.glsl.
+const float kChainSlope = 8.0;
+
 /// A chain up to a pixel.
 struct Chain {
   vec3 start, farthest;
@@ -56,7 +59,7 @@ bool are_one(View view, Facet before, Facet a, Facet b, Facet after) {
   const bool recedes = b.z > a.z;
   const vec2 step = kSteep != 0u ? vec2(0, 1) : vec2(1, 0);
   bool one;
-  if (apart < 8.0 * pixel)
+  if (apart < kChainSlope * pixel)
     one = !(apart > kParallelSlope * pixel && are_parallel(view, a, b, params.radius));
   else
     one = are_coplanar(view, a, b, kPlaneDot, kPlaneOff) ||
@@ -85,12 +88,13 @@ Chain chain_to(View view, Chain last, bool goes_on, Facet before, Facet here, bo
 
 /// What a chain tells at its last pixel. Its outline is that of one side.
 Back back_of(View view, Chain chain, Facet here) {
-  const float e = distance_from_eye(view, here), size = length(here.position - chain.start);
+  const float e = distance_from_eye(view, here), longest = kLongestChain * params.radius;
+  const float size = min(length(here.position - chain.start), longest);
   const float by_start = min(chain.start_distance - e, -dot(here.normal, chain.start - here.position));
   const float by_farthest = min(chain.farthest_distance - e, -dot(here.normal, chain.farthest - here.position));
   const float per_distance = here.z / e;
   const float back = max(max(by_start, by_farthest), 0.0) * per_distance;
-  const bool is_long = size > kLongestChain * params.radius;
+  const bool is_long = size >= longest;
   const float mirrored = max(2.0 * (chain.start_distance - e), pixels_of(view, here.z)) * per_distance;
   return Back(is_long ? 0.0 : back, size, chain.is_round && !is_long ? mirrored : -1.0, -1.0);
 }

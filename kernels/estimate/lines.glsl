@@ -56,8 +56,9 @@ float depths_of_goes_on(uint packed) { return 1.0 + unpackHalf2x16(packed).x; }
 
 /// The place of a point of the line in its plane.
 vec2 place_at(View view, LinePlane plane, float step, float z) {
-  return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + (float(plane.origin) + step) * plane.step),
-              z * plane.ray_length);
+  const float scale = view.orthographic != 0 ? 1.0 : z;
+  precise const float along = scale * (plane.start + (float(plane.origin) + step) * plane.step);
+  return vec2(along, z * plane.ray_length);
 }
 
 /// tangent_of() the centre of a pixel, counted along and across from the display window's corner, so that it is the

@@ -254,8 +254,8 @@ const float kHalfGap = 0.53;
 
 /// Whether two samples of depths z and last_z are one surface by the depth of the pixel in their middle, too. Else two
 /// wires before a wall would be one thing, as wide as they are apart.
-bool is_through(Receiver r, Reach reach, float z, float middle_z, float last_z, float gap, float part) {
-  const float tolerance = part * mix(1.0, gap, kHalfGap);
+bool is_through(Receiver r, Reach reach, float z, float middle_z, float last_z, float gap) {
+  const float tolerance = mix(1.0, gap, kHalfGap);
   return both(same_surface(r, reach, z, middle_z, tolerance), same_surface(r, reach, middle_z, last_z, tolerance));
 }
 

@@ -74,7 +74,7 @@ int[kMostSurfaces] links_of(Receiver r, Reach reach, Surfaces found, float middl
     for (int j = 0; j < kSurfaces; j++) {
       bool through = false;
       for (int m = 0; m < kSurfaces; m++)
-        through = is_through(r, reach, z, middle_z[m], last_z[j], gap, 1.0) ? true : through;
+        through = is_through(r, reach, z, middle_z[m], last_z[j], gap) ? true : through;
       const float apart = abs(z - left[j]);
       const bool goes_on = both(through, apart < least);
       least = goes_on ? apart : least;

@@ -113,6 +113,10 @@ bool searches_slices(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
 }
 
+bool tells_backs(const EstimatorSettings& settings) {
+  return searches_slices(settings) && !searches_exactly(settings) && settings.thickness == ThicknessKind::automatic;
+}
+
 bool completes(const EstimatorSettings& settings) {
   return searches_slices(settings) && settings.complete == Completion::all &&
          settings.thickness != ThicknessKind::infinite;
@@ -143,6 +147,7 @@ Reach reach_of(const EstimatorSettings& settings, double radius) {
   // Crytek's samples fill the sphere of the radius whatever the falloff.
   const double end = settings.estimator == Estimator::crytek ? 1 : settings.falloff_end;
   return {float(radius * end),
+          float(radius * end * (tells_backs(settings) ? 1 + kMostBack + kLongestChain : 1)),
           float(front_reach_of(settings, radius * end)),
           float(radius * settings.falloff_start),
           settings.falloff,
@@ -239,6 +244,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                     (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
   const ClassifyParams params{gbuffer.view,
                               reach.radius,
+                              reach.told,
                               reach.front,
                               out.plane,
                               gbuffer.grid.frame_size,

@@ -23,6 +23,8 @@ bool searches_slices(const EstimatorSettings& settings);
 /// Whether surfaces are completed behind what is nearer. They are not where occluders are endless, since all that those
 /// hide is blocked anyway. What goes on beyond the picture's border does not count here.
 bool completes(const EstimatorSettings& settings);
+/// Whether an estimator that takes samples reads how far back pixels are told to be solid: see backs.comp.
+bool tells_backs(const EstimatorSettings& settings);
 
 /// Whether surfaces are completed anywhere, be it beyond the picture's border alone.
 bool completes_anywhere(const EstimatorSettings& settings);
@@ -76,6 +78,7 @@ Estimate of_radius(const Estimate& all, uint plane, std::size_t radii);
 /// The rules by which surfaces around a receiver block, for one radius.
 struct Reach {
   float radius;         // scene units: nothing beyond blocks
+  float told;           // scene units: nothing beyond tells how far back anything is solid
   float front;          // scene units: no front farther away than this blocks by the solid behind it
   float falloff_start;  // scene units: what is nearer blocks fully
   Falloff falloff;
@@ -123,7 +126,7 @@ const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skip
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, const Reach& reach,
                   const Sites& sites, const Estimate& out, const std::string& prefix = "");
 
-/// How far back what each pixel shows is solid, a word per pixel.
+/// How far back what each pixel shows is solid: see backs.comp.
 const gpu::Buffer* backs_of(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach);
 
 /// gtao and bitmask. Tiles that have hidden surfaces within reach are searched by horizon_layers.
