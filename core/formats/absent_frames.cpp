@@ -105,9 +105,8 @@ std::string other_digits(const std::vector<std::string>& names, const std::strin
 
 /// Names a file that differs from the pattern in its ending, its separators or its letters' case.
 std::string nearly_named(const std::vector<std::string>& names, const std::string& folder, const std::string& wanted) {
-  const auto near = std::ranges::find_if(names, [&](const std::string& name) {
-    return core_of(name) == core_of(wanted) && frame_number_in(name).number;
-  });
+  const auto near = std::ranges::find_if(
+      names, [&](const std::string& name) { return core_of(name) == core_of(wanted) && frame_number_in(name).number; });
   return near == names.end() ? "" : fmt::format("there is {}{}", folder, *near);
 }
 

@@ -18,9 +18,9 @@
 layout(local_size_x = kBacksGroup) in;
 layout(constant_id = 0) const uint kSteep = 0;  // 1: along columns, and joins what rows have told
 layout(scalar, push_constant) uniform Push { BacksParams params; };
-readonly buffer Depth { float depth[]; };    // one float per pixel
-readonly buffer Normal { uint normal[]; };   // one uint per pixel, from prepare
-readonly buffer Told { uint told[]; };       // from the rows; only with kSteep
+readonly buffer Depth { float depth[]; };   // one float per pixel
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+readonly buffer Told { uint told[]; };      // from the rows; only with kSteep
 buffer Backs { uint backs[]; };
 
 /// As kRunSlope of slice.glsl.
@@ -29,7 +29,7 @@ const float kChainSlope = 8.0;
 /// A chain up to a pixel.
 struct Chain {
   vec3 start, farthest;
-  vec3 normal;  // at its start
+  vec3 normal;                              // at its start
   float start_distance, farthest_distance;  // from the eye
   int count;
   bool may_be_round, is_round;  // it begins with a rounded outline

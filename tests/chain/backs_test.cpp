@@ -44,7 +44,7 @@ Scene box_above_floor(double depth, double above, double height) {
   return scene;
 }
 
-TEST(Backs, of_a_box_above_the_floor_are_as_far_as_its_top_goes) {
+TEST(Backs, of_a_box_above_the_floor_are_no_farther_than_its_top_goes) {
   const Vec3 target{0, 0, 0.3};
   for (const Vec3 eye : {Vec3{6, 0, 2.2}, Vec3{5, 0, 4}})
     for (const Shot& shot :
@@ -55,19 +55,28 @@ TEST(Backs, of_a_box_above_the_floor_are_as_far_as_its_top_goes) {
       }
 }
 
+// Its top is a few rows of pixels.
+TEST(Backs, of_a_box_are_as_far_as_its_top_goes_that_samples_miss) {
+  for (const double eye : {0.9, 1.2}) {
+    const Means below = means_of(box_above_floor(2, 0.35, 0.2),
+                                 Shot::perspective({6, 0, eye}, {0, 0, 0.3}, 36, 400, 200), is_below_box, 4);
+    EXPECT_NEAR(below.ao, below.truth, 0.07) << "seen from " << eye;
+  }
+}
+
 TEST(Backs, of_a_railing_are_no_farther_than_it_is_wide) {
-  // A floor that juts out of a wall, with bars along its edge.
-  Scene scene{{kWallX}};
-  scene.add(parallelepiped({0, -3, -0.1}, {1.2, 0, 0}, {0, 6, 0}, {0, 0, 0.1}));
-  for (int i = -12; i <= 12; i++)
-    scene.add(parallelepiped({1.16, 0.2 * i, 0}, {0.04, 0, 0}, {0, 0.04, 0}, {0, 0, 1.2}));
-  const Means wall = means_of(
-      scene, Shot::perspective({6, -1.5, 1.6}, {0, 0, 0.5}, 34, 320, 224),
-      [](const Hit& hit) {
-        return hit.primitive == 0 && std::abs(hit.position.y) < 1 && std::abs(hit.position.z - 0.6) < 0.4;
-      },
-      5);
-  EXPECT_NEAR(wall.ao, wall.truth, 0.05);
+  for (const double bar : {0.03, 0.06}) {
+    // A floor that juts out of a wall, seen from below, with bars along its edge.
+    Scene scene{{kWallX}};
+    scene.add(parallelepiped({0, -3, -0.1}, {0.7, 0, 0}, {0, 6, 0}, {0, 0, 0.1}));
+    for (int i = -12; i <= 12; i++)
+      scene.add(parallelepiped({0.7 - bar, 0.2 * i, 0}, {bar, 0, 0}, {0, bar, 0}, {0, 0, 1.4}));
+    const auto is_behind = [](const Hit& hit) {
+      return hit.primitive == 0 && std::abs(hit.position.y) < 1 && std::abs(hit.position.z - 0.7) < 0.3;
+    };
+    const Means wall = means_of(scene, Shot::perspective({6, -1.5, -2}, {0, 0, 0.4}, 26, 480, 336), is_behind, 5);
+    EXPECT_NEAR(wall.ao, wall.truth, 0.05) << bar;
+  }
 }
 
 TEST(Backs, of_a_ball_mirror_its_front) {

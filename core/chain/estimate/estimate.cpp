@@ -242,17 +242,11 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                     (out.order > 1 ? kClassifyWithSecond : 0) | (out.completed ? kClassifyWithCompleted : 0) |
                     (skipping.changes ? kClassifyReuses : 0) | (selects ? kClassifySelects : 0) |
                     (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
-  const ClassifyParams params{gbuffer.view,
-                              reach.radius,
-                              reach.told,
-                              reach.front,
-                              out.plane,
-                              gbuffer.grid.frame_size,
-                              gbuffer.grid.overhang,
-                              gbuffer.grid.factor,
-                              gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin,
-                              skipping.needed.from,
-                              skipping.needed.to};
+  const ClassifyParams params{
+      gbuffer.view,          reach.radius,        reach.told,
+      reach.front,           out.plane,           gbuffer.grid.frame_size,
+      gbuffer.grid.overhang, gbuffer.grid.factor, gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin,
+      skipping.needed.from,  skipping.needed.to};
   gpu.dispatch("classify", params,
                {{"Bounds", gpu::Optional(skipping.bounds)},
                 {"Changes", gpu::Optional(skipping.changes)},
@@ -274,7 +268,9 @@ const gpu::Buffer* backs_of(gpu::Recorder& gpu, const GBuffer& gbuffer, const Re
   gpu::Buffer& all = gpu.buffer("backs", plane_bytes(gbuffer.view));
   const BacksParams params{gbuffer.view, reach.radius};
   const gpu::Binding depth{"Depth", occluder_depth_of(gbuffer)}, normal{"Normal", gbuffer.normal};
-  gpu.dispatch("backs", params, {depth, normal, {"Told", gpu::Optional(static_cast<const gpu::Buffer*>(nullptr))}, {"Backs", rows}}, uint(gbuffer.view.size.y), {0u});
+  gpu.dispatch("backs", params,
+               {depth, normal, {"Told", gpu::Optional(static_cast<const gpu::Buffer*>(nullptr))}, {"Backs", rows}},
+               uint(gbuffer.view.size.y), {0u});
   gpu.dispatch("backs", params, {depth, normal, {"Told", rows}, {"Backs", all}}, uint(gbuffer.view.size.x), {1u});
   return &all;
 }
