@@ -568,8 +568,8 @@ void thicken(inout Walk walk, Search search, int at, uint marked, bool begins) {
   walk.last_thickness = here;
 }
 
-/// 7. Where a hidden face closes the solid behind the vertex that begins a run, across its own face, the stroke from the
-/// face's end to the vertex, which has the whole thickness: what is behind both hangs together there.
+/// 7. Where a hidden face closes the solid behind the vertex that begins a run, across its own face, the stroke from
+/// the face's end to the vertex, which has the whole thickness: what is behind both hangs together there.
 void close_solid(inout Walk walk, inout Stroke stroke, Context c, int step) {
   const int pixel = index_at(c.view, c.lines, step, c.line + shift_at(c.lines, step));
   const vec2 n = in_plane(c.view, c.plane, unpack_normal(normal[pixel]));

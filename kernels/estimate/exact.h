@@ -41,7 +41,7 @@ struct ProfileParams {
   float tolerance;  // px: how far in depth a pixel may be from the profile, in its own widths
   // A run's thickness is its width times the first and so many widths of its pixels.
   float depth_per_width, more_pixels;
-  // scene units: the most that counts of that, and what thickness levels off at; of a run that begins flat twice as much
+  // scene units: the most that counts of that, and what thickness levels off at; twice of a run that begins flat
   float widest;
   // scene units: a run that the image's border cuts is taken to be at least so thick, and twice that where it is flat
   float least_at_border;

@@ -206,6 +206,7 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
     Estimate out = of_radius(result, plane, radii.size());
     out.listed = classify(gpu, gbuffer, skipping, reach, sites, out);
     list_sites(gpu, gbuffer, sites, out.listed);
+    if (tells_backs(settings)) out.told = &backs(gpu, gbuffer, reach);
     switch (settings.estimator) {
       case Estimator::gtao:
       case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
@@ -263,7 +264,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   return list;
 }
 
-const gpu::Buffer* backs_of(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach) {
+const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach) {
   gpu::Buffer& rows = gpu.buffer("backs of rows", plane_bytes(gbuffer.view));
   gpu::Buffer& all = gpu.buffer("backs", plane_bytes(gbuffer.view));
   const BacksParams params{gbuffer.view, reach.radius};
@@ -272,7 +273,7 @@ const gpu::Buffer* backs_of(gpu::Recorder& gpu, const GBuffer& gbuffer, const Re
                {depth, normal, {"Told", gpu::Optional(static_cast<const gpu::Buffer*>(nullptr))}, {"Backs", rows}},
                uint(gbuffer.view.size.y), {0u});
   gpu.dispatch("backs", params, {depth, normal, {"Told", rows}, {"Backs", all}}, uint(gbuffer.view.size.x), {1u});
-  return &all;
+  return all;
 }
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
@@ -289,10 +290,9 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   params.plane = out.plane;
   params.depth_precision = gbuffer.depth_precision;
   std::vector<gpu::Binding> buffers = buffers_of(gbuffer, out);
-  const gpu::Buffer* backs = reach.thickness == 0 ? backs_of(gpu, gbuffer, reach) : nullptr;
   buffers.insert(buffers.end(), {{"Moments", gpu::Optional(out.moments)},
                                  {"Completed", gpu::Optional(out.completed)},
-                                 {"Backs", gpu::Optional(backs)}});
+                                 {"Backs", gpu::Optional(out.told)}});
   const uint mode = uint(reach.falloff) | (out.order > 0 ? kWithFirst : 0) | (out.order > 1 ? kWithSecond : 0) |
                     (out.completed ? kWithCompleted : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
