@@ -184,7 +184,7 @@ TEST_F(TilesOfShots, give_the_bits_of_the_whole) {
   const auto expect_same = [&](const char* more, std::uint64_t mebibytes) {
     SCOPED_TRACE(more);
     const auto computed = [&](std::uint64_t bytes) {
-      const Options all = joined(typed("--radius 0.06 --frames 2 --type float"), typed(more));
+      const Options all = joined(typed("--radius 0.02 --frames 2 --type float"), typed(more));
       const RunReport report = run_here(joined(arguments(all), {"--stats", folder / "stats.json"}), bytes);
       EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
       return report.done == 1 ? std::pair(report.frames[0].parts, read_exr_image(output(2), {"Y"}).pixels)
