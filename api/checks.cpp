@@ -13,6 +13,7 @@
 #include "core/frame/pixels/radius.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/settle/depth_settlement.h"
+#include "core/frame/settle/other_cameras.h"
 #include "core/frame/settle/precision.h"
 
 namespace alcove {
@@ -61,11 +62,14 @@ void check_normals(const Reading& reading, const HostPlanes& planes, Notes& note
   if (!chosen || chosen->agreement >= kLeastAgreement) return;
   const std::string said =
       fmt::format("normal: {:.0f} % agree with depth, in {} space", 100 * chosen->agreement, word_of(chosen->space));
-  if (scores[0].agreement >= kLeastAgreement && scores[0].agreement > kClear * chosen->agreement)
-    fail(ErrorKind::input, "{}; better fits {}", said, text_of(scores[0]));
+  if (scores[0].clearly_beats(*chosen)) fail(ErrorKind::input, "{}; better fits {}", said, text_of(scores[0]));
+  const auto turned = best_turned_camera({reading, normal, depth}, *chosen);
+  if (turned && turned->score.clearly_beats(*chosen))
+    fail(ErrorKind::input, "{}; {}, then {:.0f} % agree", said, turned->what, 100 * turned->score.agreement);
   const std::string check = "check --normal-space, --normal-encoding and the camera";
-  if (chosen->agreement < kRefuted && !reading.depth_is_half)
-    fail(ErrorKind::input, "{}, and no more in another space: {}", said, check);
+  if (chosen->explained() < kUsable && !reading.depth_is_half)
+    fail(ErrorKind::input, "{}, and no more in another space: {}; without the plane, normals are those of depth", said,
+         check);
   notes.push_back({NoteCode::normals_disagree, said + ": " + check});
 }
 

@@ -203,6 +203,8 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
   reading.camera = camera_by(settings, reading.data, frame);
   reading.depth_kind =
       has_position() ? DepthKind::position : decided(input.depth_kind, reading.camera.depth_kind, DepthKind::planar);
+  if (!has_position() && reading.depth_kind == DepthKind::position)
+    fail(ErrorKind::usage, "depth: --depth-kind position takes the plane position, of three channels");
   reading.depth_range = input.depth_range;
   if (!reading.depth_range.near) reading.depth_range.near = reading.camera.near;
   if (!reading.depth_range.far) reading.depth_range.far = reading.camera.far;

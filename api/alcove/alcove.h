@@ -72,7 +72,7 @@ ALCOVE_API alcove_code alcove_preset(alcove_session* handle, const char* name);
 //   depth        1 component, of depth-kind, planar by default; distances above 0, other kinds within 0 to 1. Integers
 //                must be converted: 16 bits are few for distances, and 8 bits are refused
 //   position     3, instead of a depth; in position-space, which must be set if the camera has a position
-//   normal       3, or 2 by normal-encoding, signed by default; in --normal-space, which must be set unless the
+//   normal       3, or 2 by normal-encoding, signed by default; in normal-space, which must be set unless the
 //                camera has no position or a camera file says it; without this plane, normals come from depth
 //   behind       1, depth behind the first surface, of behind-kind; each call adds one, at most 8
 //   material-ao  1, multiplied in

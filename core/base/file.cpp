@@ -125,7 +125,8 @@ void make_folder_of(const std::string& path, const char* option) {
 }
 
 void FileUses::add_input(const NamedFile& file) {
-  if (!file.path.empty()) inputs_.emplace(identity_of(file.path), file);
+  // Frames share most of their inputs, and an identity takes a look at the disk.
+  if (!file.path.empty() && input_paths_.insert(file.path).second) inputs_.emplace(identity_of(file.path), file);
 }
 
 void FileUses::add_output(const NamedFile& file, const std::string& whose) {
@@ -135,9 +136,9 @@ void FileUses::add_output(const NamedFile& file, const std::string& whose) {
   if (const auto input = inputs_.find(identity); input != inputs_.end())
     fail(ErrorKind::usage, "{}: {}{} would overwrite an input: {} {}", path, option, whose, input->second.option,
          input->second.path);
-  const auto& [known, is_new] = outputs_.emplace(identity, file);
-  if (!is_new && known->second.option != option)
-    fail(ErrorKind::usage, "{}: {} and {} name the same file", path, known->second.option, option);
+  const auto& [known, is_new] = outputs_.emplace(identity, option + whose);
+  if (!is_new && known->second != option + whose)
+    fail(ErrorKind::usage, "{}: {} and {}{} name the same file", path, known->second, option, whose);
 }
 
 NewFile::NewFile(const std::string& path) : target_(path) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 
@@ -42,12 +43,14 @@ struct NamedFile {
 class FileUses {
  public:
   void add_input(const NamedFile& file);
-  /// Fails with ErrorKind::usage if the file is an input, or an output of another option. `whose` stands behind the
-  /// option in the message, such as " of frame 3".
+  /// Fails with ErrorKind::usage if the file is an input, or an output of another option or owner. `whose` stands
+  /// behind the option in the message, such as " of frame 3".
   void add_output(const NamedFile& file, const std::string& whose = "");
 
  private:
-  std::map<std::string, NamedFile> inputs_, outputs_;  // by the file
+  std::set<std::string> input_paths_;           // as they are spelled
+  std::map<std::string, NamedFile> inputs_;     // by the file
+  std::map<std::string, std::string> outputs_;  // by the file; option and owner
 };
 
 /// A file in the making. Its hidden name beside `path` does not end as images do, so that folder watchers pass it by.

@@ -13,10 +13,6 @@ struct FlatEntry {
   std::vector<std::string> values;
 };
 
-/// Fails with ErrorKind::usage, naming the line, if letters beyond ASCII stand outside of quotes and comments, or a
-/// quote stands within a word. TOML has neither, and toml++ 3 does undefined things with some of them.
-void require_ascii_keys(const std::string& text);
-
 /// Gives the entries in the order of the file's keys. Fails with ErrorKind::usage on text that is no TOML and on
 /// tables, naming line and reason.
 std::vector<FlatEntry> parse_flat_toml(const std::string& text);

@@ -25,6 +25,7 @@ enum class NoteCode {
   normals_disagree,
   principal_point,
   field_of_view,
+  positions_disagree,
   camera_scaled,
   // faults that harm AO
   no_surfaces,
@@ -70,6 +71,7 @@ enum class NoteCode {
   unused_input,
   unread_ranks,
   no_indirect_light,
+  light_passes,
   sun_in_sky,
   // computing
   device_memory,

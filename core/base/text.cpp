@@ -246,7 +246,7 @@ std::string frames_text(std::vector<int> frames) {
 
 std::string short_frames_text(const std::vector<int>& frames) {
   constexpr std::ptrdiff_t kMostParts = 10;
-  const std::string text = frames_text(frames);
+  std::string text = frames_text(frames);
   if (frames.empty() || std::ranges::count(text, ',') < kMostParts) return text;
   const auto [first, last] = std::ranges::minmax(frames);
   return fmt::format("{} frames from {} to {}", frames.size(), first, last);

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench/suite.h"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,8 +11,8 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/base/flat_toml.h"
 #include "core/base/text.h"
+#include "core/base/toml.h"
 
 namespace alcove {
 namespace {
@@ -151,14 +149,9 @@ void require_unique_names(const std::string& path, const List& list, const char*
 toml::table parse(const std::string& path, const char* what, const char* option) {
   const std::string text = read_text(path, what, option);
   try {
-    require_ascii_keys(text);
+    return parse_toml(text);
   } catch (const Error& error) {
     fail(ErrorKind::input, "{}: {}", path, error.what());
-  }
-  try {
-    return toml::parse(text, path);
-  } catch (const toml::parse_error& error) {
-    fail(ErrorKind::input, "{}: line {}: {}", path, error.source().begin.line, error.description());
   }
 }
 

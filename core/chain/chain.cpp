@@ -8,6 +8,7 @@
 #include "core/chain/geometry/matte.h"
 #include "core/chain/hidden/hidden.h"
 #include "core/chain/open_sky.h"
+#include "core/chain/quick/quick.h"
 #include "core/chain/results/confidence.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/reduce.h"
@@ -32,6 +33,7 @@ struct Seen {
   gpu::Buffer* error = nullptr;  // of the frame's pixels
   gpu::Buffer* count = nullptr;  // of a mean: a plane of how many frames each pixel's visibility is the mean
   DebugStages stages;
+  bool is_quick = false;  // by the quick search
 };
 
 /// All surfaces of the frame, with unit normals that face the eye.
@@ -44,18 +46,46 @@ Surfaces surfaces_of(gpu::Recorder& gpu, const FrameInputs& frame, const Estimat
   return {cut(gpu, frame, wide, prepared), wide};
 }
 
+/// What is to be estimated: all of the frame, or what its matte needs.
+GBuffer work_of(gpu::Recorder& gpu, const FrameInputs& frame, const FrameInputs& inputs, const Surfaces& surfaces,
+                const EstimatorSettings& settings, Matte& masked) {
+  masked = matte(gpu, frame);
+  const GBuffer counted = occluders(gpu, surfaces.wide, frame);
+  const GBuffer blocks = downsample(gpu, counted, block_grid(inputs, int(settings.resolution)));
+  return needed(gpu, blocks, inputs, masked, filter_reach_of(settings));
+}
+
+/// Estimates and smooths by the quick search.
+void see_quickly(gpu::Recorder& gpu, const GBuffer& work, const FrameInputs& inputs, const EstimatorSettings& settings,
+                 const Wanted& wanted, Seen& seen) {
+  seen.is_quick = true;
+  const Blocks blocks = block_sites(gpu, work, settings, inputs);
+  margin(gpu, work, blocks);
+  const gpu::Buffer& at_sites = quick_horizon(gpu, work, blocks, sampling_of(settings, inputs.frame));
+  const gpu::Buffer& fitted = fit_blocks(gpu, blocks, at_sites);
+  seen.visibility.ao = &spread_blocks(gpu, work, blocks, fitted);
+  seen.estimate.listed.site_counts = blocks.counts;
+  seen.stages = {.gbuffer = work, .denoised_ao = seen.visibility.ao};
+  if (wanted.debug_views.empty()) return;
+  const ShownBlocks shown = show_blocks(gpu, work, blocks, at_sites);
+  seen.stages.sites = shown.sites;
+  seen.stages.raw_ao = shown.ao;
+}
+
 /// The frame's own estimate, smoothed.
 Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
                     const EstimatorSettings& settings, const Wanted& wanted) {
   const FrameInputs inputs = with_margin(frame);
   Seen seen;
-  seen.matte = matte(gpu, frame);
-  const GBuffer counted = occluders(gpu, surfaces.wide, frame);
-  const GBuffer blocks = downsample(gpu, counted, block_grid(inputs, int(settings.resolution)));
-  const GBuffer work = needed(gpu, blocks, inputs, seen.matte, filter_reach_of(settings));
+  const GBuffer work = work_of(gpu, frame, inputs, surfaces, settings, seen.matte);
+  const uint order = moment_order(settings, wanted);
+  if (searches_quickly(settings, work, order)) {
+    see_quickly(gpu, work, inputs, settings, wanted, seen);
+    return seen;
+  }
   const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn));
   const bool with_completed = wanted.completed && completes_anywhere(settings);
-  seen.estimate = estimate(gpu, work, chosen, inputs, settings, moment_order(settings, wanted), with_completed);
+  seen.estimate = estimate(gpu, work, chosen, inputs, settings, order, with_completed);
   seen.completion = completion(gpu, work, seen.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
   const Visibility noisy = combine(gpu, work, seen.estimate, wanted.needs_scales());
@@ -102,7 +132,8 @@ FrameOutputs counts_of(const Surfaces& surfaces, const Seen& seen) {
           .squares = seen.estimate.squares,
           .completion = seen.completion,
           .completed = seen.estimate.completed,
-          .count = seen.count};
+          .count = seen.count,
+          .is_quick = seen.is_quick};
 }
 
 /// The estimate that the frame hands to others.

@@ -1,4 +1,4 @@
-// Placeholders and ranges of other programs, and names of files that differ from a pattern in little.
+// Tokens and ranges of other programs, and names of files that differ from a pattern in little.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/absent_frames.h"
 
@@ -18,11 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The token of as many digits.
-std::string token_of(std::size_t digits) { return digits == 1 ? "%d" : std::string(digits, '#'); }
-
 std::string text_of(const FramePattern& pattern) {
-  return pattern.before + token_of(std::size_t(pattern.digits)) + pattern.after;
+  return pattern.before + frame_token(std::size_t(pattern.digits)) + pattern.after;
 }
 
 /// Ways to write the range into the name: their first group is the range's first number, the second is its last one.
@@ -42,14 +39,14 @@ std::string range_in(const std::string& name) {
   for (const auto& [pattern, has_token] : kRangeForms) {
     std::smatch found;
     if (!std::regex_search(name, found, std::regex(pattern))) continue;
-    const std::string first = found[1], token = has_token ? "" : token_of(first.size());
+    const std::string first = found[1], token = has_token ? "" : frame_token(first.size());
     return fmt::format("a range does not belong in the name: write {}{}{} with --frames {}-{}", found.prefix().str(),
                        token, found.suffix().str(), first, found[2].str());
   }
   return "";
 }
 
-std::string placeholder_in(const std::string& name) {
+std::string foreign_token_in(const std::string& name) {
   static const std::regex view(R"(%[vV]|<[Vv][Ii][Ee][Ww]>|\{view\}|\$\{?VIEW\}?)"),
       other(R"(%\d*[A-Za-z]|%\(\w+\)\d*[a-z]?|<\w+>|\$?\{\w*(:\w+)?\}|\$[A-Za-z_]\w*)");
   std::smatch found;
@@ -100,7 +97,7 @@ std::string other_digits(const std::vector<std::string>& names, const std::strin
   if (first.empty()) return "";
   const auto& [digits, name] = *first.begin();
   return fmt::format("its number has {} digit{} in {}: write {}{}{}{}", digits, digits == 1 ? "" : "s", name, folder,
-                     before, token_of(digits), after);
+                     before, frame_token(digits), after);
 }
 
 /// Names a file that differs from the pattern in its ending, its separators or its letters' case.
@@ -114,7 +111,7 @@ std::string nearly_named(const std::vector<std::string>& names, const std::strin
 
 std::string foreign_pattern_in(const std::string& name) {
   const std::string range = range_in(name);
-  return range.empty() ? placeholder_in(name) : range;
+  return range.empty() ? foreign_token_in(name) : range;
 }
 
 std::string why_no_frames(const FramePattern& pattern) {

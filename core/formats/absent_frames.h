@@ -8,7 +8,7 @@
 
 namespace alcove {
 
-/// Gives what is wrong with a name that no file has: a placeholder of another program or a range in it. "" if it has
+/// Gives what is wrong with a name that no file has: a token of another program or a range in it. "" if it has
 /// none of these.
 std::string foreign_pattern_in(const std::string& name);
 

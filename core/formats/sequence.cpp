@@ -159,6 +159,8 @@ std::optional<FramePattern> frame_pattern(const std::string& path) {
   return FramePattern{path.substr(0, token->begin), path.substr(token->end), token->digits};
 }
 
+std::string frame_token(std::size_t digits) { return digits == 1 ? "%d" : std::string(digits, '#'); }
+
 std::vector<int> parse_frames(const std::string& list) {
   std::vector<int> frames;
   std::unordered_set<int> distinct;

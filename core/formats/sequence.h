@@ -23,6 +23,9 @@ struct FramePattern {
 /// <F4>. Fails with ErrorKind::usage if there are two tokens.
 std::optional<FramePattern> frame_pattern(const std::string& path);
 
+/// The token of numbers with so many digits: %d of one, ## and more of others.
+std::string frame_token(std::size_t digits);
+
 /// Gives the frames of a list such as "1001-1100x2,1200": single numbers, ranges a-b, and ranges with a step a-bxS or
 /// a-b:S, separated by commas, blanks or both. Numbers may be negative (-5--1), and ranges may run backwards (10-1,
 /// 10-1x2). Frames come in the order of the list, none twice. Fails with ErrorKind::usage, quoting the part, on

@@ -150,13 +150,13 @@ std::span<std::byte> Buffer::map(Device& device, const Allocation& allocation) c
 VkBufferView Buffer::texels(const Device& device, VkFormat format) const {
   auto& view = views_[format];
   if (view) return view;
-  constexpr VkDeviceSize kTexelBytes = 4;
+  const VkDeviceSize texel_bytes = format == VK_FORMAT_R32G32B32A32_SFLOAT ? 4 * sizeof(float) : sizeof(float);
   VkBufferViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
   info.buffer = handle();
   info.format = format;
   info.offset = guard_;
-  info.range = std::min<VkDeviceSize>((capacity_ + guard_) / kTexelBytes, device.most_texels()) * kTexelBytes;
+  info.range = std::min<VkDeviceSize>((capacity_ + guard_) / texel_bytes, device.most_texels()) * texel_bytes;
   VkBufferView made = VK_NULL_HANDLE;
   check(vkCreateBufferView(device.handle(), &info, nullptr, &made), "vkCreateBufferView");
   return view = {device.handle(), made};

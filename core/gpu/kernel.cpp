@@ -39,7 +39,7 @@ struct Module {
   std::map<std::uint32_t, std::uint32_t> block_of;            // variable -> struct type
   std::map<std::uint32_t, std::uint32_t> place_in;            // pointer into a variable -> that
   std::set<std::uint32_t> not_writable, not_readable;         // struct types with such a member, and variables
-  std::set<std::uint32_t> with_atomics;                       // variables
+  std::set<std::uint32_t> with_atomics, read_in_parts;        // variables; of the latter, components of elements
   std::uint32_t push_constant_type = 0;
 
   /// The bytes of a type in scalar layout.
@@ -68,6 +68,9 @@ struct Module {
     if (members.size() != 2 || types.at(members[1])[0] != spv::OpTypeRuntimeArray) return VK_FORMAT_UNDEFINED;
     const auto& element = types.at(types.at(members[1])[1]);
     if (element[0] == spv::OpTypeFloat) return VK_FORMAT_R32_SFLOAT;
+    const bool is_four = element[0] == spv::OpTypeVector && element[2] == 4;
+    if (is_four && types.at(element[1])[0] == spv::OpTypeFloat && !read_in_parts.contains(variable))
+      return VK_FORMAT_R32G32B32A32_SFLOAT;
     return element[0] == spv::OpTypeInt && element[2] == 0 ? VK_FORMAT_R32_UINT : VK_FORMAT_UNDEFINED;
   }
 };
@@ -110,7 +113,12 @@ void read_instruction(Module& module, Reflection& reflection, std::span<const st
     case spv::OpConstant: module.constants[words[2]] = words[3]; break;
     case spv::OpSpecConstant: reflection.constants[module.constant_id.at(words[2])] = words[3]; break;
     case spv::OpVariable: read_variable(module, words); break;
-    case spv::OpAccessChain: module.place_in[words[2]] = words[3]; break;
+    case spv::OpAccessChain: {
+      constexpr std::size_t kWordsToAnElement = 6;  // behind the index of the block's only member
+      module.place_in[words[2]] = words[3];
+      if (words.size() > kWordsToAnElement) module.read_in_parts.insert(words[3]);
+      break;
+    }
     case spv::OpTypeInt:
     case spv::OpTypeFloat:
     case spv::OpTypeVector:
@@ -178,6 +186,11 @@ struct TexelTypes {
   std::uint32_t scalar = 0, vector = 0, image = 0, pointer = 0;
 };
 
+std::uint32_t image_format_of(VkFormat format) {
+  if (format == VK_FORMAT_R32G32B32A32_SFLOAT) return spv::ImageFormatRgba32f;
+  return format == VK_FORMAT_R32_UINT ? spv::ImageFormatR32ui : spv::ImageFormatR32f;
+}
+
 /// Writes a module anew, instruction by instruction, and changes those that have to do with buffers of texels.
 class TexelWriter {
  public:
@@ -208,7 +221,8 @@ class TexelWriter {
       const auto block = std::ranges::find(blocks, words[3], &Block::binding);
       if (block != blocks.end() && block->texel != VK_FORMAT_UNDEFINED) format_of_[words[1]] = block->texel;
     }
-    if (opcode == spv::OpTypeFloat) types_[VK_FORMAT_R32_SFLOAT].scalar = words[1];
+    if (opcode == spv::OpTypeFloat)
+      types_[VK_FORMAT_R32_SFLOAT].scalar = types_[VK_FORMAT_R32G32B32A32_SFLOAT].scalar = words[1];
     if (opcode == spv::OpTypeInt && words[3] == 0) types_[VK_FORMAT_R32_UINT].scalar = words[1];
     if (opcode == spv::OpTypeVector && words[3] == 4)
       for (auto& [format, types] : types_)
@@ -232,28 +246,31 @@ class TexelWriter {
     TexelTypes& types = types_.at(format);
     if (!types.vector) write(spv::OpTypeVector, {types.vector = bound_++, types.scalar, 4});
     if (!types.image) {
-      const std::uint32_t of_image = format == VK_FORMAT_R32_UINT ? spv::ImageFormatR32ui : spv::ImageFormatR32f;
       const std::uint32_t no_depth = 0, no_layers = 0, no_samples = 0, without_sampler = 2;
       write(spv::OpTypeImage, {types.image = bound_++, types.scalar, spv::DimBuffer, no_depth, no_layers, no_samples,
-                               without_sampler, of_image});
+                               without_sampler, image_format_of(format)});
       write(spv::OpTypePointer, {types.pointer = bound_++, spv::StorageClassUniformConstant, types.image});
     }
     write(spv::OpVariable, {types.pointer, variable, spv::StorageClassUniformConstant});
   }
 
   void load(std::uint32_t result, const Place& place) {
-    const TexelTypes& types = types_.at(format_of_.at(place.variable));
-    const std::uint32_t image = bound_++, texel = bound_++, first = 0;
+    const VkFormat format = format_of_.at(place.variable);
+    const TexelTypes& types = types_.at(format);
+    const bool is_whole = format == VK_FORMAT_R32G32B32A32_SFLOAT;
+    const std::uint32_t image = bound_++, texel = is_whole ? result : bound_++, first = 0;
     write(spv::OpLoad, {types.image, image, place.variable});
     write(spv::OpImageRead, {types.vector, texel, image, place.index});
-    write(spv::OpCompositeExtract, {types.scalar, result, texel, first});
+    if (!is_whole) write(spv::OpCompositeExtract, {types.scalar, result, texel, first});
   }
 
   void store(std::uint32_t value, const Place& place) {
-    const TexelTypes& types = types_.at(format_of_.at(place.variable));
-    const std::uint32_t image = bound_++, texel = bound_++;
+    const VkFormat format = format_of_.at(place.variable);
+    const TexelTypes& types = types_.at(format);
+    const bool is_whole = format == VK_FORMAT_R32G32B32A32_SFLOAT;
+    const std::uint32_t image = bound_++, texel = is_whole ? value : bound_++;
     write(spv::OpLoad, {types.image, image, place.variable});
-    write(spv::OpCompositeConstruct, {types.vector, texel, value, value, value, value});
+    if (!is_whole) write(spv::OpCompositeConstruct, {types.vector, texel, value, value, value, value});
     write(spv::OpImageWrite, {image, place.index, texel});
   }
 

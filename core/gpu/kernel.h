@@ -22,7 +22,8 @@ struct Block {
   std::string name;  // in GLSL
   std::uint32_t binding;
   bool is_read, is_written;  // not declared writeonly, not declared readonly
-  // The format of its words if it may be a buffer of texels: an array of floats or uints that is read, without atomics.
+  // The format of its elements if it may be a buffer of texels: an array of floats, uints, or whole vec4, that is read,
+  // without atomics.
   VkFormat texel = VK_FORMAT_UNDEFINED;
 };
 

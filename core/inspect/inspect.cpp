@@ -342,15 +342,25 @@ struct Inspector {
       }
   }
 
+  /// Adds up the light passes, where it is known which pixels show surfaces.
+  void look_at_light(FrameSource& beauty) {
+    if (!found.depth->distances) return;
+    found.light = light_passes_of(
+        beauty, planar_depths(raw.depth, depth_map_of(source.reading), view_of(source.reading, source.reading.data)));
+    if (found.light && !found.light->adds_up)
+      found.suspicious.push_back({NoteCode::light_passes, missing_light_text(*found.light)});
+  }
+
   /// Neither camera nor normals matter for it, so that no camera is solved again.
   void find_beauty() {
     InputSettings alone = names_a_camera(reading) ? reading : with_some_camera(reading);
     alone.normal = "none";
     try {
-      const FrameSource beauty = find_frame(alone, true, frame);
+      FrameSource beauty = find_frame(alone, true, frame);
       add_aov(found, "beauty", beauty, beauty.channels[RawPlane::beauty], !settings.beauty_channels.empty());
       add_aov(found, "indirect", beauty, beauty.channels[RawPlane::indirect], false);
       add_aov(found, "diffuse_color", beauty, beauty.channels[RawPlane::diffuse_color], false);
+      look_at_light(beauty);
     } catch (const Error&) {
       found.missing.push_back("beauty: only --composite needs one; --beauty or --set beauty-channels names it");
     }

@@ -20,6 +20,7 @@
 #include "core/frame/find/matte.h"
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/statistics.h"
+#include "core/inspect/light_passes.h"
 #include "core/run/plan.h"
 
 namespace alcove {
@@ -142,6 +143,7 @@ struct Inspection {
   std::optional<InspectedDepth> depth;
   std::optional<InspectedNormals> normals;
   std::vector<InspectedDeep> deep;
+  std::optional<InspectedLight> light;  // the light passes beside the beauty
   std::vector<Guess> guesses;
   std::vector<HiddenGuess> hidden;  // read only if options name them
   std::string hidden_options;       // the options that name all of them; "" for none

@@ -162,6 +162,10 @@ Json to_json(const SequenceDepth& depth) {
   return json;
 }
 
+Json to_json(const InspectedLight& light) {
+  return {{"sum", light.sum}, {"share", light.share}, {"adds_up", light.adds_up}, {"lacking", light.lacking}};
+}
+
 Json to_json(const HiddenGuess& guess) { return {{"file", guess.file}, {"channel", guess.channel}}; }
 
 template <class T>
@@ -205,6 +209,7 @@ std::string inspection_json(const Inspection& inspection) {
                      {"depth", to_json(inspection.depth)},
                      {"normals", to_json(inspection.normals)},
                      {"deep", list_json(inspection.deep)},
+                     {"light", to_json(inspection.light)},
                      {"guesses", list_json(inspection.guesses)},
                      {"hidden", list_json(inspection.hidden)},
                      {"hidden_options", inspection.hidden_options},

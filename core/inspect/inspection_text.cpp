@@ -212,6 +212,7 @@ std::string inspection_text(const Inspection& inspection, bool has_evidence) {
                          (inspection.normals && aov.name == "normal");
     if (!is_said) add(lines, aov);
   }
+  if (inspection.light && inspection.light->adds_up) lines.add("light passes: {} is the beauty", inspection.light->sum);
   for (const auto& deep : inspection.deep) add(lines, deep);
   const bool is_orthographic = inspection.camera && inspection.camera->camera.orthographic;
   if (inspection.sequence) add(lines, *inspection.sequence, is_orthographic);

@@ -189,12 +189,14 @@ Comparable make_comparable(const std::string& what, std::size_t pixels, Values r
   Comparable c{copy(result), copy(reference), copy(reference_b), std::vector<std::uint8_t>(pixels, 1)};
   std::vector<std::uint8_t> holes(pixels);
   for (std::size_t i = 0; i < result.size(); i++) {
-    const bool is_known = std::isfinite(reference[i]) && (reference_b.empty() || std::isfinite(reference_b[i]));
+    const int files = reference_b.empty() ? 2 : 3;
     const bool is_finite = std::isfinite(result[i]);
-    if (!is_known || !is_finite) c.mask[i % pixels] = 0;
-    if (is_known == is_finite || !counts(mask, i)) continue;
+    const int finite =
+        int(is_finite) + int(std::isfinite(reference[i])) + int(!reference_b.empty() && std::isfinite(reference_b[i]));
+    if (finite < files) c.mask[i % pixels] = 0;
+    if (finite == 0 || finite == files || !counts(mask, i)) continue;
     holes[i % pixels] = 1;
-    if (!c.first_hole) c.first_hole = Hole{i, is_known};
+    if (!c.first_hole) c.first_hole = Hole{i, !is_finite};
   }
   c.holes = std::size_t(std::ranges::count(holes, 1));
   for (std::size_t pixel = 0; pixel < pixels; pixel++) {

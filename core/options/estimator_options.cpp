@@ -110,9 +110,11 @@ void add_search_rows(std::vector<SettingRow>& rows) {
       .idle(if_exact_alone);
   pixels
       .choice("--search", &S::search,
-              "along a slice; steps: so many samples; exact: all pixels, by outlines; every-pixel: one by one")
+              "along a slice; steps: so many samples; quick: the same by fewer rules; exact, every-pixel: all pixels")
       .idle([](const Settings& all) {
-        return all.estimator.search == SliceSearch::steps ? if_by_error(all) : unless_estimator(all, {Estimator::gtao});
+        const SliceSearch search = all.estimator.search;
+        const std::string why = search == SliceSearch::steps ? "" : unless_estimator(all, {Estimator::gtao});
+        return first_of({why, search == SliceSearch::steps || search == SliceSearch::quick ? if_by_error(all) : ""});
       });
   pixels.number("--tolerance", &S::tolerance, "", between(0, 1), "RMS error of an exact search; 0: as --slices gives")
       .others_idle([](const Settings& all) { return unless_estimator(all, {Estimator::gtao}); });

@@ -193,14 +193,18 @@ void check_search(const Settings& settings) {
   const auto& e = settings.estimator;
   if (e.tolerance == 0 && wants(settings.output, &FrameOutputs::error))
     fail(ErrorKind::usage, "--aov error: only an estimate with a --tolerance knows its error");
-  if (shows(settings.output, DebugSource::tiles) && searches_exactly(e))
-    fail(ErrorKind::usage, "--set debug=tiles: an exact search leaves out none; --search steps does");
+  if (shows(settings.output, DebugSource::tiles) && (searches_exactly(e) || e.search == SliceSearch::quick))
+    fail(ErrorKind::usage, "--set debug=tiles: {} search leaves out none; --search steps does",
+         searches_exactly(e) ? "an exact" : "a quick");
 }
 
 /// A view of completed surfaces needs some.
 void check_completion(const Settings& settings) {
   const auto& e = settings.estimator;
-  if (!shows(settings.output, DebugSource::completed) || completes_anywhere(e)) return;
+  if (!shows(settings.output, DebugSource::completed)) return;
+  if (e.search == SliceSearch::quick)
+    fail(ErrorKind::usage, "--set debug=completed: a quick search does not tell them; --search steps does");
+  if (completes_anywhere(e)) return;
   if (e.complete == Completion::none)
     fail(ErrorKind::usage,
          "--set debug=completed: with --set complete=none nothing is; border and all complete surfaces");

@@ -236,9 +236,9 @@ RunReport run_frames(FirstLook& look, const RunWatch& watch) {
   report.input = main_input(settings.input);
   report.missing = plan.missing();
   const NewFolders new_folders(plan);
+  refuse_overwriting(plan);
+  prepare_outputs(plan);  // of a chunk without frames its reports
   if (!plan.frames().empty()) {
-    refuse_overwriting(plan);
-    prepare_outputs(plan);
     require_endings(plan.at(plan.frames().front()).output);
     report.options = options_digest(settings);
   }

@@ -318,7 +318,8 @@ std::string needs_text(FrameSource& source, const Settings& settings, const RunM
   try {
     const MemoryNeeds needs = memory_needs(source, settings, limits);
     const std::string at_once = limits.option_for(needs.at_once) + " computes a frame at once";
-    if (needs.parts == 1) return at_once + ", and nothing less is enough";
+    if (limits.option_for(needs.least) == limits.option_for(needs.at_once))
+      return at_once + ", and nothing less is enough";
     return fmt::format("{}, {} is the least: {}", at_once, limits.option_for(needs.least), needs.cost());
   } catch (const Error&) {
     return "";  // the frame fails by itself, and others of a sequence may not
@@ -339,9 +340,9 @@ std::string plan_text(FirstLook& look) {
   if (!plan.missing().empty())
     line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
   for (const auto& note : notes) line(level_of(note), line_of(note, ""));
+  refuse_overwriting(plan);
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
-  refuse_overwriting(plan);
   require_endings(first.output);
   for (const auto& row : file_rows()) {
     if (!row.is_of_frame) continue;

@@ -48,6 +48,7 @@ void FrameTally::add_others(const PreparationCost& cost) {
 void FrameTally::add_estimate(const FrameReport& estimate, const Others& others) {
   report_.tiles = estimate.tiles;
   report_.estimates = estimate.estimates;
+  is_quick_ = is_quick_ || estimate.search == word_of(SliceSearch::quick);
   report_.occlusion = estimate.occlusion;
   if (!others.seen.empty()) return;  // the frame itself counts them
   report_.hidden = estimate.hidden;
@@ -84,6 +85,7 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
   counts_.repaired_beauty += counts.repaired_beauty;
   report_.pixels += computed.pixels();
   has_ao_ = outputs.ao;
+  is_quick_ = is_quick_ || outputs.is_quick;
 
   if (outputs.layer_counts) {
     const auto layers = outputs.layer_counts->as<LayerCounts>()[0];
@@ -121,7 +123,16 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
     const SiteCounts& sites = outputs.sites->as<SiteCounts>()[0];
     auto& estimates = report_.estimates ? *report_.estimates : report_.estimates.emplace();
     for (std::size_t k = 0; k < kLattices && !is_same; k++) estimates[k] += sites.of_lattice[k];
+    // Those of blocks lie on no lattice.
+    if (outputs.is_quick && !is_same) estimates.back() += sites.listed;
   }
+}
+
+/// The search along slices that made the estimate, which the settings may only ask for; empty: there is none.
+static std::string search_of(const EstimatorSettings& settings, bool is_quick) {
+  if (!searches_slices(settings)) return "";
+  if (settings.tolerance > 0 && settings.search != SliceSearch::every_pixel) return word_of(SliceSearch::exact);
+  return word_of(settings.search == SliceSearch::quick && !is_quick ? SliceSearch::steps : settings.search);
 }
 
 void FrameTally::finish(const FrameSource& source, const Settings& settings) {
@@ -137,6 +148,7 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
   add_new(report_.notes, behind_.notes(source));
   add_new(report_.notes, deep_notes(source));
   if (has_ao_) {
+    report_.search = search_of(settings.estimator, is_quick_);
     const std::vector<double> radii = radii_of(settings.estimator);
     add_new(report_.notes,
             sample_.notes(radii.front(), radii.back(), source.reading.data.width, source.reading.data.height));

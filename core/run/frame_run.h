@@ -58,7 +58,7 @@ class FrameTally {
   BehindSample behind_;
   std::uint64_t rows_of_others_ = 0;
   std::size_t before_ = 0;  // passes that prepared others
-  bool has_ao_ = false;
+  bool has_ao_ = false, is_quick_ = false;
 };
 
 // The frame.

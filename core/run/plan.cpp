@@ -69,7 +69,7 @@ void refuse_glob(const std::string& path, const std::string& option) {
        pattern.find_first_of("*?") == pattern.npos ? pattern : "shot.####.exr");
 }
 
-/// Fails where a name that is no file has a placeholder of another program.
+/// Fails where a name that is no file has a token of another program.
 void refuse_foreign_pattern(const std::string& path, const std::string& option) {
   if (const std::string why = foreign_pattern_in(path); !why.empty())
     fail(ErrorKind::usage, "{}: {} ({})", path, why, option);
@@ -122,6 +122,15 @@ void FramePlan::find_patterns(FileRole role) {
 const FramePlan::Pattern* FramePlan::first_input() const {
   const auto found = std::ranges::find_if(patterns_, &Pattern::is_input);
   return found == patterns_.end() ? nullptr : &*found;
+}
+
+std::vector<int> FramePlan::on_disk() const {
+  const Pattern* input = first_input();
+  try {
+    return input ? frames_on_disk(input->name, input->option().c_str()) : std::vector<int>();
+  } catch (const Error&) {  // a chunk without frames needs none
+    return {};
+  }
 }
 
 std::vector<int> FramePlan::all_frames() const {
@@ -312,7 +321,7 @@ std::string pattern_for(const std::string& path) {
   const FrameNumber found = frame_number_in(path);
   if (found.digits.empty()) return "";
   const std::size_t at = path.rfind(found.digits), digits = found.digits.size();
-  return path.substr(0, at) + (digits == 1 ? "%d" : std::string(digits, '#')) + path.substr(at + digits);
+  return path.substr(0, at) + frame_token(digits) + path.substr(at + digits);
 }
 
 int frame_number_of(const std::string& path) { return frame_number_in(path).number.value_or(0); }

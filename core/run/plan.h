@@ -47,6 +47,8 @@ class FramePlan {
   /// The numbers between the frames on the disk that have no file; none where the settings list the frames. Frames on
   /// every second or third number have none where these are their only steps.
   const std::vector<int>& holes() const { return holes_; }
+  /// The frames on the disk by the first input with a pattern, whichever are computed; none without a pattern.
+  std::vector<int> on_disk() const;
   /// A few frames of the whole sequence, from its beginning to its end, whatever the chunk. Guesses are made by the
   /// first of them that shows enough, so that all chunks make the same guesses.
   const std::vector<int>& evidence() const { return evidence_; }

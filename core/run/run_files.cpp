@@ -35,8 +35,10 @@ struct Output {
 std::vector<Output> outputs_of(const FramePlan& plan, const std::vector<int>& frames) {
   std::vector<Output> outputs;
   for (const int frame : frames)
-    for (const auto& file : files_of(plan.at(frame), FileRole::output))
-      outputs.push_back({file, plan.is_sequence() ? fmt::format(" of frame {}", frame) : ""});
+    for (const auto& file : files_of(plan.at(frame), FileRole::output)) {
+      const bool is_of_all = !plan.is_sequence() || (plan.has_contact_sheet() && file.option == "--preview");
+      outputs.push_back({file, is_of_all ? "" : fmt::format(" of frame {}", frame)});
+    }
   for (const auto& file : files_of(plan.settings(), FileRole::report)) outputs.push_back({file, ""});
   return outputs;
 }
@@ -64,6 +66,8 @@ FileUses inputs_of(const FramePlan& plan) {
   for (const auto* frames : {&plan.all(), &plan.shot()})
     for (const int frame : *frames)
       for (const auto& file : inputs_of(plan.at(frame))) uses.add_input(file);
+  for (const int frame : plan.on_disk())
+    for (const auto& file : files_of(plan.at(frame), FileRole::input)) uses.add_input(file);
   return uses;
 }
 

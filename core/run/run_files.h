@@ -15,11 +15,12 @@ namespace alcove {
 bool shows_composite(const OutputSettings& output);
 
 /// All files that a frame is made from: those that options name, and those that follow from them, which are manifests
-/// of Cryptomattes and the configuration of the display. Opens files with Cryptomattes; one that cannot be read has no
-/// manifest.
+/// of Cryptomattes and the configuration of the display, but not the tables that it names. Opens files with
+/// Cryptomattes; one that cannot be read has no manifest.
 std::vector<NamedFile> inputs_of(const Settings& frame);
 
-/// The inputs of the frames of all chunks, and of the frames around them.
+/// The inputs of the frames of all chunks, of the frames around them, and of all that are on the disk: each may be
+/// computed by a run of its own.
 FileUses inputs_of(const FramePlan& plan);
 
 /// Fails with ErrorKind::usage where the run would write a file that it reads, or one file twice.

@@ -49,6 +49,7 @@ Json json_of(const FrameReport& frame) {
       {"samples_per_pixel", frame.samples_per_pixel},
       {"repaired_pixels", frame.repaired_pixels},
       {"notes", json_of(frame.notes)}};
+  if (!frame.search.empty()) json["search"] = frame.search;
   if (frame.estimates) {
     Json estimates = {{"total", std::accumulate(frame.estimates->begin(), frame.estimates->end(), 0ull)}};
     for (std::size_t k = 0; k < kLattices; k++) estimates[fmt::format("one_of_{}", 16 >> k)] = (*frame.estimates)[k];

@@ -63,6 +63,7 @@ struct FrameReport {
   // Pixels with an estimate of their own, by the lattices that they lie on, of spacing 16, 8, 4, 2 and 1, and on no
   // wider one; where pixels share estimates. Of several radii for the largest.
   std::optional<std::array<std::uint64_t, kLattices>> estimates;
+  std::string search;  // along slices, a word of --search; empty: the estimator has no such choice
   // Depth samples, averaged over all pixels: those that were taken where pixels share estimates, else what the settings
   // ask for at surfaces.
   double samples_per_pixel = 0;

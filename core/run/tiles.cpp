@@ -393,9 +393,10 @@ void WindowLimits::refuse(const std::string& what, const MemoryNeeds& needs) con
   const std::string at_once = fmt::format("--memory {}", option_for(needs.at_once));
   fail(room.is_chosen ? ErrorKind::usage : ErrorKind::device,
        "{}, or let the run take at least {}; {} MiB are for the program itself", what,
-       needs.parts == 1 ? at_once
-                        : fmt::format("--memory {} ({}), or {} for all of it at once", option_for(needs.least),
-                                      needs.cost(), at_once),
+       option_for(needs.least) == option_for(needs.at_once)
+           ? at_once
+           : fmt::format("--memory {} ({}), or {} for all of it at once", option_for(needs.least), needs.cost(),
+                         at_once),
        mebibytes_above(room.program_bytes));
 }
 

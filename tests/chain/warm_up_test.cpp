@@ -35,7 +35,7 @@ TEST(WarmUp, begins_with_what_has_the_most_code) {
 
 TEST(WarmUp, of_all_presets_of_steps_can_do_with_the_twin_of_the_search) {
   const gpu::Reflection all = gpu::reflect(gpu::kernel_code("horizon"));
-  for (const char* name : {"draft", "standard", "production"}) {
+  for (const char* name : {"standard", "production"}) {
     const WarmUp warm_up(device(), preset(name, 0.5), {}, 0);
     const auto search = std::ranges::find(warm_up.names(), "horizon", &gpu::KernelName::first);
     ASSERT_NE(search, warm_up.names().end()) << name;

@@ -192,11 +192,30 @@ TEST_F(LostFiles, are_no_renders_that_the_outputs_of_other_frames_are_spelled_li
 }
 
 TEST_F(LostFiles, are_no_frames_that_others_take_from) {
-  for (const Options& takes : {Options{"--around", "1"}, {"--accumulate", "1"}})
+  for (const Options& takes : {Options{"--around", "1"}, {"--accumulate", "1"}, {}})  // each may be a run of its own
     expect_safe(input(2), {"--output of frame 1", "INPUT " + input(2)},
                 run_of(joined(takes, {"--frames", "1", "-o", input(2)})));
-  // Without them frame 2 is none of the run's.
-  EXPECT_EQ(run({"--frames", "1", "-o", input(2)}).code, 0);
+}
+
+TEST_F(LostFiles, are_no_outputs_of_other_frames) {
+  fs::create_directories(folder / "ao.1");
+  for (const char* other : {"ao.2", "ao.3"}) fs::create_directory_symlink(folder / "ao.1", folder / other);
+  test::expect_refused(run_program(run_of({"-o", folder / "ao.%d/ao.exr"})), 2,
+                       {"--output of frame 1 and --output of frame 2 name the same file"});
+  EXPECT_TRUE(names_in(folder / "ao.1").empty());
+}
+
+TEST_F(LostFiles, are_none_of_a_chunk_without_frames) {
+  const std::string preset = folder / "p.toml";
+  write_bytes(preset, "power = 1\n");
+  const Options chunk{"--chunk", "1/5"};  // chunks 2, 4 and 5 have the three frames
+  ASSERT_EQ(run(chunk).code, 0);
+  ASSERT_TRUE(names_in(out).empty());
+  for (const char* report : {"--stats", "--log-json"}) {
+    expect_safe(input(1), {report, "INPUT " + input(1)}, run_of(joined(chunk, {report, input(1)})));
+    expect_safe(preset, {report, "--preset " + preset}, run_of(joined(chunk, {"--preset", preset, report, preset})));
+  }
+  expect_safe(input(1), {"--stats", "INPUT " + input(1)}, run_of(joined(chunk, {"--dry-run", "--stats", input(1)})));
 }
 
 TEST_F(LostFiles, are_no_skies_presets_cameras_or_inspected_frames) {

@@ -183,12 +183,15 @@ int reading_texels(const std::vector<std::vector<std::uint32_t>>& modules) {
 }
 
 TEST_F(Driver, reads_texels_or_storage_buffers_with_the_same_bits) {
+  EstimatorSettings quick = settings_of(0.4);
+  quick.search = SliceSearch::quick;
   gpu::DeviceOptions texels = options(), buffers = options();
   texels.texels = true;
   buffers.texels = false;
   for (const EstimatorSettings& settings :
-       {settings_of(0.4), exact_settings(3), tolerant_settings(), settings_of(Estimator::bitmask, Resolution::half),
-        settings_of(Estimator::hbao, Resolution::quarter), settings_of(Estimator::crytek, Resolution::full)}) {
+       {settings_of(0.4), quick, exact_settings(3), tolerant_settings(),
+        settings_of(Estimator::bitmask, Resolution::half), settings_of(Estimator::hbao, Resolution::quarter),
+        settings_of(Estimator::crytek, Resolution::full)}) {
     fake.modules.clear();
     const auto expected = ao_on(buffers, settings);
     EXPECT_EQ(reading_texels(fake.modules), 0);

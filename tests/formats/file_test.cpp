@@ -138,7 +138,10 @@ TEST_F(Files, names_of_one_file_are_told_from_those_of_two) {
   // Files that are not there yet.
   uses.add_output({"--stats", folder / "new/b.exr"});
   uses.add_output({"--output", folder / "new/c.exr"});
-  uses.add_output({"--output", folder / "new/c.exr"}, " of frame 4");
+  uses.add_output({"--output", folder / "new/c.exr"});
+  expect_error(ErrorKind::usage, {"new/c.exr: --output and --output of frame 4 name the same file"}, [&] {
+    uses.add_output({"--output", folder / "new/c.exr"}, " of frame 4");
+  });
   for (const char* name : {"new/./b.exr", "linked/new/b.exr", "new/none/../b.exr"})
     expect_error(ErrorKind::usage, {folder / name, "--stats and --output name the same file"}, [&] {
       uses.add_output({"--output", folder / name});

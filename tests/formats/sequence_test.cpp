@@ -134,7 +134,7 @@ TEST_F(OnDisk, none_is_an_error_that_says_what_is_wrong_with_the_pattern) {
            {"a.%V.####.exr", "%V is not a pattern"},
            {"%v/a.####.exr", "--view"},
            {"a.<layer>.####.exr", "<layer> is not a pattern"}})
-    EXPECT_THAT(error_of(ErrorKind::input, [&] { frames(pattern); }), HasSubstr(words));
+    EXPECT_THAT(error_of(ErrorKind::input, [&, &pattern = pattern] { frames(pattern); }), HasSubstr(words));
 }
 
 TEST(ForeignPattern, is_known_in_a_name_without_a_place_for_the_number) {

@@ -135,6 +135,22 @@ TEST_F(Readings, of_orthographic_depth_need_no_option_and_doubt_nothing_that_is_
   }
 }
 
+TEST_F(Readings, of_orthographic_depth_by_another_camera_are_told_what_helps) {
+  const Shot shot = Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120);
+  write(kPlanar, as_it_is, false, render(test::scene(), shot));
+  settings.camera.clear();
+  settings.fov = 50;
+  EXPECT_THAT(said(), Contains(AllOf(HasSubstr("--ortho-width"), HasSubstr("\"projection\": \"orthographic\""))));
+}
+
+TEST_F(Readings, of_a_range_that_begins_among_the_surfaces_are_no_distances_with_an_offset) {
+  for (const double begin : {3.0, 4.0, 5.0}) {
+    write({DepthKind::normalized, false, [&](double z, double) { return (z - begin) / 3; }, 100});
+    EXPECT_THAT(said(), ElementsAre(AllOf(HasSubstr("--depth-kind normalized"), Not(HasSubstr("subtract it")))))
+        << begin;
+  }
+}
+
 TEST_F(Readings, of_depth_that_ends_at_1_need_to_be_said) {
   for (const auto& written : all_depths())
     if (written.kind == DepthKind::normalized || written.kind == DepthKind::log) {

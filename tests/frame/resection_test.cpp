@@ -3,6 +3,7 @@
 #include "core/frame/camera/resection.h"
 
 #include "core/formats/exr.h"
+#include "core/frame/camera/position_faults.h"
 #include "core/inspect/inspect.h"
 #include "tests/support/command_line.h"
 #include "tests/support/difference.h"
@@ -274,6 +275,94 @@ TEST(Panoramas, are_known_by_the_points_that_they_see) {
       {0, 0, 90, 90});
   EXPECT_EQ(panorama_of(fish_eye, {0, 0, 90, 90}), "fish eye");
   EXPECT_EQ(panorama_of(seen_by(made_camera()), kPicture), "");
+}
+
+/// Points with each position changed.
+std::vector<SeenPoint> changed(std::vector<SeenPoint> points, const std::function<void(Vector3& position)>& change) {
+  for (auto& seen : points) change(seen.position);
+  return points;
+}
+
+std::string stretched_by(const std::vector<SeenPoint>& points, double pixel_aspect = 1) {
+  const auto found = resection_of(points, kPicture);
+  return why_stretched(points, kPicture, std::get_if<Resection>(&found), pixel_aspect);
+}
+
+TEST(PositionFaults, that_components_were_cut_is_told) {
+  const auto points = seen_by(made_camera());
+  const auto cut = changed(points, [](Vector3& p) {
+    for (double& x : p) x = std::max(x, 0.0);
+  });
+  EXPECT_THAT(why_cut(cut, kPicture), HasSubstr("cut at 0"));
+  const auto cut_at_1 = changed(points, [](Vector3& p) {
+    for (double& x : p) x = std::min(x, 1.0);
+  });
+  EXPECT_THAT(why_cut(cut_at_1, kPicture), HasSubstr("cut at 1"));
+  EXPECT_EQ(why_cut(points, kPicture), "");
+  // A floor at 0 below all else, through a bent lens, is none.
+  auto bent = points;
+  for (std::size_t i = 0; i < bent.size(); i++) {
+    bent[i].position[1] = i % 3 ? std::abs(bent[i].position[1]) + 0.1 : 0;
+    bent[i].x += 20 * std::sin(double(i));
+  }
+  EXPECT_EQ(why_cut(bent, kPicture), "");
+}
+
+TEST(PositionFaults, that_axes_were_stretched_is_told) {
+  const auto points = seen_by(made_camera());
+  const auto stretch = [](Vector3& p) { p = {3 * p[0], 0.5 * p[1], p[2]}; };
+  EXPECT_THAT(stretched_by(changed(points, stretch)), HasSubstr("stretched along their axes"));
+  EXPECT_EQ(stretched_by(points), "");
+  // Without a turn the stretched world has a camera, of pixels that are not square.
+  Camera level = made_camera();
+  level.view_from_world = turned(0, 0, 0);
+  const auto boxed = changed(seen_by(level), [](Vector3& p) {
+    p = {(p[0] + 3.2) / 12.4, (p[1] + 5.5) / 7, (p[2] + 5.1) / 8.2};
+  });
+  EXPECT_THAT(stretched_by(boxed), HasSubstr("a bounding box is normalized"));
+  const auto wide = changed(seen_by(level), [](Vector3& p) { p[0] *= 2; });
+  EXPECT_EQ(stretched_by(wide), "") << "it may be anamorphic";
+}
+
+TEST(PositionFaults, that_the_lens_bends_lines_is_told) {
+  for (const double bend : {-0.1, 0.05, 0.4}) {
+    auto points = seen_by(made_camera());
+    for (auto& seen : points) {
+      const double x = (seen.x - 160) / 160, y = (seen.y - 90) / 160, more = 1 + bend * (x * x + y * y);
+      seen.x = 160 + 160 * x * more;
+      seen.y = 90 + 160 * y * more;
+    }
+    for (std::size_t i = 0; i < points.size(); i += 31) points[i].position[0] += 1;  // of edges
+    EXPECT_THAT(why_bent(points, kPicture), HasSubstr("distorted")) << bend;
+    EXPECT_EQ(why_cut(points, kPicture) + stretched_by(points), "") << bend;
+  }
+  auto shaken = seen_by(made_camera());
+  for (std::size_t i = 0; i < shaken.size(); i++) shaken[i].x += 3 * std::sin(double(i * i));
+  EXPECT_EQ(why_bent(shaken, kPicture) + stretched_by(shaken), "");
+}
+
+TEST_F(PositionPass, disagrees_with_depth_of_another_unit_plane_or_frame) {
+  write_positions("ViewLayer.Position");
+  const FrameFile right = [&] {
+    FrameFile file = wall_frame();
+    const Image image = read_exr_image(frame);
+    for (const auto& name : image.names) {
+      const auto plane = image.plane(name);
+      file.planes[name] = {plane.begin(), plane.end()};
+    }
+    return file;
+  }();
+  const auto said = [&](const std::function<float(float)>& depth) {
+    FrameFile file = right;
+    for (float& z : file.planes.at("ViewLayer.Depth.Z")) z = depth(z);
+    file.write(frame);
+    return run_by({"--normal", "none", "--depth-kind", "planar"}).err;
+  };
+  const auto disagree = HasSubstr("[positions-disagree]");
+  EXPECT_THAT(said([](float z) { return z; }), Not(disagree));
+  EXPECT_THAT(said([](float z) { return 100 * z; }), AllOf(disagree, HasSubstr("--depth-scale 0.01 ")));
+  EXPECT_THAT(said([](float z) { return z - 1.5F; }), AllOf(disagree, HasSubstr("theirs less 1.5,")));
+  EXPECT_THAT(said([](float z) { return z * z; }), AllOf(disagree, HasSubstr("of another kind")));
 }
 
 TEST_F(PositionPass, gives_the_camera_that_nobody_said_and_its_file) {

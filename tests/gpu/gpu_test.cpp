@@ -86,6 +86,7 @@ TEST(Reflection, tells_arrays_of_words_that_are_read_without_atomics) {
       << "Runs has atomics";
   EXPECT_THAT(texels_of("reconstruct"), ElementsAre(testing::Pair("Depth", kFloats), testing::Pair("Normal", kUints)))
       << "Normal is written too";
+  EXPECT_THAT(texels_of("fit_blocks"), Contains(testing::Pair("Planes", VK_FORMAT_R32G32B32A32_SFLOAT)));
 }
 
 /// The number of a kernel's variables of that class.
@@ -97,7 +98,7 @@ int variables(std::span<const std::uint32_t> code, spv::StorageClass of_class) {
 }
 
 TEST(Texels, take_the_place_of_storage_buffers_that_may_be_such_and_of_nothing_else) {
-  for (const char* stem : {"classify", "reconstruct", "exact"}) {
+  for (const char* stem : {"classify", "reconstruct", "exact", "fit_blocks"}) {
     const auto code = gpu::kernel_code(stem);
     const auto blocks = gpu::reflect(code).blocks;
     const auto edited = gpu::with_texels(code, blocks);

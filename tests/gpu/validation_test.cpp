@@ -117,6 +117,11 @@ std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
   run_chain_of(gpu, kernels, settings, {}, false);
   run_views(gpu, kernels, settings);
   run_means(gpu, kernels, settings);
+  settings.search = SliceSearch::quick;
+  OutputSettings density;
+  density.debug = "density";
+  run_chain_of(gpu, kernels, settings, density, false);
+  settings.search = SliceSearch::steps;
   settings.power = 1.5;
   run_chain_of(gpu, kernels, settings, everything());
   settings.further_radii = {0.1};

@@ -68,6 +68,91 @@ TEST_F(Inspect, counts_sky_and_sentinels) {
   EXPECT_NEAR(all["sky_share"].get<double>(), 5.0 / (64 * 36), 1e-9);
 }
 
+/// A beauty that is the sum of Blender's passes.
+FrameFile lit_frame() {
+  FrameFile file = wall_frame();
+  const std::size_t pixels = file.data.pixels();
+  const auto plane = [&](const std::string& pass, const char* component) -> std::vector<float>& {
+    return file.planes["ViewLayer." + pass + "." + component];
+  };
+  std::size_t seed = 1;
+  for (const char* component : {"R", "G", "B"}) {
+    for (const char* pass : {"DiffDir", "DiffInd", "DiffCol", "GlossDir", "GlossInd", "GlossCol", "Emit"}) {
+      auto& values = plane(pass, component) = std::vector<float>(pixels);
+      for (float& value : values) value = 0.1F + float(seed++ * 7919 % 101) / 101;
+    }
+    plane("Combined", component).resize(pixels);
+    for (std::size_t i = 0; i < pixels; i++) {
+      const auto at = [&](const char* pass) { return plane(pass, component)[i]; };
+      plane("Combined", component)[i] = (at("DiffDir") + at("DiffInd")) * at("DiffCol") +
+                                        (at("GlossDir") + at("GlossInd")) * at("GlossCol") + at("Emit");
+    }
+  }
+  return file;
+}
+
+TEST_F(Inspect, adds_up_the_light_passes) {
+  const json light = seen(lit_frame())["light"];
+  EXPECT_EQ(light["sum"], "(DiffDir + DiffInd) x DiffCol + (GlossDir + GlossInd) x GlossCol + Emit");
+  EXPECT_EQ(light["adds_up"], true);
+  EXPECT_NEAR(light["share"].get<double>(), 1, 1e-6);
+  EXPECT_THAT(inspect({"--camera", camera}).out, HasSubstr("+ Emit is the beauty"));
+  EXPECT_EQ(seen(wall_frame())["light"], nullptr) << "there are none";
+  FrameFile other = wall_frame();
+  add_beauty(other);
+  EXPECT_EQ(seen(other)["light"], nullptr) << "one part alone is no sum";
+}
+
+TEST_F(Inspect, knows_the_light_passes_of_each_renderer) {
+  for (const std::vector<std::string>& passes :
+       {std::vector<std::string>{"diffuse_direct", "diffuse_indirect", "specular"},
+        {"diffuse", "coat_direct", "coat_indirect", "sss"},
+        {"VRayLighting", "VRayGlobalIllumination", "VRayReflection", "VRaySelfIllumination"},
+        {"lighting", "GI", "reflect"},
+        {"directdiffuse", "indirectdiffuse", "combinedglossyreflection"},
+        {"combineddiffuse", "glossytransmission"}}) {
+    FrameFile file = wall_frame();
+    std::size_t seed = 1;
+    for (const std::string component : {"R", "G", "B"}) {
+      auto& beauty = file.planes[component] = std::vector<float>(file.data.pixels());
+      for (const auto& pass : passes)
+        for (float& sum : beauty) {
+          const float value = 0.1F + float(seed++ * 7919 % 101) / 101;
+          sum += value;
+          file.planes[pass + "." + component].push_back(value);
+        }
+    }
+    const json light = seen(file)["light"];
+    ASSERT_NE(light, nullptr) << passes[0];
+    EXPECT_EQ(light["sum"], fmt::format("{}", fmt::join(passes, " + ")));
+    EXPECT_EQ(light["adds_up"], true);
+  }
+}
+
+TEST_F(Inspect, says_which_light_is_missing) {
+  const auto said = [&](const std::string& without) {
+    FrameFile file = lit_frame();
+    for (const char* component : {"R", "G", "B"}) file.planes.erase("ViewLayer." + without + "." + component);
+    const json all = seen(file);
+    EXPECT_EQ(all["light"]["adds_up"], false);
+    EXPECT_THAT(all["suspicious_codes"].dump(), HasSubstr("light-passes"));
+    return all["suspicious"].dump();
+  };
+  for (const char* pass : {"DiffInd", "GlossDir", "GlossCol", "Emit"})
+    EXPECT_THAT(said(pass), ContainsRegex("the file lacks .*" + std::string(pass)));
+}
+
+TEST_F(Inspect, a_beauty_that_was_denoised_or_shows_more_sky_has_its_light_passes) {
+  FrameFile noisy = lit_frame();
+  for (const char* component : {"R", "G", "B"}) {
+    auto& beauty = noisy.planes["ViewLayer.Combined." + std::string(component)];
+    for (std::size_t i = 0; i < beauty.size(); i++) beauty[i] *= i % 2 ? 1.3F : 0.7F;
+    for (std::size_t i = 0; i < 640; i++) beauty[i] += 5;  // a sky
+  }
+  for (std::size_t i = 0; i < 640; i++) noisy.planes["ViewLayer.Depth.Z"][i] = 1e10F;
+  EXPECT_EQ(seen(noisy)["light"]["adds_up"], true);
+}
+
 TEST_F(Inspect, the_command_it_gives_runs_and_guesses_nothing) {
   json fields = wall_camera();
   fields.erase("depth");

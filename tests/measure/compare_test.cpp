@@ -224,6 +224,21 @@ TEST_F(Compare, a_hole_in_one_file_breaks_every_limit_and_is_named_with_its_plac
   EXPECT_EQ(measured({a, b, "--mask", mask, "--max-rmse", "0"})["holes"], 0);
 }
 
+TEST_F(Compare, a_hole_in_one_of_two_references_is_a_hole) {
+  Plane broken = ramp;
+  broken[4] = kNan;
+  const auto whole = exr("whole.exr", {{"Y", ramp}}), hole = exr("hole.exr", {{"Y", broken}});
+  for (const auto& [result, a, b, in] : {std::array{hole, whole, hole, std::string("result")},
+                                         {hole, hole, whole, "result"},
+                                         {whole, whole, hole, "reference"},
+                                         {whole, hole, whole, "reference"}}) {
+    const json j = measured({result, a, "--reference-b", b, "--max-rmse", "1"}, 6);
+    EXPECT_EQ(j["holes"], 1);
+    EXPECT_EQ(j["first_hole"]["in"], in);
+  }
+  EXPECT_EQ(measured({hole, hole, "--reference-b", hole})["holes"], 0);
+}
+
 TEST_F(Compare, a_hole_without_a_limit_is_a_warning) {
   Plane broken = ramp;
   broken[0] = kNan;

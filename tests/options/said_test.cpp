@@ -379,7 +379,7 @@ TEST_F(Said, words_are_taken_in_any_case) {
   EXPECT_EQ(options.settings.output.aovs, "ao,depth");
   EXPECT_TRUE(options.settings.input.flip_normal.y);
   EXPECT_EQ(options.settings.output.compression, "zips");
-  EXPECT_EQ(options.settings.estimator.steps, 8);
+  EXPECT_EQ(options.settings.estimator.steps, 12);
   EXPECT_THAT(refusal("--estimator GTOA"), HasSubstr("did you mean gtao"));
 }
 
@@ -395,7 +395,8 @@ TEST_F(Said, lists_with_commas_are_what_repeated_options_are) {
   EXPECT_THAT(radii(preset("radii.toml", {{"radius", "0.1,0.5"}})), ElementsAre("0.1", "0.5"));
   EXPECT_THAT(refusal("--radius 0.1,,0.5"), HasSubstr("--radius: \"\" is not a number"));
   EXPECT_EQ(read({"--preset", "draft,production"}).settings.estimator.slices, 5);
-  EXPECT_EQ(read({"--preset", "production,draft"}).settings.estimator.steps, 8);
+  EXPECT_EQ(read({"--preset", "production,draft"}).settings.estimator.steps, 12);
+  EXPECT_EQ(read({"--preset", "draft,standard"}).settings.estimator.search, SliceSearch::steps);
   const Words behind{"--behind", "a,b.exr", "--behind", "c.exr"};
   const InputSettings input = read(joined(behind, {"--behind-kind", "backs,Fronts"})).settings.input;
   EXPECT_THAT(input.behind, ElementsAre("a,b.exr", "c.exr", "", "", "", "", "", "")) << "a comma of a file's name";

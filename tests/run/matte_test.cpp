@@ -44,6 +44,8 @@ class Matte : public CommandLine {
     return file;
   }
   json tiles() const { return json::parse(read_bytes(stats))["frames"][0]["tiles"]; }
+  std::string search() const { return json::parse(read_bytes(stats))["frames"][0]["search"]; }
+  double estimates() const { return json::parse(read_bytes(stats))["frames"][0]["estimates"]["total"]; }
 
   void expect_error(const FrameFile& file, const std::string& more, const Options& texts, int code = 3) const {
     file.write(frame);
@@ -57,12 +59,15 @@ class Matte : public CommandLine {
 TEST_F(Matte, within_it_the_ao_is_that_of_the_whole_frame_and_elsewhere_what_is_asked) {
   const FrameFile file = with("Matte.Y", ball);
   for (const char* more :
-       {"", "--preset production", "--preset draft --resolution half", "--resolution quarter --denoise box",
-        "--set stride=1 --slices 4 --denoise none", "--set density=uniform --set stride=4", "--estimator bitmask",
-        "--estimator hbao --radius 0.3,2", "--estimator crytek", "--search exact", "--tolerance 0.05"}) {
+       {"", "--preset production", "--preset draft", "--preset draft --resolution half",
+        "--resolution quarter --denoise box", "--set stride=1 --slices 4 --denoise none",
+        "--set density=uniform --set stride=4", "--estimator bitmask", "--estimator hbao --radius 0.3,2",
+        "--estimator crytek", "--search exact", "--tolerance 0.05"}) {
     SCOPED_TRACE(more);
     const Plane whole = ao_of(file, typed(more));
     const auto before = tiles();
+    const bool is_quick = more == std::string("--preset draft");
+    const double estimates_before = is_quick ? estimates() : 0;
     const Plane ao = within(ball, std::string("--matte-outside 0.25 ") + more);
     std::size_t occluded = 0;
     for (std::size_t i = 0; i < ao.size(); i++) {
@@ -72,7 +77,10 @@ TEST_F(Matte, within_it_the_ao_is_that_of_the_whole_frame_and_elsewhere_what_is_
       occluded += ball[i] == 1 && whole[i] < 0.95F;
     }
     EXPECT_GT(occluded, 20) << "or else there is nothing to compare";
-    const bool lists_tiles = !std::string(more).starts_with("--search") && !std::string(more).starts_with("--tol");
+    if (is_quick) EXPECT_LT(estimates(), 0.6 * estimates_before);
+    if (std::string(more).starts_with("--preset draft")) EXPECT_EQ(search(), is_quick ? "quick" : "steps");
+    const bool lists_tiles =
+        !is_quick && !std::string(more).starts_with("--search") && !std::string(more).starts_with("--tol");
     const double most = std::string(more).starts_with("--resolution quarter") ? 0.65 : 0.5;  // of few tiles
     if (lists_tiles) EXPECT_LT(tiles()["computed"], most * before["computed"].get<double>());
   }

@@ -155,6 +155,8 @@ TEST_F(Refusals, settings_that_contradict_each_other_name_what_mends_them) {
       {"--tolerance 0.1 --resolution half", {"--tolerance", "--resolution full"}},
       {"--aov ao,error", {"--aov error", "--tolerance"}},
       {"--search exact --set debug=tiles", {"--set debug=tiles", "--search steps"}},
+      {"--search quick --set debug=tiles", {"--set debug=tiles", "a quick search", "--search steps"}},
+      {"--search quick --set debug=completed", {"--set debug=completed", "a quick search", "--search steps"}},
       {"--falloff linear --set falloff-start=0.5 --set falloff-end=0.4",
        {"--set falloff-end=0.4", "--set falloff-start=0.5"}},
       {"--set stride=4 --denoise none", {"--set stride", "--denoise bilateral", "that is none"}},

@@ -41,9 +41,10 @@ TEST_F(SameBits, of_threads_chunks_and_orders) {
   write_hidden(kFrames, kWallWindow);
   const std::vector<std::vector<std::string>> ways{
       {"--threads 3 --frames 7-1"}, {"--threads 2 --frames 1-7x2,2-6:2"}, {"--chunk 2/2", "--threads 1 --chunk 1/2"}};
-  for (const std::string& more : std::vector<std::string>{
-           "", "--around 2", "--accumulate 2", "--accumulate 1 --around 1 --preset reference --aov ao,transfer",
-           "--around 1 --estimator bitmask", "--around 1 --search exact --behind " + peel}) {
+  for (const std::string& more :
+       std::vector<std::string>{"", "--preset draft", "--around 2", "--accumulate 2",
+                                "--accumulate 1 --around 1 --preset reference --aov ao,transfer",
+                                "--around 1 --estimator bitmask", "--around 1 --search exact --behind " + peel}) {
     SCOPED_TRACE(more);
     remove_outputs();
     done(joined(typed(more), {"--threads", "1"}));
@@ -71,6 +72,7 @@ TEST_F(SameBits, of_a_region_and_the_whole_at_less_cost) {
   for (const auto& [frame, most, more] : std::vector<std::tuple<int, double, std::string>>{
            {kOverscanFrame, 0.36, "--radius 0.05 --denoise none"},
            {kOverscanFrame, 0.88, "--radius 0.05 --denoise bilateral"},
+           {kOverscanFrame, 0.9, near + "--preset draft"},
            {kOverscanFrame, 1, near + "--resolution half"},
            {kOverscanFrame, 0.48, "--radius 0.05 --set stride=4 --set density=uniform"},
            {kOverscanFrame, 1, near + "--set stride=1"},

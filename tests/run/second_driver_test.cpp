@@ -37,12 +37,13 @@ class SecondDriver : public WalkedShot {
   }
   ~SecondDriver() override { ::unsetenv("VK_ADD_DRIVER_FILES"); }
 
-  /// Whether it makes the kernel of the presets in time; another process tries it, since no driver can be stopped.
+  /// Whether it makes the kernels of the search by samples in time; another process tries it, since no driver can be
+  /// stopped.
   static bool compiles_in_time() {
     static const bool compiles = [] {
       const TemporaryFolder out;
       const std::string frame = ALCOVE_SOURCE_DIR "/examples/interior.";
-      const Options options = typed("run --radius 0.35 --roi 0,0,8,8 --device swiftshader --preset draft --camera");
+      const Options options = typed("run --radius 0.35 --roi 0,0,8,8 --device swiftshader --preset standard --camera");
       const Finished finished =
           run_program(joined(options, {frame + "camera.json", frame + "gbuffer.exr", "-o", out / "ao.exr"}),
                       {.seconds = kPatience});

@@ -93,7 +93,7 @@ class Tiles : public CommandLine {
 
 TEST_F(Tiles, give_the_bits_of_the_whole) {
   for (const std::string& more : std::vector<std::string>{
-           "", "--aov ao,normal,depth,specular-occlusion --composite " + composite,
+           "", "--aov ao,normal,depth,specular-occlusion --composite " + composite, "--preset draft",
            "--estimator bitmask --slices 2 --steps 20", "--estimator hbao --denoise box",
            "--estimator crytek --denoise none", "--resolution half", "--resolution quarter --set denoise-radius=5",
            "--set stride=4", "--set stride=8 --set density=uniform", "--set stride=1",

@@ -106,7 +106,8 @@ std::vector<double> radii_of(const EstimatorSettings& settings) {
 }
 
 bool searches_exactly(const EstimatorSettings& settings) {
-  return settings.estimator == Estimator::gtao && (settings.search != SliceSearch::steps || settings.tolerance > 0);
+  const bool is_exact = settings.search == SliceSearch::exact || settings.search == SliceSearch::every_pixel;
+  return settings.estimator == Estimator::gtao && (is_exact || settings.tolerance > 0);
 }
 
 bool searches_slices(const EstimatorSettings& settings) {

@@ -8,6 +8,7 @@
 
 #include "core/chain/base/planes.h"
 #include "core/chain/estimate/sites.h"
+#include "core/chain/quick/quick.h"
 #include "kernels/estimate/exact.h"
 #include "kernels/filters/filters.h"
 
@@ -134,7 +135,8 @@ Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& e
 
 int filter_reach_of(const EstimatorSettings& settings) {
   const int spread = spacing_of(settings) > 1 ? kSpreadReach : 0;
-  const int denoised = std::max(denoiser_of(settings).reach(), spread);
+  const int quick = may_search_quickly(settings) ? kQuickReach : 0;
+  const int denoised = std::max({denoiser_of(settings).reach(), spread, quick});
   const int refined = settings.tolerance > 0 ? kRefineReach : 0;
   return int(settings.resolution) * (denoised + refined + (settings.resolution == Resolution::full ? 0 : 2));
 }

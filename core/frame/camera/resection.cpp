@@ -347,8 +347,51 @@ double focal_error(const Pinhole& camera, std::span<const SeenPoint> points) {
   return std::max(median_distance(camera, points), kLittle) * std::sqrt(variance) / camera.fx;
 }
 
+/// The map from the world to view space, in scene units.
+struct CameraPlace {
+  Matrix3 view_from_world{};
+  Vector3 offset{};
+};
+
+CameraPlace placement_of(const Pinhole& solved, const Normalized& from) {
+  CameraPlace placed;
+  for (std::size_t row = 0; row < 3; row++) {
+    const double sign = row == 0 ? 1 : -1;  // up, and backwards
+    placed.view_from_world[row] = scaled(solved.axes[row], sign);
+    placed.offset[row] = sign * (from.size * solved.offset[row] - dot(solved.axes[row], from.middle));
+  }
+  return placed;
+}
+
+/// Whether the camera stands at the origin, turned or moved by very little, in radians and in what the scene measures.
+bool is_at_origin(const CameraPlace& placed, bool orthographic, double size) {
+  constexpr double kLittle = 1e-3;
+  const double ahead = placed.view_from_world[2][2] < 0 ? -1 : 1;
+  double apart = 0;
+  for (std::size_t row = 0; row < 3; row++) {
+    for (std::size_t column = 0; column < 3; column++)
+      apart = std::max(apart, std::abs(placed.view_from_world[row][column] - (row != column ? 0
+                                                                              : row == 2    ? ahead
+                                                                                            : 1)));
+    if (row < 2 || !orthographic) apart = std::max(apart, std::abs(placed.offset[row]) / size);
+  }
+  return apart < kLittle;
+}
+
+/// The nearest and the farthest of the points that fit, along the axis, from the world's origin.
+std::pair<double, double> extent_of(const Pinhole& solved, const Normalized& from, const Vector3& back) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const auto& seen : from.points) {
+    if (!is_near(solved, seen, kSeenWithin)) continue;
+    const double z = -(dot(back, seen.position) * from.size + dot(back, from.middle));
+    least = std::min(least, z);
+    most = std::max(most, z);
+  }
+  return {least, most};
+}
+
 /// The solved camera in scene units, as Camera has it.
-Resection result_of(Pinhole solved, const Normalized& from, const Window& display) {
+Resection result_of(const Pinhole& solved, const Normalized& from, const Window& display) {
   Resection result;
   result.within = share_within(solved, from.points);
   result.median = median_distance(solved, from.points);
@@ -362,41 +405,17 @@ Resection result_of(Pinhole solved, const Normalized& from, const Window& displa
   camera.fy = solved.fy * per_unit;
   camera.cx = solved.cx;
   camera.cy = solved.cy;
-  Matrix3 view_from_world{};
-  Vector3 offset{};
-  for (std::size_t row = 0; row < 3; row++) {
-    const double sign = row == 0 ? 1 : -1;  // up, and backwards
-    view_from_world[row] = scaled(solved.axes[row], sign);
-    offset[row] = sign * (from.size * solved.offset[row] - dot(solved.axes[row], from.middle));
-  }
-  // Turned or moved by so little, in radians and in what the scene measures, it stands at the origin.
-  constexpr double kLittle = 1e-3;
-  const double ahead = view_from_world[2][2] < 0 ? -1 : 1;
-  double apart = 0;
-  for (std::size_t row = 0; row < 3; row++) {
-    for (std::size_t column = 0; column < 3; column++)
-      apart = std::max(apart, std::abs(view_from_world[row][column] - (row != column ? 0 : row == 2 ? ahead : 1)));
-    if (row < 2 || !solved.orthographic) apart = std::max(apart, std::abs(offset[row]) / from.size);
-  }
-  const auto view_z = [&](const SeenPoint& seen) {
-    return dot(view_from_world[2], seen.position) * from.size + dot(view_from_world[2], from.middle);
-  };
-  const auto [nearest, farthest] = [&] {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const auto& seen : from.points)
-      if (is_near(solved, seen, kSeenWithin))
-        least = std::min(least, -view_z(seen)), most = std::max(most, -view_z(seen));
-    return std::pair(least, most);
-  }();
-  if (apart < kLittle && (!solved.orthographic || nearest > 0)) {
-    camera.left_handed = ahead < 0;
+  CameraPlace placed = placement_of(solved, from);
+  const auto [nearest, farthest] = extent_of(solved, from, placed.view_from_world[2]);
+  if (is_at_origin(placed, solved.orthographic, from.size) && (!solved.orthographic || nearest > 0)) {
+    camera.left_handed = placed.view_from_world[2][2] < 0;
     return result;
   }
   // An orthographic view may be anywhere before what it sees.
-  if (solved.orthographic) offset[2] = nearest - 2 * (farthest - nearest) - from.size;
-  camera.view_from_world = view_from_world;
-  camera.view_from_world_offset = offset;
-  camera.left_handed = determinant(view_from_world) < 0;
+  if (solved.orthographic) placed.offset[2] = nearest - 2 * (farthest - nearest) - from.size;
+  camera.view_from_world = placed.view_from_world;
+  camera.view_from_world_offset = placed.offset;
+  camera.left_handed = determinant(placed.view_from_world) < 0;
   return result;
 }
 

@@ -176,13 +176,51 @@ int deep_part(const FrameSource& source) { return source.channels.deep->elements
 
 double percent(std::size_t part, std::size_t whole) { return 100.0 * double(part) / double(whole); }
 
+/// The first surface at a pixel.
+struct FirstSurface {
+  double z, ray;
+  double separation;  // of surfaces that are two
+
+  bool is_one(double a, double b) const { return std::abs(a - b) <= separation; }
+};
+
+/// Counts a surface of a plane.
+void add_surface(BehindCounts& plane, double z, bool along_ray, const FirstSurface& first) {
+  plane.before += z < first.z - first.separation;
+  plane.same += first.is_one(z, first.z);
+  plane.parts.push_back(float(z / first.z));
+  if (first.ray < kOblique) return;
+  const double other = along_ray ? z * first.ray : z / first.ray;
+  plane.oblique++;
+  plane.as_read += std::abs(z - first.z) < kEqual * first.z;
+  plane.otherwise += std::abs(other - first.z) < kEqual * first.z;
+}
+
+/// Counts the planes' depths at a pixel.
+void count(std::vector<BehindCounts>& planes, const Reading& reading, std::span<const double> depths,
+           std::span<const DepthMap> maps, const FirstSurface& first) {
+  for (std::size_t p = 0; p < depths.size(); p++) {
+    const BehindKind kind = reading.behind[p].kind;
+    if (!std::isfinite(depths[p])) continue;
+    planes[p].surfaces++;
+    if (kind == BehindKind::thickness) {
+      planes[p].as_deep += depths[p] >= first.z - first.separation;
+      continue;
+    }
+    bool is_known = first.is_one(depths[p], first.z);
+    for (std::size_t q = 0; q < p; q++)
+      is_known = is_known || (reading.behind[q].kind == kind && first.is_one(depths[p], depths[q]));
+    planes[p].known += is_known;
+    add_surface(planes[p], depths[p], maps[p].along_ray, first);
+  }
+}
+
 }  // namespace
 
 void BehindSample::add(const Reading& reading, std::span<const float> depth, std::span<const float> behind,
                        const Window& window, const Window& whole) {
   planes_.resize(reading.behind.size());
   if (planes_.empty()) return;
-  const std::size_t pixels = window.pixels();
   taken_.resize(whole.pixels() / sampling_step(whole, kSampled) + 1);
   const View view = view_of(reading.camera, window, reading.display);
   const DepthMap own = depth_map_of(reading);
@@ -192,35 +230,16 @@ void BehindSample::add(const Reading& reading, std::span<const float> depth, std
   for_each_sampled(view, depth, window, whole, kSampled, [&](const SampledPixel& pixel) {
     if (taken_[pixel.number]) return;
     taken_[pixel.number] = true;
-    const double first = planar_depth(own, pixel.values, pixel.ray);
-    const double width = std::abs(view.tangent_per_pixel.x) * (view.orthographic ? 1 : first);
-    const double separation = kSameSurface * precision.at_depth(first) + width;
-    for (std::size_t p = 0; p < planes_.size(); p++) {
-      Plane& plane = planes_[p];
-      const double raw = behind[pixel.at + p * pixels];
-      if (raw < 0) plane.negative++;
-      const double z = planar_depth(maps[p], {raw, 0, 0}, pixel.ray);
-      if (!std::isfinite(first) || !std::isfinite(z)) continue;
-      plane.surfaces++;
-      if (reading.behind[p].kind == BehindKind::thickness) {
-        plane.as_deep += z >= first - separation ? 1 : 0;
-        continue;
-      }
-      const auto is_same = [&](double other) { return std::abs(z - other) <= separation; };
-      plane.before += z < first - separation ? 1 : 0;
-      plane.same += is_same(first) ? 1 : 0;
-      bool is_known = is_same(first);
-      for (std::size_t q = 0; q < p && !is_known; q++)
-        is_known = reading.behind[q].kind == reading.behind[p].kind &&
-                   is_same(planar_depth(maps[q], {behind[pixel.at + q * pixels], 0, 0}, pixel.ray));
-      plane.known += is_known ? 1 : 0;
-      plane.parts.push_back(float(z / first));
-      if (pixel.ray < kOblique) continue;
-      const double other = maps[p].along_ray ? z * pixel.ray : z / pixel.ray;
-      plane.oblique++;
-      plane.as_read += std::abs(z - first) < kEqual * first ? 1 : 0;
-      plane.otherwise += std::abs(other - first) < kEqual * first ? 1 : 0;
+    const double z = planar_depth(own, pixel.values, pixel.ray);
+    const double width = std::abs(view.tangent_per_pixel.x) * (view.orthographic ? 1 : z);
+    const FirstSurface first{z, pixel.ray, kSameSurface * precision.at_depth(z) + width};
+    std::vector<double> depths;
+    for (std::size_t p = 0; p < maps.size(); p++) {
+      const double raw = behind[pixel.at + p * window.pixels()];
+      planes_[p].negative += raw < 0;
+      depths.push_back(planar_depth(maps[p], {raw, 0, 0}, pixel.ray));
     }
+    if (std::isfinite(z)) count(planes_, reading, depths, maps, first);
   });
 }
 
@@ -240,42 +259,44 @@ Notes BehindSample::notes(const FrameSource& source) const {
   return notes;
 }
 
-Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) const {
-  const Plane& plane = planes_[number];
-  const BehindPlane& said = source.reading.behind[number];
-  const std::string name = name_of(source, number);
-  const auto pixels = std::size_t(std::ranges::count(taken_, true));
-  if (said.kind == BehindKind::thickness && plane.negative > 0)
-    fail(ErrorKind::input,
-         "{} is below 0 on {:.2g} % of the pixels, and a thickness is the extent of a solid behind its front: name "
-         "another channel with --set behind-channel, or give the right --behind-kind",
-         name, percent(plane.negative, pixels));
-  if (plane.surfaces == 0)
-    return {{NoteCode::empty_layer, fmt::format("{} shows no surface where the depth has one (--behind)", name)}};
-  if (plane.surfaces < kLeastSurfaces) return {};
-  if (said.kind == BehindKind::thickness) {
-    if (double(plane.as_deep) < kAsDeep * double(plane.surfaces)) return {};
-    return {{NoteCode::said_otherwise,
-             fmt::format("{} is no less than the depth on {:.0f} % of the surfaces, and as a thickness it is added to "
-                         "that: if it is the depth of back faces, give --behind-kind backs",
-                         name, percent(plane.as_deep, plane.surfaces))}};
-  }
+// What the numbers of a plane say.
 
-  const bool along_ray = behind_map_of(source.reading, said).along_ray;
+namespace {
+
+void refuse_negative(const BehindCounts& plane, const std::string& name, std::size_t pixels) {
+  if (plane.negative == 0) return;
+  fail(ErrorKind::input,
+       "{} is below 0 on {:.2g} % of the pixels, and a thickness is the extent of a solid behind its front: name "
+       "another channel with --set behind-channel, or give the right --behind-kind",
+       name, percent(plane.negative, pixels));
+}
+
+Notes thickness_notes(const BehindCounts& plane, const std::string& name) {
+  if (double(plane.as_deep) < kAsDeep * double(plane.surfaces)) return {};
+  return {{NoteCode::said_otherwise,
+           fmt::format("{} is no less than the depth on {:.0f} % of the surfaces, and as a thickness it is added to "
+                       "that: if it is the depth of back faces, give --behind-kind backs",
+                       name, percent(plane.as_deep, plane.surfaces))}};
+}
+
+/// Fails where a plane is not the depth of the same frame and camera, or is read as the other kind.
+void refuse_other_depth(const BehindCounts& plane, const std::string& name, bool along_ray, const std::string& depth) {
   if (double(plane.otherwise) > kLeastOtherwise * double(plane.oblique) &&
       plane.otherwise > kFarMoreOtherwise * plane.as_read)
     fail(ErrorKind::input,
          "{} is the frame's own depth on {:.0f} % of the pixels if it is {}, and is read as {} like the depth of {}: "
          "write both alike, or name another channel with --set behind-channel; --depth-kind says how both are read",
          name, percent(plane.otherwise, plane.oblique), along_ray ? "planar" : "along the ray",
-         along_ray ? "along the ray" : "planar", source.depth_path());
-  if (double(plane.before) >= kRefused * double(plane.surfaces))
-    fail(
-        ErrorKind::input,
-        "{} lies before the first surface on {:.0f} % of the pixels, at {:.3g} times its depth: it is of another frame "
-        "or camera than the depth of {}, or has another scale or kind; give another file with --behind, name another "
-        "channel with --set behind-channel, or say with --depth-kind and --depth-scale how both are read",
-        name, percent(plane.before, plane.surfaces), median_of(plane.parts), source.depth_path());
+         along_ray ? "along the ray" : "planar", depth);
+  if (double(plane.before) < kRefused * double(plane.surfaces)) return;
+  fail(ErrorKind::input,
+       "{} lies before the first surface on {:.0f} % of the pixels, at {:.3g} times its depth: it is of another frame "
+       "or camera than the depth of {}, or has another scale or kind; give another file with --behind, name another "
+       "channel with --set behind-channel, or say with --depth-kind and --depth-scale how both are read",
+       name, percent(plane.before, plane.surfaces), median_of(plane.parts), depth);
+}
+
+Notes surface_notes(const BehindCounts& plane, const std::string& name) {
   Notes notes;
   if (double(plane.before) > kNoted * double(plane.surfaces))
     notes.push_back(
@@ -294,6 +315,22 @@ Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) cons
                      "channel with --set behind-channel, give another file, or leave it out (--behind)",
                      name)});
   return notes;
+}
+
+}  // namespace
+
+Notes BehindSample::notes_of(const FrameSource& source, std::size_t number) const {
+  const BehindCounts& plane = planes_[number];
+  const BehindPlane& said = source.reading.behind[number];
+  const std::string name = name_of(source, number);
+  const bool is_thickness = said.kind == BehindKind::thickness;
+  if (is_thickness) refuse_negative(plane, name, std::size_t(std::ranges::count(taken_, true)));
+  if (plane.surfaces == 0)
+    return {{NoteCode::empty_layer, fmt::format("{} shows no surface where the depth has one (--behind)", name)}};
+  if (plane.surfaces < kLeastSurfaces) return {};
+  if (is_thickness) return thickness_notes(plane, name);
+  refuse_other_depth(plane, name, behind_map_of(source.reading, said).along_ray, source.depth_path());
+  return surface_notes(plane, name);
 }
 
 // Deep samples.
@@ -400,6 +437,45 @@ struct DeepReading {
   double scale;
   std::size_t same = 0;  // pixels whose first surface is the depth's
 };
+
+/// The first surfaces of samples against those of the depth, at some rows.
+struct FirstSurfaces {
+  std::size_t found = 0, compared = 0;  // pixels with a sample that is a surface, and where the depth has one, too
+  std::vector<DeepReading> readings;
+};
+
+FirstSurfaces compare_first(FrameSource& source, const RawPart& raw) {
+  FirstSurfaces first;
+  for (const double scale : {source.reading.depth_scale, 1.0})
+    for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) first.readings.push_back({kind, scale});
+  const Window& whole = source.reading.data;
+  const View view = view_of(source.reading, raw.window);
+  const DepthMap map = depth_map_of(source.reading);
+  const double tolerance = 2 * std::abs(double(view.tangent_per_pixel.x)) + 2 * kHalfPrecision;
+  const auto width = std::size_t(raw.window.width);
+  std::vector<float> row(std::size_t(whole.width));
+  const ExrRead read{deep_part(source), deep_channel(0, false), row.data()};
+  const int step = std::max(1, raw.window.height / kEvidenceRows);
+  for (int y = step / 2; y < raw.window.height; y += step) {
+    deep_file(source).read(std::span(&read, 1), raw.window.y + y - whole.y, 1);
+    for (std::size_t x = 0; x < width; x++) {
+      const double ray = ray_length(view, int(x), y);
+      Vector3 values{};
+      for (std::size_t axis = 0; axis < source.channels[RawPlane::depth].size(); axis++)
+        values[axis] = raw.depth[axis * raw.window.pixels() + std::size_t(y) * width + x];
+      const double z = planar_depth(map, values, ray);
+      const double sample = row[x + std::size_t(raw.window.x - whole.x)];
+      first.found += sample < double(kNoDeepSurface);
+      if (!std::isfinite(z) || sample >= double(kNoDeepSurface)) continue;
+      first.compared++;
+      for (auto& reading : first.readings) {
+        const double planar = sample * reading.scale / (reading.kind == DepthKind::ray ? ray : 1);
+        reading.same += std::abs(planar / z - 1) <= tolerance;
+      }
+    }
+  }
+  return first;
+}
 
 }  // namespace
 
@@ -511,49 +587,20 @@ void settle_deep(FrameSource& source, const RawPart& raw) {
   read_deep_like_meaning(source);
   const ChannelRef& own = source.channels[RawPlane::depth][0];
   if (own.file == source.channels.deep->elements[0].file && source.part_of(own).deep) return;
-  std::vector<DeepReading> readings;
-  for (const double scale : {source.reading.depth_scale, 1.0})
-    for (const DepthKind kind : {DepthKind::planar, DepthKind::ray}) readings.push_back({kind, scale});
-  ExrFile& file = deep_file(source);
-  const Window& whole = source.reading.data;
-  const View view = view_of(source.reading, raw.window);
-  const DepthMap map = depth_map_of(source.reading);
-  const double tolerance = 2 * std::abs(double(view.tangent_per_pixel.x)) + 2 * kHalfPrecision;
-  const auto width = std::size_t(raw.window.width);
-  std::vector<float> first(std::size_t(whole.width));
-  const ExrRead read{deep_part(source), deep_channel(0, false), first.data()};
-  std::size_t compared = 0, found = 0;
-  const int step = std::max(1, raw.window.height / kEvidenceRows);
-  for (int y = step / 2; y < raw.window.height; y += step) {
-    file.read(std::span(&read, 1), raw.window.y + y - whole.y, 1);
-    for (std::size_t x = 0; x < width; x++) {
-      const double ray = ray_length(view, int(x), y);
-      std::array<double, 3> values{};
-      for (std::size_t axis = 0; axis < source.channels[RawPlane::depth].size(); axis++)
-        values[axis] = raw.depth[axis * raw.window.pixels() + std::size_t(y) * width + x];
-      const double z = planar_depth(map, values, ray);
-      const double sample = first[x + std::size_t(raw.window.x - whole.x)];
-      found += sample < double(kNoDeepSurface);
-      if (!std::isfinite(z) || sample >= double(kNoDeepSurface)) continue;
-      compared++;
-      for (auto& reading : readings) {
-        const double planar = sample * reading.scale / (reading.kind == DepthKind::ray ? ray : 1);
-        reading.same += std::abs(planar / z - 1) <= tolerance;
-      }
-    }
-  }
-  if (found == 0)
+  const FirstSurfaces first = compare_first(source, raw);
+  const std::string& path = deep_file(source).path();
+  if (first.found == 0)
     source.notes.push_back(
-        {NoteCode::empty_layer, fmt::format("{}: no deep sample is a surface by --set deep-opacity", file.path())});
-  if (compared < kLeastPixels) return;
-  const auto best = std::ranges::max_element(readings, {}, &DeepReading::same);
-  if (double(best->same) < kLeastSame * double(compared))
+        {NoteCode::empty_layer, fmt::format("{}: no deep sample is a surface by --set deep-opacity", path)});
+  if (first.compared < kLeastPixels) return;
+  const auto best = std::ranges::max_element(first.readings, {}, &DeepReading::same);
+  if (double(best->same) < kLeastSame * double(first.compared))
     fail(ErrorKind::input,
          "{}: the first surfaces of its deep samples are the depth of {} on {:.2g} % of the pixels only, both as "
          "planar depth and along the ray: give --deep the samples of the same frame and camera, of all its elements, "
          "and flat depth "
          "of others to --behind; --depth-kind and --depth-scale say how the depth is read",
-         file.path(), source.depth_path(), 100.0 * double(best->same) / double(compared));
+         path, source.depth_path(), percent(best->same, first.compared));
   const bool is_own = best->kind == source.reading.depth_kind && best->scale == source.reading.depth_scale;
   source.reading.deep_kind = is_own ? DepthKind::automatic : best->kind;
   source.reading.deep_scale = is_own ? 1 : best->scale;

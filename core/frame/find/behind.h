@@ -55,6 +55,20 @@ void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings
 /// are none.
 std::string hidden_sources_text(const FrameSource& source);
 
+/// How many pixels of a plane are what, beside the first surface.
+struct BehindCounts {
+  std::size_t surfaces = 0;   // with a surface in the plane and in the frame
+  std::size_t before = 0;     // surfaces before the first one
+  std::size_t same = 0;       // surfaces that are the first one
+  std::size_t known = 0;      // surfaces that are the first one, or that an earlier plane has
+  std::size_t as_deep = 0;    // of a thickness: no less than the depth
+  std::size_t negative = 0;   // values below 0
+  std::size_t oblique = 0;    // surfaces on rays that are clearly longer than their depth
+  std::size_t as_read = 0;    // oblique ones with the depth of the first surface
+  std::size_t otherwise = 0;  // oblique ones that had it if the plane were of the other kind, planar or along the ray
+  std::vector<float> parts;   // depth of the surfaces as parts of the first one's
+};
+
 /// Compares planes behind the first surface with it, over a part of a frame's pixels.
 class BehindSample {
  public:
@@ -68,23 +82,10 @@ class BehindSample {
   Notes notes(const FrameSource& source) const;
 
  private:
-  /// Numbers of pixels.
-  struct Plane {
-    std::size_t surfaces = 0;   // with a surface in the plane and in the frame
-    std::size_t before = 0;     // surfaces before the first one
-    std::size_t same = 0;       // surfaces that are the first one
-    std::size_t known = 0;      // surfaces that are the first one, or that an earlier plane has
-    std::size_t as_deep = 0;    // of a thickness: no less than the depth
-    std::size_t negative = 0;   // values below 0
-    std::size_t oblique = 0;    // surfaces on rays that are clearly longer than their depth
-    std::size_t as_read = 0;    // oblique ones with the depth of the first surface
-    std::size_t otherwise = 0;  // oblique ones that had it if the plane were of the other kind, planar or along the ray
-    std::vector<float> parts;   // depth of the surfaces as parts of the first one's
-  };
   Notes notes_of(const FrameSource& source, std::size_t plane) const;
 
   std::vector<bool> taken_;  // pixels of the sample
-  std::vector<Plane> planes_;
+  std::vector<BehindCounts> planes_;
 };
 
 }  // namespace alcove

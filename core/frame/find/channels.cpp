@@ -270,9 +270,11 @@ const AovNames kObjectNames{
 
 namespace {
 
-/// Gives the name without the layer; nothing if it lies elsewhere. Without a layer it gives the name.
+/// Gives the name without the layer; nothing if it lies elsewhere. Without a layer it gives the name. A channel of the
+/// layer's own name lies in it.
 std::optional<std::string> within_layer(const std::string& name, const std::string& layer) {
   if (layer.empty()) return lower_case(name);
+  if (same_name(name, layer)) return lower_case(name.substr(name.rfind('.') + 1));
   if (!lower_case(name).starts_with(lower_case(layer) + ".")) return std::nullopt;
   return lower_case(name).substr(layer.size() + 1);
 }
@@ -563,7 +565,8 @@ std::size_t ChannelSearch::open(const std::string& path, const char* option) {
 
 std::vector<ChannelRef> ChannelSearch::find(std::size_t file, const AovNames& names, const std::string& chosen,
                                             bool own_file) const {
-  return chosen.empty() ? find_usual(files_[file], channels_[file], names, own_file)
+  const bool is_all_of_layer = !settings_.layer.empty() && channels_[file].size() == 1;
+  return chosen.empty() ? find_usual(files_[file], channels_[file], names, own_file || is_all_of_layer)
                         : find_chosen(files_[file], channels_[file], names, chosen, where(file));
 }
 

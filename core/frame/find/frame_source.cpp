@@ -380,10 +380,9 @@ std::optional<std::variant<Resection, NoResection>> camera_by_positions(FrameSou
   const ExrFile& file = source.file_of(source.channels.positions.front());
   const auto points = points_of(source, settings.sky, kManyBands);
   auto found = resection_of(points, file.display());
-  if (std::holds_alternative<NoResection>(found))
-    if (const std::string panorama = panorama_of(points, file.display()); !panorama.empty())
-      refuse_panorama(file.path(), panorama + " by its positions");
-  return found;
+  const std::string why = fault_of_positions(points, file, found);
+  if (why.empty()) return found;
+  return NoResection{why};
 }
 
 /// The positions of a frame that has a camera. Where two layers hold some, none of them is needed.
@@ -396,46 +395,47 @@ std::vector<ChannelRef> positions_beside(const ChannelSearch& search, const Fram
   }
 }
 
+/// Takes the camera that the positions tell. Returns false where there are none.
+bool take_camera_of_positions(FrameSource& source, const ChannelSearch& search, const InputSettings& settings) {
+  source.channels.positions = find_positions(search, source, settings);
+  const auto found = camera_by_positions(source, settings);
+  if (!found) return false;
+  if (const auto* none = std::get_if<NoResection>(&*found))
+    throw NoCamera(source.depth_path(), "its positions tell none, since " + none->why);
+  source.reading.camera = std::get<Resection>(*found).camera;
+  const bool looks_around = settings.around > 0 || settings.around_all;
+  if (source.reading.camera.orthographic && looks_around && source.channels[RawPlane::depth].size() == 1)
+    throw NoCamera(source.depth_path(),
+                   "its positions do not tell how far away an orthographic camera stands, and --around "
+                   "needs that");
+  source.camera_from = kByPositions;
+  note_pixel_aspect(source, kByPositions);
+  return true;
+}
+
 /// The settings' camera, or else the header's, or else that of the positions. Options that give no more than a
 /// projection leave the camera where the header says that it stands.
 void find_camera(FrameSource& source, const ChannelSearch& search, const InputSettings& settings, int frame) {
   const ChannelRef& depth = source.channels[RawPlane::depth].front();
   const ExrFile& file = source.file_of(depth);
+  Reading& reading = source.reading;
   const auto attributes = file.attribute_texts(depth.part);
   const std::string layer = source.layer_of(depth);
   require_no_panorama(attributes, file.path());
-  if (!names_a_camera(settings))
-    if (auto found = header_camera(attributes, source.reading.display, source.reading.data, source.reading.pixel_aspect,
-                                   layer)) {
-      source.reading.camera = found->camera;
+  if (!names_a_camera(settings)) {
+    if (auto found = header_camera(attributes, reading.display, reading.data, reading.pixel_aspect, layer)) {
+      reading.camera = found->camera;
       source.camera_from = "the header's " + found->from;
       source.channels.positions = positions_beside(search, source, settings);
-      note_pixel_aspect(source, source.camera_from);
-      return;
+      return note_pixel_aspect(source, source.camera_from);
     }
-  if (!names_a_camera(settings)) {
-    source.channels.positions = find_positions(search, source, settings);
-    if (const auto found = camera_by_positions(source, settings)) {
-      if (const auto* none = std::get_if<NoResection>(&*found))
-        throw NoCamera(file.path(), "its positions tell none, since " + none->why);
-      source.reading.camera = std::get<Resection>(*found).camera;
-      const bool looks_around = settings.around > 0 || settings.around_all;
-      if (source.reading.camera.orthographic && looks_around && source.channels[RawPlane::depth].size() == 1)
-        throw NoCamera(file.path(),
-                       "its positions do not tell how far away an orthographic camera stands, and --around "
-                       "needs that");
-      source.camera_from = kByPositions;
-      return;
-    }
-  }
-  if (!names_a_camera(settings))
+    if (take_camera_of_positions(source, search, settings)) return;
     if (const std::string why = why_no_header_camera(attributes, layer); !why.empty()) throw NoCamera(file.path(), why);
+  }
   source.channels.positions = positions_beside(search, source, settings);
-  source.reading.camera =
-      camera_for(settings, source.reading.display, source.reading.pixel_aspect, frame, source.channels.view);
+  reading.camera = camera_for(settings, reading.display, reading.pixel_aspect, frame, source.channels.view);
   if (settings.camera.empty())
-    return place_by_header(source.reading.camera, attributes, source.reading.display, source.reading.pixel_aspect,
-                           layer);
+    return place_by_header(reading.camera, attributes, reading.display, reading.pixel_aspect, layer);
   note_pixel_aspect(source, settings.camera);
   note_scaled_camera(source, settings.camera);
 }
@@ -490,6 +490,48 @@ void note_unused_input(FrameSource& source, const InputSettings& settings) {
                                                               settings.input)});
 }
 
+/// Notes the view that nobody chose, and a choice that chooses nothing.
+void note_views(FrameSource& source, const InputSettings& settings) {
+  const auto views = views_of(source.file_of(source.channels[RawPlane::depth][0]));
+  if (settings.view.empty() && views.size() > 1)
+    source.notes.push_back({NoteCode::default_view,
+                            fmt::format("of the views {} this is {} (--view)", list_of(views), source.channels.view)});
+  const auto has_views = [](const ExrFile& file) { return !views_of(file).empty(); };
+  if (!settings.view.empty() && std::ranges::none_of(source.files, has_views))
+    source.notes.push_back({NoteCode::said_otherwise,
+                            fmt::format("--view {} chooses nothing: the frame's files name no views", settings.view)});
+}
+
+/// Opens the file of the depth, or of the positions, and finds them in it.
+void find_depth_file(FrameSource& source, ChannelSearch& search, const std::string& path,
+                     const InputSettings& settings) {
+  const bool wants_position = !settings.position.empty() || !settings.position_channels.empty();
+  const bool by_position = wants_position || settings.depth_kind == DepthKind::position;
+  const bool is_deep = std::ranges::count(settings.deep, path) > 0;
+  const std::size_t file = by_position && !settings.position.empty()
+                               ? search.open(settings.position, "--position")
+                               : search.open(path, is_deep ? "--deep" : "--depth");
+  source.channels.view = search.view();
+  find_rules(source, source.files[file], settings);
+  auto& depth = source.channels[RawPlane::depth];
+  if (!by_position) depth = find_deep_depth(source, search, file, settings);
+  if (depth.empty()) depth = find_depth(source, search, file, settings, by_position);
+}
+
+/// Takes the windows of the depth and what the settings say of its pixels.
+void describe_pixels(FrameSource& source, const InputSettings& settings) {
+  const ChannelRef& depth = source.channels[RawPlane::depth][0];
+  const ExrPart& part = source.part_of(depth);
+  Reading& reading = source.reading;
+  reading.data = part.deep ? source.channels.deep->data : part.data;
+  reading.display = source.file_of(depth).display();
+  reading.pixel_aspect = source.file_of(depth).pixel_aspect();
+  reading.supersampling = supersampling_of(source, settings);
+  reading.depth_is_half = source.is_half(depth) || (source.channels.deep && source.channels.deep->depth_is_half);
+  reading.depth_scale = settings.depth_scale;
+  reading.sky = settings.sky;
+}
+
 }  // namespace
 
 std::string FrameSource::layer_of(const ChannelRef& ref) const {
@@ -510,28 +552,8 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   const auto path_of = [&](const std::string& own) -> const std::string& {
     return !own.empty() ? own : settings.input.empty() ? depth_path : settings.input;
   };
-  const auto is_deep_path = [&](const std::string& path) { return std::ranges::count(settings.deep, path) > 0; };
-  const bool wants_position = !settings.position.empty() || !settings.position_channels.empty();
-  const bool by_position = wants_position || settings.depth_kind == DepthKind::position;
-  std::size_t depth_file = by_position && !settings.position.empty()
-                               ? search.open(settings.position, "--position")
-                               : search.open(depth_path, is_deep_path(depth_path) ? "--deep" : "--depth");
-  source.channels.view = search.view();
-  find_rules(source, source.files[depth_file], settings);
-  if (!by_position) source.channels[RawPlane::depth] = find_deep_depth(source, search, depth_file, settings);
-  if (source.channels[RawPlane::depth].empty())
-    source.channels[RawPlane::depth] = find_depth(source, search, depth_file, settings, by_position);
-  depth_file = source.channels[RawPlane::depth][0].file;
-  const ExrPart& depth_part = source.part_of(source.channels[RawPlane::depth][0]);
-  source.reading.data = depth_part.deep ? source.channels.deep->data : depth_part.data;
-  source.reading.display = source.files[depth_file].display();
-  source.reading.pixel_aspect = source.files[depth_file].pixel_aspect();
-  source.reading.supersampling = supersampling_of(source, settings);
-  source.reading.depth_is_half = source.is_half(source.channels[RawPlane::depth][0]) ||
-                                 (source.channels.deep && source.channels.deep->depth_is_half);
-  source.reading.depth_scale = settings.depth_scale;
-  source.reading.sky = settings.sky;
-
+  find_depth_file(source, search, depth_path, settings);
+  describe_pixels(source, settings);
   if (wants_normals(settings)) {
     source.channels[RawPlane::normal] =
         find_normal(source, search, search.open(path_of(settings.normal), "--normal"), settings);
@@ -544,17 +566,8 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
   find_occluders(source, search, settings);
   find_behind(source, search, settings);
   find_deep(source, search, settings);
-
   note_unused_input(source, settings);
-
-  const auto views = views_of(source.files[depth_file]);
-  if (settings.view.empty() && views.size() > 1)
-    source.notes.push_back({NoteCode::default_view,
-                            fmt::format("of the views {} this is {} (--view)", list_of(views), source.channels.view)});
-  const auto has_views = [](const ExrFile& file) { return !views_of(file).empty(); };
-  if (!settings.view.empty() && std::ranges::none_of(source.files, has_views))
-    source.notes.push_back({NoteCode::said_otherwise,
-                            fmt::format("--view {} chooses nothing: the frame's files name no views", settings.view)});
+  note_views(source, settings);
   find_camera(source, search, settings, frame);
   find_meaning(source, settings);
   take_deep(source, settings);

@@ -39,49 +39,53 @@ std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {
   return candidates;
 }
 
+/// The values of a key.
+struct RuleValues {
+  const std::string &name, &key;
+  const std::vector<std::string>& all;
+
+  std::string word() const { return all.empty() ? "" : all[0]; }
+  template <class T>
+  T known(const std::optional<T>& value) const {
+    if (!value) fail(ErrorKind::usage, "presets/input/{}.toml: {} = {} means nothing", name, key, word());
+    return *value;
+  }
+  double distance() const {
+    const auto value = number_of(word());
+    return known(value && *value > 0 ? value : std::nullopt);
+  }
+};
+
+using SetRule = void (*)(InputRules& rules, const RuleValues& values);
+constexpr std::pair<const char*, SetRule> kRules[] = {
+    {"source", [](InputRules&, const RuleValues& v) { v.known(v.word() == v.name ? std::optional(0) : std::nullopt); }},
+    {"detect", [](InputRules& rules, const RuleValues& v) { rules.detect = v.all; }},
+    {"detect-last", [](InputRules& rules, const RuleValues& v) { rules.detect_last = v.all; }},
+    {"depth-channel", [](InputRules& rules, const RuleValues& v) { rules.depth = candidates_of(v.all); }},
+    {"normal-channels", [](InputRules& rules, const RuleValues& v) { rules.normal = candidates_of(v.all); }},
+    {"position-channels", [](InputRules& rules, const RuleValues& v) { rules.position = candidates_of(v.all); }},
+    {"depth-kind", [](InputRules& rules, const RuleValues& v) { rules.depth_kind = v.known(depth_kind_of(v.word())); }},
+    {"near", [](InputRules& rules, const RuleValues& v) { rules.depth_range.near = v.distance(); }},
+    {"far", [](InputRules& rules, const RuleValues& v) { rules.depth_range.far = v.distance(); }},
+    {"reversed-z", [](InputRules& rules, const RuleValues& v) { rules.depth_range.reversed = v.word() == "true"; }},
+    {"normal-space", [](InputRules& rules,
+                        const RuleValues& v) { rules.normal_space = v.known(known_meaning<NormalSpace>(v.word())); }},
+    {"normal-encoding",
+     [](InputRules& rules, const RuleValues& v) {
+       rules.normal_encoding = v.known(known_meaning<NormalEncoding>(v.word()));
+     }},
+    {"normal-averaged", [](InputRules& rules, const RuleValues& v) { rules.normal_averaged = v.word() == "true"; }},
+};
+
 }  // namespace
 
 InputRules parse_input_rules(const std::string& name, const std::string& text) {
   InputRules rules;
   rules.name = name;
   for (const auto& [key, values] : parse_flat_toml(text)) {
-    const std::string word = values.empty() ? "" : values[0];
-    const auto known = [&, &key = key](const auto& value) {
-      if (!value) fail(ErrorKind::usage, "presets/input/{}.toml: {} = {} means nothing", name, key, word);
-      return *value;
-    };
-    const auto distance = [&] {
-      const auto value = number_of(word);
-      return known(value && *value > 0 ? value : std::nullopt);
-    };
-    if (key == "source")
-      known(word == name ? std::optional(0) : std::nullopt);
-    else if (key == "detect")
-      rules.detect = values;
-    else if (key == "detect-last")
-      rules.detect_last = values;
-    else if (key == "depth-channel")
-      rules.depth = candidates_of(values);
-    else if (key == "normal-channels")
-      rules.normal = candidates_of(values);
-    else if (key == "position-channels")
-      rules.position = candidates_of(values);
-    else if (key == "depth-kind")
-      rules.depth_kind = known(depth_kind_of(word));
-    else if (key == "near")
-      rules.depth_range.near = distance();
-    else if (key == "far")
-      rules.depth_range.far = distance();
-    else if (key == "reversed-z")
-      rules.depth_range.reversed = word == "true";
-    else if (key == "normal-space")
-      rules.normal_space = known(known_meaning<NormalSpace>(word));
-    else if (key == "normal-encoding")
-      rules.normal_encoding = known(known_meaning<NormalEncoding>(word));
-    else if (key == "normal-averaged")
-      rules.normal_averaged = word == "true";
-    else
-      fail(ErrorKind::usage, "presets/input/{}.toml: there is no key {}", name, key);
+    const auto* rule = std::ranges::find(kRules, key, [](const auto& each) { return std::string(each.first); });
+    if (rule == std::end(kRules)) fail(ErrorKind::usage, "presets/input/{}.toml: there is no key {}", name, key);
+    rule->second(rules, {name, key, values});
   }
   return rules;
 }

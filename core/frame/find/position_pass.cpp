@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/base/ranks.h"
+#include "core/frame/camera/position_faults.h"
 #include "core/frame/camera/resection.h"
 
 namespace alcove {
@@ -91,6 +92,19 @@ std::vector<ChannelRef> find_positions(const ChannelSearch& search, const FrameS
     return source.part_of(ref).data == source.part_of(found.front()).data;
   };
   return std::ranges::all_of(found, fits) ? found : std::vector<ChannelRef>{};
+}
+
+std::string fault_of_positions(std::span<const SeenPoint> points, const ExrFile& file,
+                               const std::variant<Resection, NoResection>& found) {
+  const Window& display = file.display();
+  if (const auto* camera = std::get_if<Resection>(&found))
+    return why_stretched(points, display, camera, file.pixel_aspect());
+  std::string why = why_cut(points, display);
+  if (!why.empty()) return why;
+  if (const std::string panorama = panorama_of(points, display); !panorama.empty())
+    refuse_panorama(file.path(), panorama + " by its positions");
+  why = why_stretched(points, display, nullptr, file.pixel_aspect());
+  return why.empty() ? why_bent(points, display) : why;
 }
 
 std::vector<SeenPoint> points_of(FrameSource& source, double sky, int bands) {
@@ -209,17 +223,17 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings) {
   const auto found = resection_of(points, source.reading.display);
   const auto* seen = std::get_if<Resection>(&found);
   const std::string& held = file.path();
+  const std::string why = fault_of_positions(points, file, found);
   std::string text;
-  if (!seen) {
-    if (const std::string panorama = panorama_of(points, source.reading.display); !panorama.empty())
-      refuse_panorama(file.path(), panorama + " by its positions");
-    const auto& none = std::get<NoResection>(found);
-    if (none.median <= kNoCamera || !source.camera_from.empty()) return "";
+  if (!seen && (std::get<NoResection>(found).median <= kNoCamera || !source.camera_from.empty())) return "";
+  if (!why.empty()) {
+    text = fmt::format("the positions of {} tell no camera, since {} (--position-channels); {} is taken", held, why,
+                       name_of_lens(source, settings));
+  } else if (!seen) {
     text = fmt::format(
         "no camera fits the positions of {}: by the best of all half of them lie {:.3g} px and more from the pixels "
-        "that "
-        "hold them, so they are of a panorama, or no positions (--position-channels); {} is taken",
-        held, none.median, name_of_lens(source, settings));
+        "that hold them, so they are of a panorama, or no positions (--position-channels); {} is taken",
+        held, std::get<NoResection>(found).median, name_of_lens(source, settings));
   } else {
     const double px = beside(source.reading.camera, seen->camera, points);
     if (px <= limit) return "";
@@ -231,23 +245,97 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings) {
   return text;
 }
 
-std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
-  constexpr double kSame = 0.005;  // of depth that is that of the positions, in whatever unit
-  constexpr double kOther = 4;     // times as far is another kind
-  if (source.channels.positions.empty() || source.channels[RawPlane::depth].size() != 1) return std::nullopt;
+namespace {
+
+constexpr double kSame = 0.005;  // of depth that is that of the positions, in whatever unit
+
+/// Whether the frame has positions beside a depth of its own.
+bool has_positions_beside(const FrameSource& source) {
+  return !source.channels.positions.empty() && source.channels[RawPlane::depth].size() == 1;
+}
+
+/// Calls `take` with the planar depth of each point in front of the camera, with the raw value beside it, and with the
+/// length of its ray.
+template <class Take>
+void for_each_beside(const FrameSource& source, std::span<const SeenPoint> points, const RawPart& raw,
+                     const Take& take) {
   const Window &data = raw.window, &display = source.reading.display;
   const View view = view_of(source.reading, data);
-  std::vector<double> planar, ray, inverse;
-  for (const auto& point : points_of(source, settings.sky, kFewBands)) {
+  for (const auto& point : points) {
     const int x = int(point.x) + display.x - data.x, y = int(point.y) + display.y - data.y;
     if (x < 0 || y < 0 || x >= data.width || y >= data.height) continue;
-    const double value = std::abs(raw.depth[std::size_t(y) * std::size_t(data.width) + std::size_t(x)]);
     const double z = planar_of(point, source.reading.camera);
-    if (!(value > 0 && value < settings.sky && z > 0)) continue;
-    planar.push_back(value / z);
-    ray.push_back(value / (z * ray_length(view, x, y)));
-    inverse.push_back(value * z);
+    if (z > 0)
+      take(z, double(raw.depth[std::size_t(y) * std::size_t(data.width) + std::size_t(x)]), ray_length(view, x, y));
   }
+}
+
+/// The difference of most numbers from another, at the most, relative to it. Half of a picture may be one wall, whose
+/// depth is the same.
+double most_apart(std::span<const double> numbers, double from) {
+  constexpr double kMost = 0.8;
+  std::vector<double> apart;
+  for (const double number : numbers) apart.push_back(std::abs(number / from - 1));
+  return value_at_rank(apart, std::size_t(kMost * double(apart.size() - 1)));
+}
+
+/// Says how planar depths differ from those of positions; "" if they do not.
+std::string difference_of(const std::vector<double>& depths, const std::vector<double>& by_positions) {
+  std::vector<double> ratios, off, offsets, moved;
+  for (std::size_t i = 0; i < depths.size(); i++) {
+    ratios.push_back(depths[i] / by_positions[i]);
+    off.push_back(std::abs(ratios[i] - 1));
+    offsets.push_back(by_positions[i] - depths[i]);
+  }
+  const double ratio = median_of(ratios), offset = median_of(offsets), half = median_of(off);
+  if (half <= 2 * kSame) return "";
+  if (most_apart(ratios, ratio) <= kSame)
+    return fmt::format("it is {:.4g} times theirs, so the units differ: --depth-scale {:.4g} makes them alike", ratio,
+                       1 / ratio);
+  for (std::size_t i = 0; i < depths.size(); i++) moved.push_back((depths[i] + offset) / by_positions[i]);
+  if (most_apart(moved, 1) <= kSame)
+    return fmt::format("it is theirs less {:.4g}, so it does not count from the eye", offset);
+  return fmt::format("half of it is {:.2g} % and more off, so it is of another kind (--depth-kind) or frame",
+                     100 * half);
+}
+
+}  // namespace
+
+void check_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
+  const Camera& camera = source.reading.camera;
+  if (!has_positions_beside(source) || source.open.camera || camera.orthographic) return;
+  const auto points = points_of(source, settings.sky, kFewBands);
+  const double limit = std::max(kLeastBeside, kLeastPart * source.reading.display.width);
+  if (points.empty() || beside(camera, camera, points) > limit) return;
+  const DepthMap map = depth_map_of(source.reading);
+  std::vector<double> depths, by_positions;
+  for_each_beside(source, points, raw, [&](double z, double value, double ray) {
+    const double depth = planar_depth(map, {value, 0, 0}, ray);
+    if (!(depth > 0 && depth < settings.sky)) return;
+    depths.push_back(depth);
+    by_positions.push_back(z);
+  });
+  if (depths.size() < kLeastPoints) return;
+  const std::string why = difference_of(depths, by_positions);
+  if (!why.empty())
+    source.notes.push_back({NoteCode::positions_disagree,
+                            fmt::format("the positions beside the depth disagree with it: {}; --depth-kind position "
+                                        "takes the positions instead",
+                                        why)});
+}
+
+std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw) {
+  constexpr double kOther = 4;  // times as far is another kind
+  if (!has_positions_beside(source)) return std::nullopt;
+  std::vector<double> planar, ray, inverse;
+  for_each_beside(source, points_of(source, settings.sky, kFewBands), raw,
+                  [&](double z, double signed_value, double to) {
+                    const double value = std::abs(signed_value);
+                    if (!(value > 0 && value < settings.sky)) return;
+                    planar.push_back(value / z);
+                    ray.push_back(value / (z * to));
+                    inverse.push_back(value * z);
+                  });
   if (planar.size() < kLeastPoints) return std::nullopt;
   const std::array spreads{std::pair{spread(planar), DepthKind::planar}, std::pair{spread(ray), DepthKind::ray},
                            std::pair{spread(inverse), DepthKind::inverse}};

@@ -26,6 +26,11 @@ inline constexpr int kManyBands = 48, kFewBands = 4;
 /// needs.
 std::vector<SeenPoint> points_of(FrameSource& source, double sky, int bands);
 
+/// Says why points are no positions of the scene by what a camera shows of them: cut, stretched, or seen through a lens
+/// that bends lines; "" if nothing tells. Refuses panoramas.
+std::string fault_of_positions(std::span<const SeenPoint> points, const ExrFile& file,
+                               const std::variant<Resection, NoResection>& found);
+
 /// Compares the camera with the positions that the depth's file may have. Notes a lens that they refute by pixels, and
 /// gives the note's text; "" if they do not. Refuses panoramas.
 std::string settle_camera(FrameSource& source, const InputSettings& settings);
@@ -33,5 +38,9 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings);
 /// Gives the kind by which the depth is that of the positions beside it: planar, ray or inverse. Gives none if there
 /// are no positions, or if more than one kind fits.
 std::optional<DepthKind> kind_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw);
+
+/// Notes depth, as it is read, that is not that of the positions beside it: in another unit, from another plane, or
+/// neither. Says nothing where the camera does not see the positions where they are.
+void check_by_positions(FrameSource& source, const InputSettings& settings, const RawPart& raw);
 
 }  // namespace alcove

@@ -283,34 +283,44 @@ BlockScores scores_by(std::span<const float> raw, const View& view, double sky, 
   return {std::move(scores), std::move(curve)};
 }
 
-}  // namespace
+constexpr std::size_t kAbout = 32;  // neighbours whose differences are looked at
 
-Grain grain_of(std::span<const float> raw, double sky) {
-  constexpr std::size_t kSampled = 1 << 15;  // values
-  constexpr std::size_t kAbout = 32;         // neighbours whose differences are looked at
-  constexpr double kCoarse = 0x1p-14;        // of the value: finer steps do no harm
+/// A value, and the step from it to the next.
+struct Place {
+  double value, step;
+};
+
+/// The values of a sample, in their order.
+std::vector<double> sorted_values(std::span<const float> raw, double sky) {
+  constexpr std::size_t kSampled = 1 << 15;
   std::vector<double> values;
   for (std::size_t i = 0, step = raw.size() / kSampled + 1; i < raw.size(); i += step)
     if (const double v = std::abs(double(raw[i])); v > 0 && v < sky && std::isfinite(v)) values.push_back(v);
-  if (values.empty()) return {};
   std::ranges::sort(values);
+  return values;
+}
+
+/// The step at a part of the way through different values; 0: there is none. `counts` says how frequent each is.
+Place place_at(double part, std::span<const double> values, std::span<const std::size_t> counts) {
+  const std::size_t first = std::size_t(part * double(values.size() - kAbout));
+  const double value = values[first + kAbout / 2], step = common_step(values.subspan(first, kAbout), value);
+  // A plane whose depth changes by as much from row to row has one step too, and each of its values is as frequent.
+  const auto [least, most] = std::ranges::minmax(counts.subspan(first, kAbout));
+  const bool is_ramp = most - least <= 1 && values[first + kAbout - 1] - values[first] < 1.001 * (kAbout - 1) * step;
+  return {value, is_ramp ? 0 : step};
+}
+
+}  // namespace
+
+Grain grain_of(std::span<const float> raw, double sky) {
+  constexpr double kCoarse = 0x1p-14;  // of the value: finer steps do no harm
+  std::vector<double> values = sorted_values(raw, sky);
+  if (values.empty()) return {};
   Grain grain{values[values.size() / 2]};
   const std::vector<std::size_t> counts = counts_of_equal(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
   if (values.size() < 2 * kAbout) return grain;
-  struct Place {
-    double value, step;
-  };
-  const auto place_at = [&](double part) {
-    const std::size_t first = std::size_t(part * double(values.size() - kAbout));
-    const double value = values[first + kAbout / 2],
-                 step = common_step(std::span(values).subspan(first, kAbout), value);
-    // A plane whose depth changes by as much from row to row has one step too, and each of its values is as frequent.
-    const auto [least, most] = std::ranges::minmax(std::span(counts).subspan(first, kAbout));
-    const bool is_ramp = most - least <= 1 && values[first + kAbout - 1] - values[first] < 1.001 * (kAbout - 1) * step;
-    return Place{value, is_ramp ? 0 : step};
-  };
-  const std::array places{place_at(0.1), place_at(0.5), place_at(0.9)};
+  const std::array places{place_at(0.1, values, counts), place_at(0.5, values, counts), place_at(0.9, values, counts)};
   grain.step = places[1].step;
   if (grain.step == 0) return grain;
   grain.median = places[1].value;

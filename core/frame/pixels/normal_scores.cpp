@@ -46,13 +46,11 @@ struct SurfacePlace {
 std::optional<SurfacePlace> surface_at(std::span<const float> raw, const DepthMap& map, const View& view, int x,
                                        int y) {
   constexpr double kSmooth = 0.005;  // bend of 1/z on one surface
-  const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
-  const auto depth = [&](int dx, int dy) {
-    return planar_depth(map, value_at(raw, plane, index_of(view, x + dx, y + dy)), ray_length(view, x + dx, y + dy));
-  };
-  const double left = depth(-1, 0), right = depth(1, 0), up = depth(0, -1), down = depth(0, 1), here = depth(0, 0);
-  if (!(bend(1 / left, 1 / here, 1 / right) < kSmooth) || !(bend(1 / up, 1 / here, 1 / down) < kSmooth))
-    return std::nullopt;
+  const auto depth = [&](int dx, int dy) { return planar_depth_at(map, raw, view, x + dx, y + dy); };
+  const double left = depth(-1, 0), right = depth(1, 0), here = depth(0, 0);
+  if (!(bend(1 / left, 1 / here, 1 / right) < kSmooth)) return std::nullopt;
+  const double up = depth(0, -1), down = depth(0, 1);
+  if (!(bend(1 / up, 1 / here, 1 / down) < kSmooth)) return std::nullopt;
   const Vector3 along_y = difference(position_at(view, x, y + 1, down), position_at(view, x, y - 1, up));
   const Vector3 along_x = difference(position_at(view, x + 1, y, right), position_at(view, x - 1, y, left));
   const Vector3 p = position_at(view, x, y, here);

@@ -24,6 +24,9 @@ inline constexpr double kLeastAgreement = 0.6;
 /// some 5 %. Measured: 12 frames of rendered scenes and games that were read rightly gave 87 % and more; 30 wrongly
 /// turned cameras gave 37 % at most, and 25 % but for one.
 inline constexpr double kRefuted = 0.1;
+/// If a smaller share of the normals agrees with depth, they are not used unless --set allow=normals-disagree says so:
+/// most of them would be wrong.
+inline constexpr double kUsable = 0.5;
 
 /// A way to read normals and how well the frame agrees with it.
 struct NormalScore {
@@ -39,6 +42,10 @@ struct NormalScore {
   /// The share of normals that are right once those of the other side are turned round.
   double explained() const { return agreement + opposite; }
   double turn_degrees() const;
+  /// Whether clearly more normals agree so, and enough of them.
+  bool clearly_beats(const NormalScore& other) const {
+    return agreement >= kLeastAgreement && agreement > kClear * other.agreement;
+  }
 };
 /// Whether one camera, or one way to take the components, fits so much better than another that it is no chance: so
 /// many times as many normals are close to those of depth, so large a share more, and a least share. Of the right

@@ -31,4 +31,10 @@ inline Vector3 value_at(std::span<const float> raw, std::size_t plane, std::size
   return raw.size() == 3 * plane ? Vector3{raw[i], raw[i + plane], raw[i + 2 * plane]} : Vector3{raw[i], 0, 0};
 }
 
+/// The planar depth of a pixel; infinite where it shows no surface.
+inline double planar_depth_at(const DepthMap& map, std::span<const float> raw, const View& view, int x, int y) {
+  const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
+  return planar_depth(map, value_at(raw, plane, index_of(view, x, y)), map.along_ray ? ray_length(view, x, y) : 1);
+}
+
 }  // namespace alcove

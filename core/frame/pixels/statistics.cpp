@@ -118,8 +118,7 @@ std::vector<float> planar_depths(std::span<const float> raw, const DepthMap& map
   std::vector<float> planar;
   planar.reserve(plane / std::size_t(row_step) + std::size_t(view.size.x));
   for (int y = 0; y < view.size.y; y += row_step)
-    for (int x = 0; x < view.size.x; x++)
-      planar.push_back(float(planar_depth(map, value_at(raw, plane, index_of(view, x, y)), ray_length(view, x, y))));
+    for (int x = 0; x < view.size.x; x++) planar.push_back(float(planar_depth_at(map, raw, view, x, y)));
   return planar;
 }
 

@@ -54,12 +54,8 @@ class DepthKindSettlement : private DepthSettlement {
            path_, word_of(best.kind), word_of(second.kind), why, word_of(best.kind), word_of(second.kind));
     reading_.depth_kind = best.kind;
     if (best.kind == DepthKind::inverse && values_.all.least >= 0 && is_fraction()) return settle_device(why);
-    // A plane's distances are affine in the picture without perspective.
-    const bool may_be_orthographic = best.kind == DepthKind::inverse && (settings_.fov || settings_.focal);
-    guess("depth kind", word_of(best.kind),
-          why + (may_be_orthographic
-                     ? "; distances of an orthographic camera would look the same: give --ortho-width for one"
-                     : ""),
+    const bool may_be_orthographic = best.kind == DepthKind::inverse && !reading_.camera.orthographic;
+    guess("depth kind", word_of(best.kind), may_be_orthographic ? fmt::format("{}; {}", why, kOrthographicHint) : why,
           "--depth-kind", true);
   }
 

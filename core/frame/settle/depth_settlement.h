@@ -40,6 +40,11 @@ inline constexpr double kLeastStraight = 0.02;
 inline constexpr double kSurelyStraight = 0.1;
 /// If this part of the pixels is exactly 1, that is a background.
 inline constexpr double kPlateau = 0.001;
+/// What helps where the depth is that of an orthographic camera and another is given. Its planes are affine in the
+/// picture, as those of a perspective camera are in 1/z.
+inline constexpr const char* kOrthographicHint =
+    "distances of an orthographic camera would look the same: for one, give --ortho-width, or a --camera file with "
+    "\"projection\": \"orthographic\"";
 /// A range of 0 to 1 may exceed 1 by so much because it was computed.
 inline constexpr double kRounded = 1e-3;
 /// If a smaller part of the values lies on the other side of 0, or none of them is so far from it as rounding may

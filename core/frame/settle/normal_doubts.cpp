@@ -18,9 +18,6 @@ namespace {
 
 /// From so many on the field of view is not doubted. With half or twice the right one it was 41 % at most.
 constexpr double kSurelyClose = 0.5;
-/// If a smaller share of the normals agrees with depth, they are not used unless --set allow=normals-disagree says so:
-/// most of them would be wrong.
-constexpr double kUsable = 0.5;
 
 class NormalDoubts : private NormalSettlement {
  public:
@@ -90,7 +87,7 @@ class NormalDoubts : private NormalSettlement {
     refuse_turned_camera(chosen, best.close);
     const std::string read =
         fmt::format("{}: its normals, read as {}, are not those of this depth and this camera", path_, text_of(chosen));
-    if (best.agreement >= kLeastAgreement && best.agreement > kClear * chosen.agreement)
+    if (best.clearly_beats(chosen))
       fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
     if (chosen.explained() >= kUsable || has_coarse_depth(reading_)) return;

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/settle/settle.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/option_words.h"
 #include "core/base/text.h"
 #include "core/formats/exr.h"
 #include "core/frame/find/behind.h"
@@ -41,8 +43,17 @@ void note_findings(FrameSource& source, const RawPart& raw, const Evidence& seen
 /// The faults of a frame that cannot be settled, which may be the reason: "; ..." for each.
 std::string reasons_of(const FrameSource& source, const RawPart& raw, const Evidence& seen) {
   std::string text;
+  const bool is_inverse = std::ranges::any_of(seen.guesses, [](const Guess& guess) {
+    return guess.what == "depth kind" && guess.chosen == word_of(DepthKind::inverse);
+  });
+  if (is_inverse && source.program.depth_kind != DepthKind::inverse && !source.reading.camera.orthographic)
+    text = fmt::format("; the depth is taken as 1/z by its flat surfaces, and {}", kOrthographicHint);
+  // Of a range that begins behind most surfaces, the offset of distances from 0 says nothing.
+  const auto below = std::ranges::count_if(raw.depth, [](float d) { return d < 0; });
+  const bool is_mostly_below = 2 * std::size_t(below) > raw.depth.size();
   try {
-    for (const Note& note : detected(findings_of(source, raw, seen, false))) text += "; " + note.text;
+    for (const Note& note : detected(findings_of(source, raw, seen, false)))
+      if (!is_mostly_below || note.code != NoteCode::depth_offset) text += "; " + note.text;
   } catch (const Error&) {  // the depth has no meaning yet
   }
   return text;
@@ -86,6 +97,7 @@ void settle(FrameSource& source, const InputSettings& settings, const RawPart& r
     if (why.empty()) throw;
     fail(error.kind(), "{}{}", error.what(), why);
   }
+  check_by_positions(source, settings, raw);
   add_new(source.suspicious, overflown_depth(source.reading, raw.depth, depth_channel(source)));
   note_findings(source, raw, seen);
   measure_levels(source.reading, raw.depth);
