@@ -5,8 +5,8 @@
 // Out: a word per pixel, see backs.glsl.
 //
 // A dispatch looks along all rows or all columns, both ways. Neighbours that show one surface (solids.glsl) are a
-// chain. Of the chain that comes to a pixel one way its first pixel and the farthest from the eye tell. A chain longer
-// than kLongestChain tells nothing, so that a part of the frame has the words of the whole.
+// chain. Of the chain that comes to a pixel one way some places tell, none farther away than kLongestChain, so that a
+// part of the frame has the words of the whole.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
@@ -26,12 +26,14 @@ buffer Backs { uint backs[]; };
 /// As kRunSlope of slice.glsl.
 const float kChainSlope = 8.0;
 
+/// Places of a chain that tell, evenly from a pixel to the chain's first one, or as far as it tells.
+const int kTelling = 4;
+
 /// A chain up to a pixel.
 struct Chain {
-  vec3 start, farthest;
-  vec3 normal;                              // at its start
-  float start_distance, farthest_distance;  // from the eye
-  int count;
+  int start;                    // its first step
+  int count;                    // pixels
+  vec3 normal;                  // at its start
   bool may_be_round, is_round;  // it begins with a rounded outline
 };
 
@@ -39,7 +41,7 @@ int index_of(int line, int step) {
   return kSteep != 0u ? step * params.view.size.x + line : line * params.view.size.x + step;
 }
 
-float distance_from_eye(View view, Facet f) { return view.orthographic == 0 ? length(f.position) : f.z; }
+float distance_from_eye(View view, vec3 position) { return view.orthographic == 0 ? length(position) : -position.z; }
 
 Facet facet_at(View view, int line, int step, int steps) {
   const bool exists = step >= 0 && step < steps;
@@ -67,36 +69,42 @@ bool are_one(View view, Facet before, Facet a, Facet b, Facet after) {
   return one && max(a.z, b.z) < kSkyDepth;
 }
 
-/// The chain up to a pixel from that up to the one before.
-Chain chain_to(View view, Chain last, bool goes_on, Facet before, Facet here, bool is_first) {
+/// The chain up to a pixel at a step from that up to the one before.
+Chain chain_to(View view, Chain last, bool goes_on, Facet before, Facet here, int step, bool is_first) {
   Chain chain = last;
-  const float e = distance_from_eye(view, here);
   if (!goes_on) {
-    const vec3 eye = toward_eye(view, here.position);
-    const bool grazes = dot(here.normal, eye) < kRoundFacing;
-    chain = Chain(here.position, here.position, here.normal, e, e, 1, !is_first && before.z > here.z && grazes, false);
-    return chain;
+    const bool grazes = dot(here.normal, toward_eye(view, here.position)) < kRoundFacing;
+    return Chain(step, 1, here.normal, !is_first && before.z > here.z && grazes, false);
   }
   chain.count++;
   if (chain.count == 3) chain.is_round = chain.may_be_round && dot(chain.normal, here.normal) < kRoundDot;
-  if (e > chain.farthest_distance) {
-    chain.farthest = here.position;
-    chain.farthest_distance = e;
-  }
   return chain;
 }
 
-/// What a chain tells at its last pixel. Its outline is that of one side.
-Back back_of(View view, Chain chain, Facet here) {
-  const float e = distance_from_eye(view, here), longest = kLongestChain * params.radius;
-  const float size = min(length(here.position - chain.start), longest);
-  const float by_start = min(chain.start_distance - e, -dot(here.normal, chain.start - here.position));
-  const float by_farthest = min(chain.farthest_distance - e, -dot(here.normal, chain.farthest - here.position));
+vec3 position_at(View view, int line, int step) {
+  const vec2 pixel = kSteep != 0u ? vec2(line, step) : vec2(step, line);
+  return position_of(view, pixel + 0.5, depth[index_of(line, step)]);
+}
+
+/// What a chain tells at its last pixel, at a step. Its outline is that of one side.
+Back back_of(View view, Chain chain, Facet here, int line, int step) {
+  const float pixel = abs(kSteep != 0u ? view.tangent_per_pixel.y : view.tangent_per_pixel.x);
+  const float longest = kLongestChain * params.radius, e = distance_from_eye(view, here.position);
+  const int most = int(min(longest / (pixel * (view.orthographic == 0 ? here.z : 1.0)), 1e5));
+  const int away = clamp(chain.start - step, -most, most);
+  float back = 0.0, size = 0.0;
+  int i = 1;
+  do {
+    const vec3 other = position_at(view, line, step + away * i / kTelling);
+    const float farther = distance_from_eye(view, other) - e;
+    back = max(back, min(farther, -dot(here.normal, other - here.position)));
+    size = length(other - here.position);
+  } while (++i <= kTelling);
+  const float start = distance_from_eye(view, position_at(view, line, step + away));
+  const bool is_round = chain.is_round && step + away == chain.start;
   const float per_distance = here.z / e;
-  const float back = max(max(by_start, by_farthest), 0.0) * per_distance;
-  const bool is_long = size >= longest;
-  const float mirrored = max(2.0 * (chain.start_distance - e), pixels_of(view, here.z)) * per_distance;
-  return Back(is_long ? 0.0 : back, size, chain.is_round && !is_long ? mirrored : -1.0, -1.0);
+  const float mirrored = max(2.0 * (start - e), pixels_of(view, here.z)) * per_distance;
+  return Back(back * per_distance, min(size, longest), is_round ? mirrored : -1.0, -1.0);
 }
 
 void main() {
@@ -111,8 +119,8 @@ void main() {
   do {
     const Facet after = facet_at(view, line, s + 1, steps);
     const bool goes_on = s > 0 && are_one(view, before, a, here, after);
-    chain = chain_to(view, chain, goes_on, a, here, s == 0);
-    backs[index_of(line, s)] = pack_line(back_of(view, chain, here), params.radius) | (goes_on ? kBackLinked : 0u);
+    chain = chain_to(view, chain, goes_on, a, here, s, s == 0);
+    backs[index_of(line, s)] = pack_line(back_of(view, chain, here, line, s), params.radius) | (goes_on ? kBackLinked : 0u);
     before = a;
     a = here;
     here = after;
@@ -121,12 +129,12 @@ void main() {
   bool goes_on = false;
   do {
     here = facet_at(view, line, s, steps);
-    chain = chain_to(view, chain, goes_on, a, here, s == steps - 1);
+    chain = chain_to(view, chain, goes_on, a, here, s, s == steps - 1);
     const int index = index_of(line, s);
     const uint word = backs[index];
     goes_on = (word & kBackLinked) != 0u;
     Back back = unpack_line(word, params.radius);
-    const Back backward = back_of(view, chain, here);
+    const Back backward = back_of(view, chain, here, line, s);
     back.after = backward.before;
     back.depth = max(back.depth, backward.depth);
     back.width += backward.width + pixels_of(view, here.z);

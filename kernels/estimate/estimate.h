@@ -70,8 +70,8 @@ ALCOVE_CONSTANT uint kInSectors = 16;        // another one: all that blocks is 
 ALCOVE_CONSTANT uint kHiddenSurface = 32;
 
 ALCOVE_CONSTANT int kBacksGroup = 16;
-// radii: a row of pixels of one surface that is longer tells nothing of how far back it is solid
-ALCOVE_CONSTANT float kLongestChain = 5;
+// radii: nothing farther away along a row of pixels of one surface tells how far back it is solid
+ALCOVE_CONSTANT float kLongestChain = 1.9f;
 ALCOVE_CONSTANT float kMostBack = 4;  // radii: solids reach back as far as they are seen to, but no farther
 
 struct BacksParams {

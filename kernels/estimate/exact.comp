@@ -95,9 +95,8 @@ struct Walk {
   bool starts;           // there is none yet
   bool is_own;           // the run is the receiver's own surface
   bool is_rest;          // the run is what the receiver's own surface is not sure to go on with
-  float last_thickness;  // scene units, at the last vertex
-  float thickness;       // of the vertex before
-  float change;          // of the thickness up to the next vertex
+  float thickness;       // scene units, where the stroke begins
+  float last_thickness;  // where it ends
 };
 
 /// A piece of the profile, in (across, toward).
@@ -143,17 +142,16 @@ vec2 depths_of(vec2 front, float eye_distance, float thickness, float radius_sq,
 /// scene's numbers are large. So `along` is divided by a power of two near the receiver's depth, and t is multiplied by
 /// it, which changes no bit.
 Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
-  precise const vec2 from = stroke.from, along = (1.0 / unit) * (stroke.to - stroke.from);
-  precise const float a = dot(along, along);
-  precise const float middle = dot(from, along);
-  precise const float beside = from.x * along.y - from.y * along.x;
-  precise const float inside_sq = a * radius_sq - beside * beside;
-  precise const float inside = sqrt(max(inside_sq, 0.0));
-  precise const float scale = 1.0 / a;
-  precise const float enters = max((-middle - inside) * scale, 0.0);
-  precise const float leaves = min((inside - middle) * scale, unit);
-  precise const vec2 near = from + enters * along, far = from + leaves * along;
-  return Clipped(near, far, both(inside_sq > 0.0, enters <= leaves));
+  const vec2 from = stroke.from, along = (1.0 / unit) * (stroke.to - stroke.from);
+  const float a = dot(along, along);
+  const float middle = dot(from, along);
+  const float beside = from.x * along.y - from.y * along.x;
+  const float inside_sq = a * radius_sq - beside * beside;
+  const float inside = sqrt(max(inside_sq, 0.0));
+  const float scale = 1.0 / a;
+  const float enters = max((-middle - inside) * scale, 0.0);
+  const float leaves = min((inside - middle) * scale, unit);
+  return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
 }
 
 /// The stroke that ends at a vertex `steps` from the receiver. It begins at the vertex before. Nothing is seen before
@@ -161,9 +159,8 @@ Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
 /// alone, as a stroke that is short.
 Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
   const float next_pixel = min(kShortStroke, 1.0 / float(steps));
-  // Not contracted with what follows, which rounds otherwise where a line has several profiles.
-  precise const vec2 from = (begins ? kShortStroke : next_pixel) * place;
-  return Stroke(begins || walk.starts ? from : walk.last, place);
+  const vec2 onward = walk.starts ? next_pixel * place : walk.last;
+  return Stroke(begins ? kShortStroke * place : onward, place);
 }
 
 /// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
@@ -249,9 +246,8 @@ struct Corner {
 
 /// A place in the plane of the line, as seen from the receiver.
 vec2 from_receiver(Context c, vec2 place) {
-  precise const vec2 offset = place - c.point.place;
-  precise const vec2 seen = vec2(dot(offset, c.search.across), dot(offset, c.point.eye));
-  return seen;
+  const vec2 offset = place - c.point.place;
+  return vec2(dot(offset, c.search.across), dot(offset, c.point.eye));
 }
 
 Corner corner_at(Context c, int at, int step, float z, bool toward) {
@@ -288,7 +284,6 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
   vec2 slopes = is_within ? vec2(max(near_slope, far_slope), min(near_slope, far_slope)) : vec2(-1, 1);
   float height = is_within ? max(dot(front.near, search.normal), dot(front.far, search.normal)) : -kNone;
   const bool bends = kGoesOn && goes_on;
-  const float last = walk.thickness + walk.change;
   if (walk.is_own || walk.thickness >= kNone) {
     // What has no end blocks by its front within the sphere alone.
     const bool bends_within = both(bends, dot(corner.place, corner.place) < radius_sq);
@@ -301,7 +296,7 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
     const Stroke ends = before_sphere(stroke, search.leaving);
     Stroke back;
     const vec2 from = depths_of(ends.from, eye_distance, walk.thickness, radius_sq, back.from);
-    const vec2 to = depths_of(ends.to, eye_distance, last, radius_sq, back.to);
+    const vec2 to = depths_of(ends.to, eye_distance, walk.last_thickness, radius_sq, back.to);
     slopes = vec2(max(to.x, max(from.x, slopes.x)), min(to.y, min(from.y, slopes.y)));
     // Behind a part of the stroke alone the solid may reach into the sphere, or farther down in it than at the ends.
     const Clipped ends_back = clip_to_sphere(back, radius_sq, search.unit);
@@ -312,7 +307,7 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
     height = is_solid || to.x >= to.y ? max(dot(ends.to, search.normal), height) : height;
     if (bends) {
       vec2 unused;
-      const vec2 bend = depths_of(corner.place, eye_distance, last, radius_sq, unused);
+      const vec2 bend = depths_of(corner.place, eye_distance, walk.last_thickness, radius_sq, unused);
       slopes = vec2(max(bend.x, slopes.x), min(bend.y, slopes.y));
       height = bend.x >= bend.y ? max(dot(corner.place, search.normal), height) : height;
     }
@@ -428,17 +423,16 @@ float whole_thickness_at(Search search, int at) {
 void come_to(inout Walk walk, Context c, int at, vec2 place, bool begins) {
   const float here = begins ? thickness_at(c.search, at) : whole_thickness_at(c.search, at);
   walk.thickness = here;
-  walk.change = 0.0;
+  walk.last_thickness = here;
   if (!walk.starts && !begins) {
     const int before = at - c.search.step, from_step = int(mark[before] >> 16);
     const vec2 from = from_receiver(c, place_at(c.view, c.plane, float(from_step), abs(vertex[before])));
     const float least = kBesideReceiver * place.x;
     const bool is_behind = both((from_step - c.search.from) * c.search.step <= 0, from.x < least);
     const float part = is_behind ? (place.x - least) / (place.x - from.x) : 1.0;
-    const float last = whole_thickness_at(c.search, before), change = here - last;
+    const float last = whole_thickness_at(c.search, before);
     walk.last = is_behind ? place + part * (from - place) : from;
-    walk.thickness = is_behind ? here - part * change : last;
-    walk.change = is_behind ? part * change : change;
+    walk.thickness = is_behind ? here - part * (here - last) : last;
   }
 }
 
@@ -479,7 +473,7 @@ void add_beyond(inout Found found, Walk walk, Context c, int last) {
     const Corner corner = corner_at(c, at, to, abs(vertex[at]), true);
     walk.is_own = false;
     walk.thickness = params.thickness == 0.0 || kWalks > 1 ? thickness_at(c.search, at) : params.thickness;
-    walk.change = 0.0;
+    walk.last_thickness = walk.thickness;
     const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
     block(found.all, walk, c, stroke, corner, true);
   }
@@ -518,7 +512,7 @@ void add_border(inout Found found, Context c) {
   const float first = float(border + c.plane.origin);
   const float whole = kReachBeyond * params.radius / (plane.step * (perspective ? c.z : 1.0));
   const float rest = min(whole - float(abs(border - c.search.from)), kMostBeyond);
-  Walk walk = Walk(vec2(0), false, false, false, 0.0, 0.0, 0.0);
+  Walk walk = Walk(vec2(0), false, false, false, 0.0, 0.0);
   float last_z = kSkyDepth, last_at = first;
   vec2 last = vec2(0), start = vec2(0);
   // Whether a step lies within the sphere's image is the same at any depth.
@@ -540,6 +534,7 @@ void add_border(inout Found found, Context c) {
       const float gap = rest / float(kStepsBeyond) * plane.step * (perspective ? z : 1.0);
       const float width = length(corner.place - start) + gap;
       walk.thickness = params.thickness > 0.0 ? params.thickness : min(width, kCutThickness * params.radius);
+      walk.last_thickness = walk.thickness;
       if (z < kSkyDepth && corner.place.x > 0.0)
         block(found.all, walk, c, Stroke(joins ? last : kShortStroke * corner.place, corner.place), corner, false);
       last = corner.place;
@@ -564,7 +559,6 @@ void thicken(inout Walk walk, Search search, int at, uint marked, bool begins) {
   const bool changes = begins || !walk.is_rest && (marked & search.apart) == 0u;
   const float here = changes ? thickness_at(search, at) : walk.last_thickness;
   walk.thickness = begins ? here : walk.last_thickness;
-  walk.change = here - walk.thickness;
   walk.last_thickness = here;
 }
 
@@ -575,7 +569,6 @@ void close_solid(inout Walk walk, inout Stroke stroke, Context c, int step) {
   const vec2 n = in_plane(c.view, c.plane, unpack_normal(normal[pixel]));
   const vec2 back = vec2(dot(n, c.search.across), dot(n, c.point.eye));
   stroke.from = with_unseen(stroke, true, stroke.to - walk.thickness * back).from;
-  walk.change = walk.thickness;
   walk.thickness = 0.0;
 }
 
@@ -585,7 +578,7 @@ BlockedArcs blocked_by_one(Context c) {
   const uint first = first_column(search, c.row + search.from);
   const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
   Found found = Found(nothing, nothing);
-  Walk walk = Walk(vec2(0), true, true, false, params.thickness, params.thickness, 0.0);
+  Walk walk = Walk(vec2(0), true, true, false, params.thickness, params.thickness);
   int at = c.row + int(first), last = -1;
   bool goes = first != kNoVertex;
   if (goes) {
@@ -628,7 +621,7 @@ BlockedArcs blocked_by_several(Context c) {
   }
   const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
   Found found = Found(nothing, nothing);
-  Walk walk = Walk(vec2(0), true, true, false, params.thickness, params.thickness, 0.0);
+  Walk walk = Walk(vec2(0), true, true, false, params.thickness, params.thickness);
   bool is_own = true, starts = true, rests = false;     // the walk along the receiver's own slot
   float rest = 0.0;                                     // its thickness, where the own run has ended
   int last = next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
@@ -660,7 +653,7 @@ BlockedArcs blocked_by_several(Context c) {
       }
       if (i == c.slot && rests) {
         walk.thickness = rest;
-        walk.change = 0.0;
+        walk.last_thickness = rest;
       }
       Stroke stroke = stroke_to(corner.place, walk, begins, steps);
       const bool begins_run = begins && !is_parted;

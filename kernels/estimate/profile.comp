@@ -135,6 +135,31 @@ float known_thickness(View view, LinePlane plane, int step, int index, uint k, f
   return surface_at(view, index, k) < 0.0 ? kNoThickness : known;
 }
 
+/// The first surface of a pixel, by its place along and across.
+Facet facet_of(View view, Lines lines, ivec2 at) {
+  const int index = index_at(view, lines, at.x, at.y);
+  const vec2 tangent = tangent_at(view, lines, at + lines.origin);
+  Facet f;
+  f.z = depth[index];
+  f.position = view.orthographic == 0 ? f.z * vec3(tangent, -1) : vec3(tangent, -f.z);
+  f.normal = unpack_normal(normal[index]);
+  return f;
+}
+
+/// That of the pixel at a step of a line.
+Facet facet_at(View view, Lines lines, int line, int step) {
+  return facet_of(view, lines, ivec2(step, line + shift_at(lines, step)));
+}
+
+/// Whether two pixels beside each other across a line, whose surfaces have these depths, show one: a plane may be so
+/// steep that depth alone tells them apart.
+bool connected_across(View view, Lines lines, int column, int a, int b, float z, float other) {
+  if (connected(view.orthographic == 0, view.tangent_per_pixel.x, z, other)) return true;
+  if (params.solids == 0u) return false;
+  const Facet here = facet_of(view, lines, ivec2(column, a)), beside = facet_of(view, lines, ivec2(column, b));
+  return here.z == z && beside.z == other && are_coplanar(view, here, beside, kPlaneDot, kPlaneOff);
+}
+
 uint columns(int before, int after) { return uint(before) & kNoVertex | uint(after) << 16; }
 
 /// The value's change from the pixel `across` to the next one on a side, by the pixels on the other side: `known` says
@@ -154,7 +179,8 @@ float change_behind(View view, Lines lines, int rows, int column, int across, in
   if (known) next_to = behind;
   if (first) next_to = value_of(perspective, fourth) - value_of(perspective, other);
   const float straight = known ? ahead : behind;
-  const float bent = connected(perspective, view.tangent_per_pixel.x, nearest, third) ? behind : 0.0;
+  const int opposite = clamp(across - side, 0, rows - 1);
+  const float bent = connected_across(view, lines, column, across, opposite, nearest, third) ? behind : 0.0;
   return abs(straight - next_to) < kStraight * abs(straight) ? straight : bent;
 }
 
@@ -173,7 +199,7 @@ float change_across(View view, Lines lines, int rows, int column, int across, in
   }
   const float other = depth_like(view, index_at(view, lines, column, beside), nearest);
   const bool known = other < kSkyDepth && beside != across;
-  const bool same = known && connected(perspective, view.tangent_per_pixel.x, nearest, other);
+  const bool same = known && connected_across(view, lines, column, across, beside, nearest, other);
   float change = same ? value_of(perspective, other) - value_of(perspective, nearest) : 0.0;
   if (!same && nearest < kSkyDepth)
     change = change_behind(view, lines, rows, column, across, side, nearest, other, known);
@@ -199,18 +225,6 @@ Step step_at(View view, Lines lines, LinePlane plane, int rows, int line, int at
   s.place = place_at(view, plane, float(at), s.z);
   s.known = known_thickness(view, plane, column, index, surface, nearest);
   return s;
-}
-
-/// The first surface of the pixel at a step of a line.
-Facet facet_at(View view, Lines lines, int line, int step) {
-  const ivec2 at = ivec2(step, line + shift_at(lines, step));
-  const int index = index_at(view, lines, at.x, at.y);
-  const vec2 tangent = tangent_at(view, lines, at + lines.origin);
-  Facet f;
-  f.z = depth[index];
-  f.position = view.orthographic == 0 ? f.z * vec3(tangent, -1) : vec3(tangent, -f.z);
-  f.normal = unpack_normal(normal[index]);
-  return f;
 }
 
 /// How the surfaces of two neighbouring steps hang together.
