@@ -30,6 +30,7 @@ struct Table {
 
   std::string text(std::string_view key) const {
     const auto value = values[key].value<std::string>();
+    if (!values.contains(key)) refuse(key, "is missing");
     if (!value || value->empty()) refuse(key, "must be a string");
     return *value;
   }

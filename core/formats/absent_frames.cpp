@@ -87,14 +87,14 @@ std::string number_in(const std::string& name, const std::string& before, const 
   return number.find_first_not_of("0123456789") == number.npos ? number : "";
 }
 
-/// Names the files that differ from the pattern in the number of their digits.
+/// Names the files that differ from the pattern in the number of their digits, where none has as many as the pattern.
 std::string other_digits(const std::vector<std::string>& names, const std::string& folder, const std::string& before,
-                         const std::string& after) {
+                         const std::string& after, int own_digits) {
   std::map<std::size_t, std::string> first;  // by the number of digits
   for (const auto& name : names)
     if (const std::string number = number_in(name, before, after); !number.empty())
       first.try_emplace(number.size(), name);
-  if (first.empty()) return "";
+  if (first.empty() || first.contains(std::size_t(own_digits))) return "";
   const auto& [digits, name] = *first.begin();
   return fmt::format("its number has {} digit{} in {}: write {}{}{}{}", digits, digits == 1 ? "" : "s", name, folder,
                      before, frame_token(digits), after);
@@ -119,7 +119,7 @@ std::string why_no_frames(const FramePattern& pattern) {
   const std::size_t slash = pattern.before.rfind('/');
   const std::string folder = pattern.before.substr(0, slash + 1), before = pattern.before.substr(slash + 1);
   const auto names = names_in(folder.empty() ? "." : folder);
-  if (why.empty()) why = other_digits(names, folder, before, pattern.after);
+  if (why.empty()) why = other_digits(names, folder, before, pattern.after, pattern.digits);
   if (why.empty()) why = nearly_named(names, folder, before + pattern.after);
   return why.empty() ? "" : ": " + why;
 }

@@ -8,6 +8,7 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
+#include <numeric>
 #include <sstream>
 #include <unordered_set>
 #include <vector>
@@ -196,6 +197,24 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
     fail(ErrorKind::input, "{}: there is no frame such as {}{}", option, pattern.path(1), why_no_frames(pattern));
   std::ranges::sort(frames);
   return frames;
+}
+
+namespace {
+
+// A file with another number far away makes as many holes as anybody wants to read of.
+constexpr std::size_t kMostHoles = 1'000'000;
+
+}  // namespace
+
+std::vector<int> holes_in(const std::vector<int>& frames) {
+  int step = 0;
+  for (std::size_t i = 1; i < frames.size(); i++) step = std::gcd(step, frames[i] - frames[i - 1]);
+  if (frames.size() < 3) step = 1;
+  std::vector<int> holes;
+  for (std::size_t i = 1; i < frames.size(); i++)
+    for (int frame = frames[i - 1] + step; frame < frames[i] && holes.size() < kMostHoles; frame += step)
+      holes.push_back(frame);
+  return holes;
 }
 
 void require_ending(const std::string& path, const char* option, const char* ending, const char* format) {

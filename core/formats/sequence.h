@@ -37,6 +37,10 @@ std::vector<int> parse_frames(const std::string& list);
 /// folder cannot be read or holds no such file, and with ErrorKind::usage if the token is in the folder's name.
 std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option);
 
+/// Gives the numbers that are left out of rising ones. Three or more that keep a step are rendered on every second or
+/// third number; two tell of no step.
+std::vector<int> holes_in(const std::vector<int>& frames);
+
 /// The frame number in the name of a single file.
 struct FrameNumber {
   std::optional<int> number;  // none: no number in the name is surely a frame's

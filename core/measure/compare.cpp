@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include "core/base/image.h"
@@ -465,10 +467,33 @@ Notes warnings_on_sky(const CompareReport& report, const CompareSettings& settin
                                   : "--sky VALUE says from which depth on pixels are sky")}};
 }
 
+/// The numbers between the frames of RESULT, and those that REFERENCE has beside them.
+std::vector<int> frames_left_out(const CompareReport& report, const CompareSettings& settings) {
+  std::vector<int> compared;
+  std::ranges::transform(report.frames, std::back_inserter(compared), &FrameComparison::frame);
+  std::set<int> all(compared.begin(), compared.end());
+  for (const int frame : holes_in(compared)) all.insert(frame);
+  if (const auto pattern = pattern_of(settings.reference))
+    for (const int frame : frames_on_disk(*pattern, "REFERENCE")) all.insert(frame);
+  std::vector<int> left_out;
+  std::ranges::set_difference(all, compared, std::back_inserter(left_out));
+  return left_out;
+}
+
+Notes notes_on_frames(const CompareReport& report, const CompareSettings& settings) {
+  if (!report.is_sequence || !settings.frames.empty()) return {};
+  const std::vector<int> left_out = frames_left_out(report, settings);
+  if (left_out.empty()) return {};
+  return {{NoteCode::sequence_hole, fmt::format("{}: frames are not there, and were not compared: {}; --frames says "
+                                                "which there are",
+                                                settings.result, frames_text(left_out))}};
+}
+
 }  // namespace
 
 Notes notes_on(const CompareReport& report, const CompareSettings& settings, const CompareLimits& limits) {
-  Notes notes = notes_on_channels(report);
+  Notes notes = notes_on_frames(report, settings);
+  add_new(notes, notes_on_channels(report));
   add_new(notes, warnings_on_sky(report, settings));
   const std::string holes = holes_beyond(report, 0);
   if (limits == CompareLimits{} && !holes.empty())

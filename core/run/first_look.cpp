@@ -52,7 +52,8 @@ Notes notes_on_other_frames(const FramePlan& plan) {
   if (plan.all().size() != 1 || !number) return {};
   Notes notes;
   for (const auto& row : file_rows()) {
-    if (row.group != "Input" || !row.is_of_frame || row.key() == "camera") continue;
+    const bool is_picture = row.group == "Input" || row.name == "INPUT";
+    if (!is_picture || !row.is_of_frame || row.key() == "camera") continue;
     for (const auto& [option, path] : row.files(plan.at(*number), FileRole::input))
       if (const FrameNumber other = frame_number_in(path); other.number && other.number != number)
         notes.push_back({NoteCode::other_frame, fmt::format("{} {}: by the digits {} of its name it is of frame {}, "
@@ -311,19 +312,27 @@ std::string at_once_text(const RunMemory& memory, const FramePlan& plan, const F
 }
 
 /// The least that --memory may be, with its cost, and what computes a frame at once; "" where its depth is unreadable.
-std::string needs_text(FrameSource& source, const Settings& settings, const RunMemory& memory,
-                       const FrameMemory& frame) {
-  const Room room{.bytes = memory.host_bytes, .buffer_bytes = Room::kEndless, .program_bytes = memory.program_bytes};
+/// Fails as the run does where a single frame has less.
+std::string needs_text(FrameSource& source, const Settings& settings, const RunMemory& memory, const FrameMemory& frame,
+                       bool is_sequence) {
+  const Room room{.bytes = memory.host_bytes,
+                  .buffer_bytes = Room::kEndless,
+                  .program_bytes = memory.program_bytes,
+                  .is_chosen = memory.is_chosen};
   const WindowLimits limits{frame, room, longest_side(settings.estimator)};
+  MemoryNeeds needs;
   try {
-    const MemoryNeeds needs = memory_needs(source, settings, limits);
-    const std::string at_once = limits.option_for(needs.at_once) + " computes a frame at once";
-    if (limits.option_for(needs.least) == limits.option_for(needs.at_once))
-      return at_once + ", and nothing less is enough";
-    return fmt::format("{}, {} is the least: {}", at_once, limits.option_for(needs.least), needs.cost());
+    needs = memory_needs(source, settings, limits);
   } catch (const Error&) {
     return "";  // the frame fails by itself, and others of a sequence may not
   }
+  const bool is_enough = needs.least <= room.bytes;
+  if (!is_enough && !is_sequence) limits.refuse(fmt::format("{}: there is no room for it", source.depth_path()), needs);
+  const std::string at_once = limits.option_for(needs.at_once) + " computes a frame at once";
+  std::string text = at_once + ", and nothing less is enough";
+  if (limits.option_for(needs.least) != limits.option_for(needs.at_once))
+    text = fmt::format("{}, {} is the least: {}", at_once, limits.option_for(needs.least), needs.cost());
+  return text + (is_enough ? "" : "; frames such as the first have no room");
 }
 
 }  // namespace
@@ -351,7 +360,9 @@ std::string plan_text(FirstLook& look) {
       line(of_first[i].option, span_text(of_first[i].path, of_last[i].path));
   }
 
-  set_exr_threads(threads_of(first.device));  // as a run does: codecs take memory for each
+  // As a run does: codecs take memory for each thread, and as much as they may.
+  set_exr_threads(threads_of(first.device));
+  set_exr_memory(memory_of_host(first).host_bytes / kCodecPart);
   FrameSource source = look.open(first, plan.frames().front());
   // Frames of a sequence are read as one of them that shows enough.
   if (!plan.is_sequence() && !source.evidence) settle_by_rows(source, first.input, memory_of_host(first).host_bytes);
@@ -373,7 +384,8 @@ std::string plan_text(FirstLook& look) {
   line("size", to_string(written_picture(source)));
   const std::string at_once = bytes > memory ? "in tiles" : at_once_text(host, plan, source, first, wanted);
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
-  if (const std::string needs = needs_text(source, first, of_frames, frame); !needs.empty()) line("--memory", needs);
+  if (const std::string needs = needs_text(source, first, of_frames, frame, plan.is_sequence()); !needs.empty())
+    line("--memory", needs);
   const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared) {
     line(name, fmt::format("up to {} of the {} frames of the shot: {} MiB of {} for each at once, beside what it takes "
                            "itself",

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 #include <regex>
 
 #include "core/base/error.h"
@@ -20,22 +19,6 @@ namespace fs = std::filesystem;
 
 // The most frames that are looked at for one that shows what the files do not say.
 constexpr std::size_t kEvidenceFrames = 8;
-
-// A file with another number far away makes as many holes as anybody wants to read of.
-constexpr std::size_t kMostHoles = 1'000'000;
-
-/// The numbers that are left out of rising ones. Three or more that keep a step are rendered on every second or third
-/// number; two tell of no step.
-std::vector<int> holes_in(const std::vector<int>& frames) {
-  int step = 0;
-  for (std::size_t i = 1; i < frames.size(); i++) step = std::gcd(step, frames[i] - frames[i - 1]);
-  if (frames.size() < 3) step = 1;
-  std::vector<int> holes;
-  for (std::size_t i = 1; i < frames.size(); i++)
-    for (int frame = frames[i - 1] + step; frame < frames[i] && holes.size() < kMostHoles; frame += step)
-      holes.push_back(frame);
-  return holes;
-}
 
 /// At most so many of the frames, which lie evenly from the first to the last.
 std::vector<int> evenly(const std::vector<int>& frames, std::size_t most) {
@@ -184,7 +167,11 @@ bool FramePlan::has_inputs(int frame) const {
       patterns_, [&](const Pattern& pattern) { return !pattern.is_input() || exists(pattern.name.path(frame)); });
 }
 
-void FramePlan::find_inputs(const std::vector<int>& chunk) {
+void FramePlan::find_inputs(const std::vector<int>& own) {
+  // A chunk without frames of its own fails as all others do where no frame is there.
+  const std::vector<int>& chunk = own.empty() && evidence_.empty() ? all_ : own;
+  if (const std::string& input = main_input(settings_.input); own.empty() && !is_sequence_ && !exists(input))
+    fail(ErrorKind::input, "{}: file not found (INPUT)", input);
   std::string complaint;
   for (const auto& pattern : patterns_) {
     if (!pattern.is_input()) continue;

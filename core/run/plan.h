@@ -99,7 +99,7 @@ class FramePlan {
   std::vector<int> all_frames() const;
   void refuse_shared_files();
   void find_evidence();
-  void find_inputs(const std::vector<int>& chunk);
+  void find_inputs(const std::vector<int>& own);
   bool has_inputs(int frame) const;
   void find_shot();
   void refuse_missing_around() const;

@@ -200,7 +200,11 @@ class ReuseOfOptions : public CommandLine {
   }
 
   /// What a lane makes of a frame.
-  static std::vector<float> made(Lane& lane, Settings settings, bool reuses) {
+  struct Made {
+    std::vector<float> values;
+    bool is_reused = false;
+  };
+  static Made made(Lane& lane, Settings settings, bool reuses) {
     settings.estimator.no_skip = !reuses;
     FrameSource source = open_frame(settings, 1);
     const Window window = written_of(source);
@@ -212,10 +216,10 @@ class ReuseOfOptions : public CommandLine {
         is_same ? lane.last.outputs() : run_chain(lane.gpu, inputs, settings.estimator, settings.output);
     if (!is_same) lane.gpu.run();
     if (reuses) lane.last.keep(outputs);
-    std::vector<float> values;
+    Made made{{}, is_same};
     for (const auto plane : result_planes(outputs, window, settings.output))
-      values.insert(values.end(), plane.begin(), plane.end());
-    return values;
+      made.values.insert(made.values.end(), plane.begin(), plane.end());
+    return made;
   }
 
   /// In one lane, and in two: there the second frame goes to the other one, so that the third comes after the first.
@@ -223,16 +227,22 @@ class ReuseOfOptions : public CommandLine {
     const Settings settings[] = {settings_of(change.beside + " " + change.one),
                                  settings_of(change.beside + " " + change.other)};
     Lane fresh(device()), only(device()), first(device()), second(device());
-    const std::vector<float> expected[] = {made(fresh, settings[0], false), made(fresh, settings[1], false)};
+    const std::vector<float> expected[] = {made(fresh, settings[0], false).values,
+                                           made(fresh, settings[1], false).values};
     EXPECT_FALSE(same_bits(expected[0], expected[1])) << "both values give the same";
-    const auto expect = [&](Lane& lane, int value) {
-      EXPECT_TRUE(same_bits(made(lane, settings[value], true), expected[value])) << value;
+    const auto expect = [&](Lane& lane, int value, bool is_reused) {
+      const Made made_here = made(lane, settings[value], true);
+      EXPECT_TRUE(same_bits(made_here.values, expected[value])) << value;
+      EXPECT_EQ(made_here.is_reused, is_reused) << value;
     };
-    for (const int value : {0, 1, 1, 0}) expect(only, value);
-    expect(first, 0);
-    expect(second, 1);
-    expect(first, 1);
-    expect(second, 0);
+    expect(only, 0, false);
+    expect(only, 1, false);
+    expect(only, 1, true);
+    expect(only, 0, false);
+    expect(first, 0, false);
+    expect(second, 1, false);
+    expect(first, 1, false);
+    expect(second, 0, false);
   }
 };
 

@@ -137,6 +137,13 @@ TEST_F(OnDisk, none_is_an_error_that_says_what_is_wrong_with_the_pattern) {
     EXPECT_THAT(error_of(ErrorKind::input, [&, &pattern = pattern] { frames(pattern); }), HasSubstr(words));
 }
 
+TEST_F(OnDisk, a_pattern_that_fits_other_frames_is_not_proposed_again) {
+  touch({"a.7.exr", "b.0007.exr"});
+  for (const char* pattern : {"a.%d.exr", "b.####.exr"})
+    EXPECT_THAT(why_no_frames(*frame_pattern(folder / pattern)),
+                AllOf(HasSubstr("there is "), Not(HasSubstr("write"))));
+}
+
 TEST(ForeignPattern, is_known_in_a_name_without_a_place_for_the_number) {
   for (const auto& [name, words] : {std::pair("a.[1001-1005].exr", "write a.####.exr with --frames 1001-1005"),
                                     std::pair("a.{101..105}.exr", "write a.###.exr with --frames 101-105"),

@@ -441,6 +441,16 @@ TEST_F(CompareSequence, a_list_chooses_the_frames) {
       << "no two frames follow each other";
 }
 
+TEST_F(CompareSequence, frames_that_result_lacks_are_a_warning) {
+  const auto said = [&](const Options& options) { return compare(options).err; };
+  EXPECT_THAT(said({result, reference}), Not(HasSubstr("sequence-hole")));
+  exr("truth.0006.exr", {{"AO", ramp}});
+  EXPECT_THAT(said({result, reference}), AllOf(HasSubstr("were not compared: 6"), HasSubstr("[sequence-hole]")));
+  EXPECT_THAT(said({result, reference, "--frames", "1-4"}), Not(HasSubstr("sequence-hole")));
+  for (const char* name : {"ao.0003.exr", "truth.0003.exr", "truth.0006.exr"}) fs::remove(folder / name);
+  EXPECT_THAT(said({result, reference}), HasSubstr("were not compared: 3"));
+}
+
 TEST_F(CompareSequence, missing_frames_are_listed_before_any_work) {
   exr("ao.0007.exr", {{"Y", ramp}});
   exr("ao.0008.exr", {{"Y", ramp}});

@@ -54,6 +54,13 @@ TEST_F(Holes, stand_in_order_with_other_frames_that_are_left_out) {
   EXPECT_EQ(stats_of({"--set", "missing=skip", "--normal", in + "/n.%04d.exr"})["totals"]["missing"], (json{3, 5}));
 }
 
+TEST_F(Holes, of_all_frames_fail_in_a_chunk_without_frames_too) {
+  for (const auto& more : {Options(), {"--set", "missing=skip"}})
+    expect_refused(3, joined(more, {"--frames", "1-3", "--chunk", "5/8"}), {"INPUT", "3 of 3 frames are missing"});
+  keep({2});
+  EXPECT_EQ(run({"--frames", "1-3", "--chunk", "5/8"}).code, 0) << "another chunk tells of the others";
+}
+
 /// A frame and a list of cameras: at frame 5 it is that of the frame, at all others it sees half as wide.
 class CameraList : public CommandLine {
  protected:

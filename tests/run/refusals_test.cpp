@@ -298,7 +298,7 @@ TEST_F(Suites, of_the_wrong_types_are_refused_by_file_table_and_key) {
       {"frame", kFrame + "radius = 0\ntruth = \"ao.exr\"\n", {"[[frame]] 1", "\"radius\"", "above 0"}},
       {"frame", kFrame + "radius = \"1\"\ntruth = \"ao.exr\"\n", {"\"radius\"", "above 0"}},
       {"frame", kFrame + "radius = inf\ntruth = \"ao.exr\"\n", {"\"radius\"", "above 0"}},
-      {"frame", kFrame + "radius = 1\n", {"\"truth\"", "must be a string"}},
+      {"frame", kFrame + "radius = 1\n", {"\"truth\"", "is missing"}},
       {"frame", kFrame + "radius = 1\ntruth = []\n", {"\"truth\"", "one file or two"}},
       {"frame", kFrame + "radius = 1\ntruth = [1]\n", {"\"truth\"", "one file or two"}},
       {"frame", kFrame + "radius = 1\ntruth = [\"a\", \"b\", \"c\"]\n", {"\"truth\"", "one file or two"}},
