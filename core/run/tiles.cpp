@@ -75,8 +75,8 @@ int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
 /// The width, in radii, from which a run that begins within reach of a receiver is as good as endless: with `auto` more
 /// of it adds nothing to its thickness, and nothing else is told by its other end. It is a little more than 4 radii,
 /// twice the width from which runs level off, since exact.comp rounds. Where surfaces are completed, a run is half as
-/// thick as wide, and it may begin so far beyond the reach as a surface goes on, which is 3 radii in complete.comp. A
-/// search by samples has kLongestChain.
+/// thick as wide, and it may begin so far beyond the reach as a surface goes on, which is 3 radii in complete.comp.
+/// In a search by samples nothing farther away than kLongestChain tells.
 double widest_run(const EstimatorSettings& settings) {
   if (tells_backs(settings)) return kLongestChain + 0.1;
   return completes(settings) ? 3 + 8.4 : 4.2;

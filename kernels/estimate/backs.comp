@@ -120,7 +120,8 @@ void main() {
     const Facet after = facet_at(view, line, s + 1, steps);
     const bool goes_on = s > 0 && are_one(view, before, a, here, after);
     chain = chain_to(view, chain, goes_on, a, here, s, s == 0);
-    backs[index_of(line, s)] = pack_line(back_of(view, chain, here, line, s), params.radius) | (goes_on ? kBackLinked : 0u);
+    backs[index_of(line, s)] =
+        pack_line(back_of(view, chain, here, line, s), params.radius) | (goes_on ? kBackLinked : 0u);
     before = a;
     a = here;
     here = after;

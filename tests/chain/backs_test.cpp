@@ -49,9 +49,10 @@ TEST(Backs, of_a_box_above_the_floor_are_no_farther_than_its_top_goes) {
   for (const Vec3 eye : {Vec3{6, 0, 2.2}, Vec3{5, 0, 4}})
     for (const Shot& shot :
          {Shot::perspective(eye, target, 42, 320, 224), Shot::orthographic(eye, target, 5, 320, 224)})
-      for (const double height : {0.2, 0.5}) {
-        const Means below = means_of(box_above_floor(1, 0.35, height), shot, is_below_box, 4);
-        EXPECT_NEAR(below.ao, below.truth, 0.05) << height << " high, from " << eye.z;
+      // One that is higher than deep is taken for as deep as it is high.
+      for (const auto& [depth, height] : {std::pair(0.3, 0.2), {1.0, 0.2}, {1.0, 0.5}}) {
+        const Means below = means_of(box_above_floor(depth, 0.35, height), shot, is_below_box, 4);
+        EXPECT_NEAR(below.ao, below.truth, 0.05) << depth << " deep, " << height << " high, from " << eye.z;
       }
 }
 
