@@ -27,7 +27,7 @@ buffer Backs { uint backs[]; };
 const float kChainSlope = 8.0;
 
 /// Places of a chain that tell, evenly from a pixel to the chain's first one, or as far as it tells.
-const int kTelling = 4;
+const int kTelling = 2;
 
 /// A chain up to a pixel.
 struct Chain {
@@ -92,18 +92,17 @@ Back back_of(View view, Chain chain, Facet here, int line, int step) {
   const float longest = kLongestChain * params.radius, e = distance_from_eye(view, here.position);
   const int most = int(min(longest / (pixel * (view.orthographic == 0 ? here.z : 1.0)), 1e5));
   const int away = clamp(chain.start - step, -most, most);
-  float back = 0.0, size = 0.0;
+  float back = 0.0, size = 0.0, farther = 0.0;
   int i = 1;
   do {
     const vec3 other = position_at(view, line, step + away * i / kTelling);
-    const float farther = distance_from_eye(view, other) - e;
+    farther = distance_from_eye(view, other) - e;
     back = max(back, min(farther, -dot(here.normal, other - here.position)));
     size = length(other - here.position);
   } while (++i <= kTelling);
-  const float start = distance_from_eye(view, position_at(view, line, step + away));
   const bool is_round = chain.is_round && step + away == chain.start;
   const float per_distance = here.z / e;
-  const float mirrored = max(2.0 * (start - e), pixels_of(view, here.z)) * per_distance;
+  const float mirrored = max(2.0 * farther, pixels_of(view, here.z)) * per_distance;
   return Back(back * per_distance, min(size, longest), is_round ? mirrored : -1.0, -1.0);
 }
 
