@@ -45,6 +45,7 @@
 #include "kernels/base/clearance.glsl"
 #include "kernels/estimate/slice.glsl"
 #include "kernels/estimate/sectors.glsl"
+#include "kernels/estimate/backs.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kSlices = 3;  // slices per pixel
@@ -74,6 +75,8 @@ layout(binding = 8) writeonly buffer Moments { float moments[]; };
 layout(binding = 9) writeonly buffer Completed { float completed[]; };
 // planes of hidden surfaces that may block, see GBuffer; with layers only
 layout(binding = 10) readonly buffer Hidden { float hidden[]; };
+// one uint per pixel, how far back it is solid, from backs; only with kThicknessWidth
+layout(binding = 11) readonly buffer Backs { uint backs[]; };
 
 // How many surfaces a pixel has at most: 1, or for horizon_layers as kSolid says. CMakeLists.txt makes kernels of
 // this file, since drivers take long over code that is left out by a specialization constant alone.
@@ -109,6 +112,8 @@ struct Run {
   vec2 start, end;  // its outer samples
   float near, far;  // largest and smallest of the samples that block
   float gap;        // steps from the sample before it
+  bool is_round;    // it begins behind a rounded outline, of which its back is the mirror image
+  float deepest;    // of its samples before the sphere: how far back they are told to be solid
 };
 
 /// The blocked directions: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors
@@ -158,7 +163,20 @@ mat2x3 blocked_arcs(Side side, Blocked blocked, float shift) {
 float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width, float gap) {
   if (kThickness != kThicknessWidth) return reach.thickness;
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0), wider = 1.0 + kGapPart * (run.gap + gap);
-  return levelled(per_width * (length(run.end - run.start) + wider * pixel), kWidestRun * reach.radius);
+  const float width = per_width * (length(run.end - run.start) + wider * pixel);
+  return run.is_round ? 0.0 : levelled(width, kWidestRun * reach.radius);
+}
+
+/// How much deeper than its front the solid of a pixel is told to be, by its word of backs.glsl.
+float depth_told(Reach reach, Run run, uint word, float mirrored) {
+  return both(run.is_round, mirrored >= 0.0) ? mirrored : unpack_depth(word, reach.radius);
+}
+
+/// slope_of() the end of a sample's solid that is so much deeper than its front; 1 where it does not block.
+float slope_behind(Receiver r, Side side, Sample s, vec2 beside, float told) {
+  const float z = s.z + told;
+  const float slope = slope_of(place_of(r, side, beside, z, r.perspective ? z : 1.0));
+  return both(s.above, s.within) ? slope : 1.0;
 }
 
 /// 6. The sectors that a run blocks whose front lies within the sphere. is_open: it has samples without a known back.
@@ -285,7 +303,7 @@ void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach rea
 void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, float gap) {
   Sample last = border;
   const vec2 at_border = slopes_of(border, false, 0.0);
-  Run run = Run(border.place, border.place, at_border.x, at_border.y, 0.0);
+  Run run = Run(border.place, border.place, at_border.x, at_border.y, 0.0, false, 0.0);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
   int k = 0;
@@ -299,7 +317,7 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
       take_before(before, run, is_before, thickness, within_of(run, thickness));
     }
     is_before = joins ? is_before : false;
-    run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0, gap);
+    run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0, gap, false, 0.0);
     const vec2 slopes = slopes_of(s, kHard && both(joins, s.within != last.within), mix(s.slope, last.slope, 0.5));
     run.near = max(run.near, slopes.x);
     run.far = min(run.far, slopes.y);
@@ -393,23 +411,27 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   bool own = true;
   Sample last = receiver_sample(r);
   ivec2 last_pixel = r.pixel;
-  Run run = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0);
+  Run run = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0, false, 0.0);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = false;  // the run has samples before the sphere
+  const uint outline = outline_of(side.direction_px);
   int k = 0;
   if (count > 0) {
     do {
       const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
       const uint sectors = kHard ? sectors_of(r, reach, run, true, thickness, draw.shift) : 0u;
-      const float within = within_of(run, thickness);
+      const float deep = max(thickness, run.deepest);
+      const float within = within_of(run, deep);
       const vec2 beside = round(side.direction_px * offset);
       const ivec2 here = r.pixel + ivec2(beside);
       const ivec2 middle = last_pixel + here >> 1;
       const float z = occluder_depth[here.y * reach.width + here.x];
       // The receiver itself need be no occluder.
       const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
+      const uint word = kThickness == kThicknessWidth ? backs[here.y * reach.width + here.x] : 0u;
+      const float mirrored = unpack_mirrored(word >> outline, reach.radius);
       const Sample s = sample_of(r, side, reach, offset, beside, z);
       last_pixel = here;
       const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
@@ -420,16 +442,22 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       const bool ends = both(connected, s.above) ? false : true;
       if (kHard) {
         found.blocked.sectors |= ends ? sectors : 0u;
-        take_before(before, run, both(ends, is_before), thickness, within);
+        take_before(before, run, both(ends, is_before), deep, within);
       }
       own = ends ? !s.above : own;
       run.start = ends ? s.place : run.start;
       run.end = s.place;
       run.near = greater(own ? -1.0 : slopes.x, ends ? -1.0 : run.near);
-      run.far = lesser(own ? 1.0 : slopes.y, ends ? 1.0 : run.far);
+      run.is_round = ends ? mirrored >= 0.0 : run.is_round;
+      const float told = depth_told(reach, run, word, mirrored);
+      const float far =
+          kThickness == kThicknessWidth ? lesser(slopes.y, slope_behind(r, side, s, beside, told)) : slopes.y;
+      run.far = lesser(own ? 1.0 : far, ends ? 1.0 : run.far);
       run.gap = ends ? gap : run.gap;
       found.blocked.near = greater(own ? slopes.x : -1.0, found.blocked.near);
-      is_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place)) ? true : both(is_before, !ends);
+      const bool here_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place));
+      is_before = here_before ? true : both(is_before, !ends);
+      run.deepest = greater(here_before ? told : 0.0, ends ? 0.0 : run.deepest);
       if (!kHard) {
         const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 0.0);
         found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
@@ -445,7 +473,8 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   if (kHard) {
     const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 0.0);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
-    take_before(before, run, is_before, thickness, within_of(run, thickness));
+    const float deep = max(thickness, run.deepest);
+    take_before(before, run, is_before, deep, within_of(run, deep));
     found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   }
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
@@ -479,6 +508,8 @@ Slot chosen(Slot a, Slot b, bool second) {
   s.run.near = second ? b.run.near : a.run.near;
   s.run.far = second ? b.run.far : a.run.far;
   s.run.gap = second ? b.run.gap : a.run.gap;
+  s.run.is_round = second ? b.run.is_round : a.run.is_round;
+  s.run.deepest = second ? b.run.deepest : a.run.deepest;
   return s;
 }
 
@@ -490,7 +521,7 @@ float thickness_of(Receiver r, Reach reach, Slot slot, float gap) {
 /// What the runs of slots block if they end at their last samples.
 struct Ends {
   uint sectors[kMostSurfaces];
-  float thickness[kMostSurfaces], within[kMostSurfaces];
+  float thickness[kMostSurfaces], within[kMostSurfaces];  // of those before the sphere
 };
 
 Ends ends_of(Receiver r, Reach reach, Slot slots[kMostSurfaces], float gap, float shift) {
@@ -498,8 +529,9 @@ Ends ends_of(Receiver r, Reach reach, Slot slots[kMostSurfaces], float gap, floa
   for (int j = 0; j < kSurfaces; j++) {
     const bool is_open = (slots[j].bits & kSlotOpen) != 0u;
     ends.thickness[j] = thickness_of(r, reach, slots[j], gap);
-    ends.within[j] = within_of(slots[j].run, ends.thickness[j]);
     ends.sectors[j] = sectors_of(r, reach, slots[j].run, is_open, ends.thickness[j], shift);
+    ends.thickness[j] = max(ends.thickness[j], slots[j].run.deepest);
+    ends.within[j] = within_of(slots[j].run, ends.thickness[j]);
   }
   return ends;
 }
@@ -519,7 +551,8 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
   ivec2 last_pixel = r.pixel;
-  const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0);
+  const uint outline = outline_of(side.direction_px);
+  const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0, false, 0.0);
   Slot slots[kMostSurfaces];
   for (int i = 0; i < kSurfaces; i++)
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
@@ -571,12 +604,20 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
         slot.run.end = s.place;
         const bool own = begins ? !s.above : (slot.bits & kSlotOwn) != 0u;
         const bool counts = both(here.exists[i], !own);
+        const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
+        // Of first surfaces without a known one behind them their pixel tells how far back they are solid.
+        const bool is_told = kThickness == kThicknessWidth && i == 0 && !knows && !here.has_back[i];
+        const uint word = is_told ? backs[pixel.y * reach.width + pixel.x] : 0u;
+        const float mirrored = unpack_mirrored(word >> outline, reach.radius);
+        slot.run.is_round = begins ? mirrored >= 0.0 : slot.run.is_round;
+        const float told = depth_told(reach, slot.run, word, mirrored);
+        const float behind = is_told ? slope_behind(r, side, s, vec2(pixel - r.pixel), told) : 1.0;
         found.blocked.near = max(found.blocked.near, both(here.exists[i], own) ? open.x : -1.0);
         slot.run.near = max(slot.run.near, counts ? slopes.x : -1.0);
-        slot.run.far = min(slot.run.far, counts ? slopes.y : 1.0);
-        const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
+        slot.run.far = min(slot.run.far, counts ? min(slopes.y, behind) : 1.0);
         const bool is_open = both(counts, !here.has_back[i]);
         const bool is_before = kHard ? both(both(is_open, s.above), is_before_sphere(r, reach, s.place)) : false;
+        slot.run.deepest = max(is_before ? told : 0.0, begins ? 0.0 : slot.run.deepest);
         slot.bits = (begins ? 0u : slot.bits & (kSlotOpen | kSlotKnows | kSlotBefore)) | (s.above ? kSlotAbove : 0u) |
                     (s.within ? kSlotWithin : 0u) | (own ? kSlotOwn : 0u) | (knows ? kSlotKnows : 0u) |
                     (is_open ? kSlotOpen : 0u) | (is_before ? kSlotBefore : 0u);

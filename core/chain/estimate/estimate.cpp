@@ -114,6 +114,10 @@ bool searches_slices(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
 }
 
+bool tells_backs(const EstimatorSettings& settings) {
+  return searches_slices(settings) && !searches_exactly(settings) && settings.thickness == ThicknessKind::automatic;
+}
+
 bool completes(const EstimatorSettings& settings) {
   return searches_slices(settings) && settings.complete == Completion::all &&
          settings.thickness != ThicknessKind::infinite;
@@ -144,6 +148,7 @@ Reach reach_of(const EstimatorSettings& settings, double radius) {
   // Crytek's samples fill the sphere of the radius whatever the falloff.
   const double end = settings.estimator == Estimator::crytek ? 1 : settings.falloff_end;
   return {float(radius * end),
+          float(radius * end * (tells_backs(settings) ? 1 + kMostBack + kLongestChain : 1)),
           float(front_reach_of(settings, radius * end)),
           float(radius * settings.falloff_start),
           settings.falloff,
@@ -202,6 +207,7 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
     Estimate out = of_radius(result, plane, radii.size());
     out.listed = classify(gpu, gbuffer, skipping, reach, sites, out);
     list_sites(gpu, gbuffer, sites, out.listed);
+    if (tells_backs(settings)) out.told = &backs(gpu, gbuffer, reach);
     switch (settings.estimator) {
       case Estimator::gtao:
       case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
@@ -238,16 +244,11 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                     (out.order > 1 ? kClassifyWithSecond : 0) | (out.completed ? kClassifyWithCompleted : 0) |
                     (skipping.changes ? kClassifyReuses : 0) | (selects ? kClassifySelects : 0) |
                     (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
-  const ClassifyParams params{gbuffer.view,
-                              reach.radius,
-                              reach.front,
-                              out.plane,
-                              gbuffer.grid.frame_size,
-                              gbuffer.grid.overhang,
-                              gbuffer.grid.factor,
-                              gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin,
-                              skipping.needed.from,
-                              skipping.needed.to};
+  const ClassifyParams params{
+      gbuffer.view,          reach.radius,        reach.told,
+      reach.front,           out.plane,           gbuffer.grid.frame_size,
+      gbuffer.grid.overhang, gbuffer.grid.factor, gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin,
+      skipping.needed.from,  skipping.needed.to};
   gpu.dispatch("classify", params,
                {{"Bounds", gpu::Optional(skipping.bounds)},
                 {"Changes", gpu::Optional(skipping.changes)},
@@ -264,6 +265,18 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   return list;
 }
 
+const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach) {
+  gpu::Buffer& rows = gpu.buffer("backs of rows", plane_bytes(gbuffer.view));
+  gpu::Buffer& all = gpu.buffer("backs", plane_bytes(gbuffer.view));
+  const BacksParams params{gbuffer.view, reach.radius};
+  const gpu::Binding depth{"Depth", occluder_depth_of(gbuffer)}, normal{"Normal", gbuffer.normal};
+  gpu.dispatch("backs", params,
+               {depth, normal, {"Told", gpu::Optional(static_cast<const gpu::Buffer*>(nullptr))}, {"Backs", rows}},
+               uint(gbuffer.view.size.y), {0u});
+  gpu.dispatch("backs", params, {depth, normal, {"Told", rows}, {"Backs", all}}, uint(gbuffer.view.size.x), {1u});
+  return all;
+}
+
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out) {
   HorizonParams params{};
@@ -278,7 +291,9 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   params.plane = out.plane;
   params.depth_precision = gbuffer.depth_precision;
   std::vector<gpu::Binding> buffers = buffers_of(gbuffer, out);
-  buffers.insert(buffers.end(), {{"Moments", gpu::Optional(out.moments)}, {"Completed", gpu::Optional(out.completed)}});
+  buffers.insert(buffers.end(), {{"Moments", gpu::Optional(out.moments)},
+                                 {"Completed", gpu::Optional(out.completed)},
+                                 {"Backs", gpu::Optional(out.told)}});
   const uint mode = uint(reach.falloff) | (out.order > 0 ? kWithFirst : 0) | (out.order > 1 ? kWithSecond : 0) |
                     (out.completed ? kWithCompleted : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
