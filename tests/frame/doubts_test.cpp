@@ -330,24 +330,6 @@ TEST_F(Doubts, a_camera_of_the_frame_before_is_noted_by_the_turn_of_the_normals)
   }
 }
 
-TEST_F(Doubts, a_camera_of_another_scene_is_not_called_one_of_another_convention) {
-  write_frame();
-  std::mt19937 random(1);
-  std::normal_distribution<double> any(0, 1);
-  const auto axis = [&] { return Vec3{any(random), any(random), any(random)}; };
-  for (int i = 0; i < 60; i++) {
-    const Vec3 right = unit(axis()), up = unit(cross(axis(), right)), back = cross(right, up);
-    Rows rows{};
-    rows[3][3] = 1;
-    for (const auto& [row, way] : {std::pair{0, right}, {1, up}, {2, back}})
-      rows[std::size_t(row)] = {way.x, way.y, way.z, 1};
-    give({{"world_to_camera", rows}, {"normal_space", "world"}});
-    EXPECT_THAT(said(), Each(Not(AnyOf(HasSubstr("looks like"), HasSubstr("order of components"),
-                                       HasSubstr("mirror the picture"), HasSubstr("upside down")))))
-        << i;
-  }
-}
-
 TEST_F(Doubts, an_order_of_rotation_that_fits_is_named) {
   write_frame();
   const double degrees = 180 / std::numbers::pi;

@@ -107,7 +107,7 @@ TEST(Flatness, of_a_small_picture_counts_each_block_once) {
   view.size = {64, 36};
   std::vector<float> plane;
   for (int y = 0; y < 36; y++)
-    for (int x = 0; x < 64; x++) plane.push_back(float(1 / (0.1 + 0.002 * x + 0.001 * y)));
+    for (int x = 0; x < 64; x++) plane.push_back(float(-0.8 - std::log(0.1 + 0.002 * x + 0.001 * y)));  // of no kind
   constexpr std::size_t kSide = 9, kStep = kSide / 4;
   const std::size_t planes = shape_of(plane, view, kSky, {}).curve.planes;
   EXPECT_GT(planes, 20);

@@ -210,6 +210,17 @@ TEST_F(NormalFiles, of_two_components_are_those_of_view_space_or_refused) {
   expect(Reply::refused, {"--normal none"});
 }
 
+TEST(NormalScores, of_another_camera_or_order_are_no_cause_where_few_agree_or_all_are_turned) {
+  NormalScore score{NormalSpace::world, {}};
+  score.agreement = 0.9;
+  EXPECT_TRUE(score.may_be_right());
+  score.turn = {0, 0.1, 0};
+  EXPECT_FALSE(score.may_be_right()) << "by six degrees";
+  score.turn = {};
+  score.agreement = 0.62;
+  EXPECT_FALSE(score.may_be_right()) << "as of rooms by chance";
+}
+
 TEST_F(NormalFiles, show_square_pixels_beside_a_stale_pixel_aspect) {
   settings.normal_space = NormalSpace::view;
   leave_camera_out();
