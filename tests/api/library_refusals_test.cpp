@@ -214,7 +214,7 @@ TEST_F(Library, takes_or_refuses_every_option_of_the_table) {
       "motion-kind frames output-offset chunk missing keep-going warnings-as-errors resume overwrite dry-run "
       "output environment ao-name filter filter-width composite fog-density gain tint mix composite-layers "
       "composite-compression append-ao preview debug type compression no-mkdir ocio display view-transform "
-      "preview-style memory threads preset stats progress log-json verbose quiet print-config set");
+      "preview-style memory threads preset project stats progress log-json verbose quiet print-config shareable set");
   std::set<std::string> refused;
   for (const auto& row : option_table()) {
     const Handle handle(alcove_new());

@@ -247,7 +247,7 @@ TEST_F(Refusals, presets_that_make_no_sense_are_named_with_line_and_key) {
       {"denoise = \"boxx\"\n", {"--denoise", "boxx", "did you mean box"}},
       {"slcies = 2\n", {"there is no setting slcies", "did you mean slices"}},
       {"dry-run = true\n", {"dry-run is an option of the command line only"}},
-      {"preset = \"standard\"\n", {"preset is an option of the command line only", "--preset A --preset B"}},
+      {"preset = [\"standard\", \"draft\"]\n", {"preset takes one name"}},
   };
   for (const auto& [text, texts] : rows) {
     write_bytes(preset, text);
