@@ -33,7 +33,10 @@ SuiteFrame frame_of(const ListedFrame& listed, const std::string& path) {
   require(!listed.camera.empty(), "camera");
   require(listed.radius.has_value(), "radius");
   require(!listed.truth.empty(), "truth");
-  return {listed.name, listed.input, listed.camera, *listed.radius, listed.truth, listed.cpu_reference};
+  // Suites of before lists were those of compare, too, have it as "reference".
+  const bool is_old = listed.cpu_reference.empty() && listed.reference.size() == 1;
+  const std::string& kept = is_old ? listed.reference.front() : listed.cpu_reference;
+  return {listed.name, listed.input, listed.camera, *listed.radius, listed.truth, kept};
 }
 
 /// A setting as alcove run takes it.

@@ -64,8 +64,9 @@ bool are_one(View view, Facet before, Facet a, Facet b, Facet after) {
   if (apart < kChainSlope * pixel)
     one = !(apart > kParallelSlope * pixel && are_parallel(view, a, b, params.radius));
   else
-    one = are_coplanar(view, a, b, kPlaneDot, kPlaneOff) ||
-          (recedes ? meet_at_edge(view, b, a, after, -step) : meet_at_edge(view, a, b, before, step));
+    one = params.has_normals != 0u &&
+          (are_coplanar(view, a, b, kPlaneDot, kPlaneOff) ||
+           (recedes ? meet_at_edge(view, b, a, after, -step) : meet_at_edge(view, a, b, before, step)));
   return one && max(a.z, b.z) < kSkyDepth;
 }
 

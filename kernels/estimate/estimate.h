@@ -76,7 +76,8 @@ ALCOVE_CONSTANT float kMostBack = 4;  // radii: solids reach back as far as they
 
 struct BacksParams {
   View view;
-  float radius;  // scene units
+  float radius;      // scene units
+  uint has_normals;  // 0: they were reconstructed, and at outlines tell nothing of how a surface goes on
 };
 
 struct HorizonParams {

@@ -111,6 +111,23 @@ TEST(KeptReferences, are_taken_for_the_settings_they_were_made_with_alone) {
     EXPECT_TRUE(read_kept_reference(path, others[i], frame.data).empty()) << i;
 }
 
+TEST(KeptReferences, of_suites_from_before_lists_were_those_of_compare_too) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "suite.toml";
+  write_bytes(path, R"(title = "t"
+[[candidate]]
+name = "c"
+[[frame]]
+name = "f"
+input = "f.exr"
+camera = "f.json"
+radius = 1
+truth = "t.exr"
+reference = "kept.exr"
+)");
+  EXPECT_EQ(read_suite(path, "").frames.at(0).reference, folder / "kept.exr");
+}
+
 TEST(KeptReferences, of_another_window_or_none_at_all_are_refused) {
   const TemporaryFolder folder;
   const std::string path = folder / "kept.exr";

@@ -207,7 +207,7 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
     Estimate out = of_radius(result, plane, radii.size());
     out.listed = classify(gpu, gbuffer, skipping, reach, sites, out);
     list_sites(gpu, gbuffer, sites, out.listed);
-    if (tells_backs(settings)) out.told = &backs(gpu, gbuffer, reach);
+    if (tells_backs(settings)) out.told = &backs(gpu, gbuffer, reach, frame[RawPlane::normal] != nullptr);
     switch (settings.estimator) {
       case Estimator::gtao:
       case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
@@ -265,10 +265,10 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   return list;
 }
 
-const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach) {
+const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
   gpu::Buffer& rows = gpu.buffer("backs of rows", plane_bytes(gbuffer.view));
   gpu::Buffer& all = gpu.buffer("backs", plane_bytes(gbuffer.view));
-  const BacksParams params{gbuffer.view, reach.radius};
+  const BacksParams params{gbuffer.view, reach.radius, has_normals ? 1u : 0u};
   const gpu::Binding depth{"Depth", occluder_depth_of(gbuffer)}, normal{"Normal", gbuffer.normal};
   gpu.dispatch("backs", params,
                {depth, normal, {"Told", gpu::Optional(static_cast<const gpu::Buffer*>(nullptr))}, {"Backs", rows}},
