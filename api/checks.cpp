@@ -57,8 +57,8 @@ void check_normals(const Reading& reading, const HostPlanes& planes, Notes& note
   if (has_vectors && reading.normal_unorm && lengths.unit_share > kUnit && lengths.unorm_unit_share < kFew)
     fail(ErrorKind::input, "normal: n is of unit length on {:.0f} %, and 2 n - 1 is not: set --normal-encoding signed",
          100 * lengths.unit_share);
-  if (normal.size() == 2 * reading.data.pixels() && reading.normal_space == NormalSpace::world &&
-      reading.normal_encoding != NormalEncoding::octahedral && reading.normal_encoding != NormalEncoding::spheremap)
+  if (lacks_sign(normal.size() / reading.data.pixels(), reading.normal_encoding) &&
+      reading.normal_space == NormalSpace::world)
     fail(ErrorKind::input,
          "normal: two components do not tell the sign of z in world space: give three, or set --normal-space view, or "
          "--normal-encoding octahedral or spheremap");

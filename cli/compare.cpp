@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "cli/commands.h"
 #include "cli/parsing.h"
@@ -103,21 +104,37 @@ void check_files(const CompareSettings& s) {
   require(!s.depth_channel.empty(), "--depth-channel", s.depth, "--depth");
   require(s.sky != CompareSettings().sky, "--sky", s.depth, "--depth");
   require(!s.motion_channels.empty(), "--motion-channels", s.motion, "--motion");
+  if (!is_frame_list(s.reference)) return;
+  for (const auto& [option, value] : {std::pair{"--frames", s.frames}, std::pair{"--motion", s.motion}})
+    if (!value.empty())
+      fail(ErrorKind::usage, "{} {}: it is for a sequence, and {} is a list of unlike frames", option, value,
+           s.reference);
+}
+
+/// Refuses a limit of grain, also one that a list has, where there is no depth.
+void check_grain(const std::vector<CompareSettings>& frames) {
+  for (const auto& frame : frames)
+    if (frame.limits.max_grain && frame.depth.empty())
+      fail(ErrorKind::usage,
+           "--max-grain {}: grain is measured on plain surfaces, and only depth shows where they are; give --depth "
+           "FILE.exr",
+           *frame.limits.max_grain);
 }
 
 /// Refuses to write over a picture of any frame.
-void check_report(const CompareArguments& arguments, const std::vector<RowOf<CompareArguments>>& rows) {
+void check_report(const CompareArguments& arguments, const std::vector<CompareSettings>& frames,
+                  const std::vector<RowOf<CompareArguments>>& rows) {
   if (arguments.report.empty() && arguments.junit.empty()) return;
   FileUses uses;
   if (is_frame_list(arguments.settings.reference)) uses.add_input({"REFERENCE", arguments.settings.reference});
   CompareArguments of_frame;
-  for (const auto& settings : settings_of_frames(arguments.settings)) {
+  for (const auto& settings : frames) {
     of_frame.settings = settings;
     for (const auto& file : files_of(rows, of_frame, FileRole::input)) uses.add_input(file);
   }
   if (!arguments.junit.empty())
-    for (const auto& settings : settings_of_frames(arguments.settings))
-      uses.add_output({"--junit", failure_path(arguments.junit, name_of(settings))});
+    for (const auto& settings : frames)
+      uses.add_output({"--junit", failure_path(arguments.junit, name_of(settings))}, " of frame " + name_of(settings));
   for (const auto& file : files_of(rows, arguments, FileRole::report)) {
     uses.add_output(file);
     require_makeable(file.path, file.option.c_str());
@@ -159,16 +176,16 @@ void print_picture(const FrameComparison& c) {
 
 void print_sequence(const CompareReport& report) {
   print_heading(report.result, report.reference, report.frames[0].channels);
-  const std::size_t width =
-      std::ranges::max(report.frames, {}, [](const auto& c) { return c.name.size(); }).name.size();
-  fmt::print("{:>{}} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "frame", std::max<std::size_t>(7, width),
-             "pixels", "rmse", "mae", "bias", "p99", "psnr", "ssim", "flip", "grain");
+  const auto longest = std::ranges::max_element(report.frames, {}, [](const auto& c) { return c.name.size(); });
+  const std::size_t width = std::max<std::size_t>(7, longest->name.size());
+  fmt::print("{:>{}} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "frame", width, "pixels", "rmse", "mae",
+             "bias", "p99", "psnr", "ssim", "flip", "grain");
   double sum = 0;
   for (const auto& c : report.frames) {
     const PlaneErrors& e = c.errors;
-    fmt::print("{:>{}} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8.2f} {:>8} {:>8} {:>8}\n", c.name,
-               std::max<std::size_t>(7, width), c.count, number(e.rmse), number(e.mae), signed_number(e.bias),
-               number(e.p99), c.psnr, optional_number(c.ssim), number(c.flip), optional_number(c.grain));
+    fmt::print("{:>{}} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8.2f} {:>8} {:>8} {:>8}\n", c.name, width, c.count,
+               number(e.rmse), number(e.mae), signed_number(e.bias), number(e.p99), c.psnr, optional_number(c.ssim),
+               number(c.flip), optional_number(c.grain));
     sum += e.rmse;
   }
   const auto part = std::ranges::find_if(report.frames, [](const auto& c) { return c.common.has_value(); });
@@ -205,15 +222,15 @@ int compare_command(const std::vector<std::string>& arguments) {
   if (!parsed) return 0;
   CompareArguments& a = *parsed;
   check_files(a.settings);
-  check_report(a, syntax.rows);
-  const CompareLimits& given = a.settings.limits;  // a list may have more
-  if (given.max_grain && a.settings.depth.empty())
-    fail(ErrorKind::usage,
-         "--max-grain {}: grain is measured on plain surfaces, and only depth shows where they are; give --depth "
-         "FILE.exr",
-         *given.max_grain);
+  const std::vector<CompareSettings> frames = settings_of_frames(a.settings);
+  check_grain(frames);
+  check_report(a, frames, syntax.rows);
   a.settings.pictures = !a.report.empty();
   a.settings.failures = !a.junit.empty();
+  // Of an earlier comparison: where this one comes to no end, they would be taken for its verdict.
+  std::error_code none;
+  for (const std::string& path : {a.report, a.junit})
+    if (!path.empty()) std::filesystem::remove(path, none);
 
   const CompareReport report = compare_pictures(a.settings);
   const auto limits = checked_limits(report);

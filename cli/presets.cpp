@@ -73,22 +73,42 @@ std::string file_of(const std::string& name) {
   return "";
 }
 
+/// What a preset builds on: a known name, or a file, which is beside the preset or at a path of its own.
+std::string base_of(const std::string& file, const FlatEntry& entry) {
+  if (entry.values.size() != 1) fail(ErrorKind::usage, "preset takes one name, and the list has several");
+  const std::string& name = entry.values.front();
+  const std::string beside = (fs::path(file).parent_path() / name).string();
+  const auto names = preset_names();
+  return std::ranges::find(names, name) == names.end() && is_file(beside) ? beside : name;
+}
+
+/// A preset as it is named, its file, and the text of that.
+struct ReadPreset {
+  std::string name, file, text;
+};
+
+ReadPreset read_preset(const std::string& name) {
+  const std::string file = preset_file(name);
+  return {name, file, read_text(file, "preset", "--preset")};
+}
+
 /// The preset and those that it builds on, what is built on first.
-std::vector<std::string> chain_of(const std::string& preset) {
+std::vector<ReadPreset> chain_of(const std::string& preset) {
   constexpr std::size_t kMost = 8;
-  std::vector<std::string> chain{preset};
-  while (chain.size() <= kMost) {
-    const auto entries = parse_flat_toml(read_text(preset_file(chain.back()), "preset", "--preset"));
+  std::vector<ReadPreset> chain;
+  std::string name = preset;
+  while (chain.size() < kMost) {
+    const ReadPreset& last = chain.emplace_back(read_preset(name));
+    const auto entries = parse_flat_toml(last.text);
     const auto base = std::ranges::find(entries, "preset", &FlatEntry::key);
     if (base == entries.end()) return {chain.rbegin(), chain.rend()};
-    if (base->values.size() != 1) fail(ErrorKind::usage, "preset takes one name, and the list has several");
-    chain.push_back(base->values.front());
+    name = base_of(last.file, *base);
   }
   fail(ErrorKind::usage, "it builds on itself, or on more than {} others", kMost);
 }
 
 /// The same, with the preset in the sentence of an Error.
-std::vector<std::string> named_chain_of(const std::string& preset) {
+std::vector<ReadPreset> named_chain_of(const std::string& preset) {
   try {
     return chain_of(preset);
   } catch (const Error& error) {
@@ -144,21 +164,21 @@ std::vector<std::string> presets_of(const std::vector<std::string>& words) {
 
 std::vector<OptionValue> values_of_preset(const std::string& preset) {
   std::vector<OptionValue> values;
-  for (const auto& name : named_chain_of(preset))
-    std::ranges::copy(preset_values(name, read_text(preset_file(name), "preset", "--preset"), true),
-                      std::back_inserter(values));
+  for (const auto& [name, file, text] : named_chain_of(preset))
+    std::ranges::copy(preset_values(name, text, true), std::back_inserter(values));
   return values;
 }
 
 std::vector<std::string> files_of_preset(const std::string& preset) {
   std::vector<std::string> files;
-  for (const auto& name : named_chain_of(preset)) files.push_back(preset_file(name));
+  for (const auto& one : named_chain_of(preset)) files.push_back(one.file);
   return files;
 }
 
 std::string project_file(const std::string& input) {
   std::error_code error;
-  for (fs::path at = fs::absolute(input, error); at != at.parent_path(); at = at.parent_path())
+  // In /show/../a.exr, /show is no folder above it.
+  for (fs::path at = fs::absolute(input, error).lexically_normal(); at != at.parent_path(); at = at.parent_path())
     if (const std::string file = (at.parent_path() / "alcove.toml").string(); is_file(file)) return file;
   fail(ErrorKind::usage, "--project: there is no alcove.toml beside {} or in a folder above it", visible(input));
 }

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "cli/progress.h"
+#include "core/base/file.h"
 #include "core/base/frame_list.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
@@ -53,13 +54,31 @@ bool has_all(FirstLook& look, const Settings& settings, const std::vector<std::s
   return false;
 }
 
-/// Fails where two frames of a list would write one file.
-void require_places(const Settings& settings, const std::string& list) {
+/// Fails where two frames of a list would write one file, or one of them what another reads.
+void require_places(const Settings& settings, const std::vector<ListedFrame>& frames) {
+  const std::string& list = settings.input.input;
+  FileUses uses;
+  for (const auto& frame : frames) {
+    uses.add_input({"INPUT", frame.input});
+    uses.add_input({"--camera", frame.camera});
+    for (const auto& file : files_of(settings, FileRole::input))
+      uses.add_input({file.option, with_name(file.path, frame.name)});
+  }
   for (const FileRole role : {FileRole::output, FileRole::report})
-    for (const auto& file : files_of(settings, role))
+    for (const auto& file : files_of(settings, role)) {
       if (file.path.find(kNamePlace) == file.path.npos)
-        fail(ErrorKind::usage, "{} {}: it has no place for the names of {}: write {}, such as out/{}.exr", file.option,
-             file.path, list, kNamePlace, kNamePlace);
+        fail(ErrorKind::usage, "{} {}: {}", file.option, file.path, why_no_place(list));
+      for (const auto& frame : frames)
+        uses.add_output({file.option, with_name(file.path, frame.name)}, " of frame " + frame.name);
+    }
+}
+
+/// Whether an option is typed, or its key behind --set.
+bool is_typed(const Words& arguments, const std::string& option) {
+  const std::string key = option.substr(2) + "=";
+  return std::ranges::any_of(arguments, [&](const auto& word) {
+    return word.starts_with(option) || word.starts_with(key) || word.starts_with("--set=" + key);
+  });
 }
 
 /// The command for a frame of a list: its file, and its camera and radius unless others are typed.
@@ -67,21 +86,18 @@ Words words_of_frame(const Words& arguments, const Settings& settings, const Lis
   Words words;
   for (const auto& word : arguments)
     words.push_back(word == settings.input.input ? frame.input : with_name(word, frame.name));
-  const auto is_typed = [&](const char* option) {
-    return std::ranges::any_of(arguments, [&](const auto& word) { return word.starts_with(option); });
-  };
-  const bool has_camera = std::ranges::any_of(
-      std::array{"--camera", "--fov", "--vertical-fov", "--focal", "--aperture", "--ortho-width"}, is_typed);
+  const bool has_camera =
+      std::ranges::any_of(std::array{"--camera", "--fov", "--vertical-fov", "--focal", "--aperture", "--ortho-width"},
+                          [&](const char* option) { return is_typed(arguments, option); });
   if (!frame.camera.empty() && !has_camera) words.push_back("--camera=" + frame.camera);
-  if (frame.radius && !is_typed("--radius")) words.push_back(fmt::format("--radius={}", *frame.radius));
+  if (frame.radius && !is_typed(arguments, "--radius")) words.push_back(fmt::format("--radius={}", *frame.radius));
   return words;
 }
 
 /// Computes the frames of a list, each as by a command of its own. The first that fails ends it.
 int run_list(const Words& arguments, const Settings& settings) {
-  const std::string& list = settings.input.input;
-  const auto frames = read_frame_list(list, "INPUT");
-  require_places(settings, list);
+  const auto frames = read_frame_list(settings.input.input, "INPUT");
+  require_places(settings, frames);
   for (const auto& frame : frames)
     if (const int code = run_command(words_of_frame(arguments, settings, frame))) return code;
   return 0;

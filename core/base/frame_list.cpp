@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/frame_list.h"
 
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -13,8 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::set<std::string> kLimitKeys = {"max-rmse", "max-p99",   "min-ssim",    "max-flip",
-                                          "max-bias", "max-grain", "max-excluded"};
+/// The least and the most that a limit of compare may be.
+const std::map<std::string, std::pair<double, double>> kLimits = {
+    {"max-rmse", {0, INFINITY}}, {"max-p99", {0, INFINITY}},   {"min-ssim", {-1, 1}},   {"max-flip", {0, 1}},
+    {"max-bias", {0, INFINITY}}, {"max-grain", {0, INFINITY}}, {"max-excluded", {0, 1}}};
 
 /// The files of a key that has one or two; none where it is not there.
 std::vector<std::string> files_of(const TomlTable& table, const char* key, const fs::path& folder) {
@@ -36,8 +41,8 @@ std::string file_of(const TomlTable& table, const char* key, const fs::path& fol
 }
 
 ListedFrame frame_of(const TomlTable& table, const fs::path& folder) {
-  auto known = kLimitKeys;
-  known.insert({"name", "input", "camera", "radius", "truth", "reference", "cpu-reference"});
+  std::set<std::string> known{"name", "input", "camera", "radius", "truth", "reference", "cpu-reference"};
+  for (const auto& [key, range] : kLimits) known.insert(key);
   table.require_keys(known);
   ListedFrame frame{table.text("name"), (folder / table.text("input")).string()};
   frame.camera = file_of(table, "camera", folder);
@@ -45,12 +50,19 @@ ListedFrame frame_of(const TomlTable& table, const fs::path& folder) {
   frame.truth = files_of(table, "truth", folder);
   frame.reference = files_of(table, "reference", folder);
   frame.cpu_reference = file_of(table, "cpu-reference", folder);
-  for (const auto& key : kLimitKeys)
-    if (table.values.contains(key)) frame.limits[key] = table.number(key);
+  for (const auto& [key, range] : kLimits) {
+    if (!table.values.contains(key)) continue;
+    const double limit = frame.limits[key] = table.number(key);
+    if (limit < range.first || limit > range.second) table.refuse(key, "is out of its range, that of the option");
+  }
   return frame;
 }
 
 }  // namespace
+
+std::string why_no_place(const std::string& list) {
+  return fmt::format("it has no place for the names of {}: write {}, such as out/{}.exr", list, kNamePlace, kNamePlace);
+}
 
 bool is_frame_list(const std::string& path) { return lower_case(path).ends_with(".toml"); }
 
@@ -65,10 +77,14 @@ std::vector<ListedFrame> frames_in(const toml::table& root, const std::string& p
 
 std::vector<ListedFrame> read_frame_list(const std::string& path, const char* option) {
   const auto frames = frames_in(read_toml(path, "list of frames", option), path, fs::path(path).parent_path().string());
-  for (const auto& frame : frames)
+  for (const auto& frame : frames) {
+    if (is_frame_list(frame.input))
+      fail(ErrorKind::input, "{}: the input of frame {} is a list itself, {}: name a picture", path, frame.name,
+           frame.input);
     if (frame.name.find('/') != frame.name.npos || frame.name.starts_with('.'))
       fail(ErrorKind::input, "{}: the name {} of the list must be one that a file may have, without / and no dot first",
            path, frame.name);
+  }
   return frames;
 }
 

@@ -27,6 +27,9 @@ struct ListedFrame {
 /// The place of a frame's name in the file names of a command.
 inline constexpr const char* kNamePlace = "{name}";
 
+/// The sentence on a file name that has no such place.
+std::string why_no_place(const std::string& list);
+
 /// Whether a file is a list by its name.
 bool is_frame_list(const std::string& path);
 

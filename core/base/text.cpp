@@ -87,6 +87,20 @@ std::string as_utf8(std::string_view text) {
   return escaped(text, [](char32_t) { return false; });
 }
 
+std::string markup_text(std::string_view text) {
+  std::string markup;
+  for (const char c : text) {
+    switch (c) {
+      case '&': markup += "&amp;"; break;
+      case '<': markup += "&lt;"; break;
+      case '>': markup += "&gt;"; break;
+      case '"': markup += "&quot;"; break;
+      default: markup += c;
+    }
+  }
+  return markup;
+}
+
 std::string printable(std::string_view text) {
   return escaped(text, [](char32_t code) { return is_control(code) || turns_writing(code); });
 }

@@ -34,6 +34,9 @@ std::vector<std::string> nearest_names(std::string_view name, std::span<const st
 /// hexadecimal digits.
 std::string as_utf8(std::string_view text);
 
+/// The text within HTML or XML: characters of their own as entities.
+std::string markup_text(std::string_view text);
+
 /// The text in valid UTF-8 for a terminal. Each control character becomes ?, since a terminal would obey it, and so
 /// does each character that turns the direction of writing.
 std::string printable(std::string_view text);

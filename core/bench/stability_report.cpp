@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.h"
@@ -18,15 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The text as HTML shows it.
-std::string escaped(const std::string& text) {
-  static const std::map<char, const char*> kEntities = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
-  std::string safe;
-  for (const char c : as_utf8(text)) {
-    const auto entity = kEntities.find(c);
-    safe += entity == kEntities.end() ? std::string(1, c) : entity->second;
-  }
-  return safe;
-}
+std::string escaped(const std::string& text) { return markup_text(as_utf8(text)); }
 
 double worst_of(const StabilityCurve& curve) { return *std::ranges::max_element(curve.rmse); }
 

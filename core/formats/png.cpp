@@ -187,8 +187,9 @@ struct Decoder {
   int next = 0;  // the row that comes next
 };
 
-// The most bytes of pixels for one byte of a file. Deflate packs 1032 bytes of up to 8 pixels each.
-constexpr std::uint64_t kDensest = 1 << 14;
+// The most bytes of pixels for one byte of a file. Deflate packs 1032 bytes of up to 8 pixels each, of a palette with
+// four channels.
+constexpr std::uint64_t kDensest = 1032 * 8 * 4;
 
 class PngReader : public PictureReader {
  public:

@@ -140,6 +140,10 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
   return map.along_ray ? z / ray_length : z;
 }
 
+bool lacks_sign(std::size_t components, NormalEncoding encoding) {
+  return components == 2 && encoding != NormalEncoding::octahedral && encoding != NormalEncoding::spheremap;
+}
+
 bool is_between_planes(DepthKind kind) {
   return kind == DepthKind::device || kind == DepthKind::normalized || kind == DepthKind::log;
 }

@@ -78,6 +78,10 @@ DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double
 
 // The whole reading.
 
+/// Whether normals have two components of a vector: nothing in them tells whether the third is above or below 0, and
+/// only in view space is it above, since all that is seen faces the camera.
+bool lacks_sign(std::size_t components, NormalEncoding encoding);
+
 /// The meaning of the values, as options and headers say or as the pixels settle it. It is the same for all frames of a
 /// sequence.
 struct Meaning {

@@ -221,8 +221,8 @@ struct Sums {
   }
 };
 
-/// Whether no sky is near a pixel: a pixel's filter reaches its neighbours, and mixes the light of a background into the
-/// beauty that no pass of light has.
+/// Whether no sky is near a pixel: a pixel's filter reaches its neighbours, and mixes the light of a background into
+/// the beauty that no pass of light has.
 bool is_within_surfaces(std::span<const float> planar, const Window& data, int x, int y) {
   constexpr int kReach = 2;  // px
   for (int row = std::max(0, y - kReach); row <= std::min(data.height - 1, y + kReach); row++)

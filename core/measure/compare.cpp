@@ -454,8 +454,7 @@ namespace {
 std::vector<CompareSettings> settings_of_list(const CompareSettings& settings) {
   const auto frames = read_frame_list(settings.reference, "REFERENCE");
   if (frames.size() > 1 && settings.result.find(kNamePlace) == settings.result.npos)
-    fail(ErrorKind::usage, "{}: it has no place for the names of {}: write {}, such as out/{}.exr", settings.result,
-         settings.reference, kNamePlace, kNamePlace);
+    fail(ErrorKind::usage, "{}: {}", settings.result, why_no_place(settings.reference));
   std::vector<CompareSettings> all;
   for (const auto& frame : frames) {
     CompareSettings& here = all.emplace_back(settings);

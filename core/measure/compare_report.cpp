@@ -216,17 +216,18 @@ CheckedLimit checked(const FrameComparison& frame, const LimitOption& option, bo
 /// Checks each limit where it is broken most, or else nearest to it.
 std::vector<CheckedLimit> checked_limits(std::span<const FrameComparison> frames, bool is_many) {
   std::vector<CheckedLimit> checks;
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
   const auto excess = [](const FrameComparison& frame) {
-    return share_of_holes(frame) - frame.limits.max_excluded.value_or(0);
+    const double share = share_of_holes(frame);
+    return share > 0 || frame.limits.max_excluded ? share - frame.limits.max_excluded.value_or(0) : kNone;
   };
   const FrameComparison& holes = *std::ranges::max_element(frames, {}, excess);
-  if (excess(holes) > 0 || holes.limits.max_excluded) checks.push_back(checked_holes(holes, is_many));
+  if (excess(holes) > kNone) checks.push_back(checked_holes(holes, is_many));
   for (const auto& option : kLimits) {
     const Measure& measure = measure_of(option.measure);
     const auto badness = [&](const FrameComparison& frame) {
       const auto limit = frame.limits.*option.value;
-      return limit ? badness_of(measure, measure.of(frame)) - measure.badness(*limit)
-                   : -std::numeric_limits<double>::infinity();
+      return limit ? badness_of(measure, measure.of(frame)) - measure.badness(*limit) : kNone;
     };
     const FrameComparison& worst = *std::ranges::max_element(frames, {}, badness);
     if (worst.limits.*option.value) checks.push_back(checked(worst, option, is_many));
@@ -348,19 +349,7 @@ std::string compare_page(const CompareReport& report, const std::vector<CheckedL
 namespace {
 
 /// Text within XML, which has no control characters.
-std::string xml_text(const std::string& text) {
-  std::string escaped;
-  for (const char c : printable(text)) {
-    switch (c) {
-      case '&': escaped += "&amp;"; break;
-      case '<': escaped += "&lt;"; break;
-      case '>': escaped += "&gt;"; break;
-      case '"': escaped += "&quot;"; break;
-      default: escaped += c;
-    }
-  }
-  return escaped;
-}
+std::string xml_text(const std::string& text) { return markup_text(printable(text)); }
 
 }  // namespace
 

@@ -198,6 +198,9 @@ TEST_F(CommandLine, presets_of_a_show_come_before_those_of_the_user_and_ours_and
   EXPECT_THAT(printed("draft", folder / "show").out, HasSubstr("search=\"quick\"\n"));
   test::expect_refused(printed("look", folder / "missing"), 2, {"ALCOVE_PRESET_PATH", "missing"});
   test::expect_refused(printed("loop", folder / "show"), 2, {"loop", "itself"});
+  write_bytes(folder / "show/shot.toml", "preset = \"of-a-show.toml\"\n");
+  write_bytes(folder / "show/of-a-show.toml", "intensity = 0.125\n");
+  EXPECT_THAT(printed("shot", folder / "show").out, HasSubstr("intensity=0.125\n")) << "a file beside it";
 }
 
 TEST_F(CommandLine, a_project_has_settings_of_its_own_where_they_are_asked_for) {
@@ -210,6 +213,13 @@ TEST_F(CommandLine, a_project_has_settings_of_its_own_where_they_are_asked_for) 
   EXPECT_THAT(printed({"--project"}), HasSubstr("intensity=0.25\n"));
   EXPECT_THAT(printed({"--project", "--intensity", "0.5"}), HasSubstr("intensity=0.5\n"));
   EXPECT_THAT(printed({}), HasSubstr("intensity=1\n")) << "nothing is read that nobody named";
+  fs::create_directories(folder / "elsewhere");
+  write_bytes(folder / "elsewhere/alcove.toml", "intensity = 0.75\n");
+  const Options above{"run", "../shots/010/frame.exr", "--print-config", "--project"},
+      own{"run", "../frame.exr", "--print-config", "--project"};
+  const Launch from{.folder = folder / "elsewhere"};
+  EXPECT_THAT(run_program(above, from).out, HasSubstr("intensity=0.25\n"));
+  test::expect_refused(run_program(own, from), 2, {"--project", "../frame.exr"});
   test::expect_refused(run_program({"run", frame, "--print-config", "--project"}), 2, {"--project", frame});
 }
 

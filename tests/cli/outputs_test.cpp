@@ -171,8 +171,28 @@ TEST_F(Composites, frames_of_a_list_are_computed_by_their_own_camera_and_radius)
   };
   EXPECT_EQ(radius_of({}), "0.25");
   EXPECT_EQ(radius_of({"--radius", "0.5"}), "0.5") << "what is typed wins";
+  EXPECT_EQ(radius_of({"--set", "radius=0.5"}), "0.5");
   EXPECT_EQ(radius_of({"--fov", "60", "--normal", "none"}), "0.25");
   test::expect_refused(run_program({"run", list, "-o", folder / "ao.exr"}), 2, {"--output", "{name}"});
+}
+
+TEST_F(Composites, no_frame_of_a_list_writes_over_what_another_one_reads) {
+  compute();
+  const std::string list = folder / "list.toml", other = folder / "b.exr", camera_file = folder / "camera.json";
+  fs::copy_file(frame, other);
+  const auto entry = [&](const std::string& name, const std::string& file) {
+    return "[[frame]]\nname = '" + name + "'\ninput = '" + file + "'\ncamera = '" + camera_file + "'\nradius = 1\n";
+  };
+  write_bytes(list, entry("b", frame) + entry("c", other));
+  const std::string before = read_bytes(other);
+  test::expect_refused(run_program({"run", list, "-o", folder / "{name}.exr"}), 2, {"--output of frame b", "b.exr"});
+  EXPECT_EQ(read_bytes(other), before);
+  EXPECT_FALSE(fs::exists(folder / "c.exr"));
+  write_bytes(list, entry("d", frame) + entry("old-d", frame));
+  const Options mattes{"run", list, "-o", folder / "{name}.exr", "--matte", folder / "old-{name}.exr"};
+  test::expect_refused(run_program(mattes), 2, {"--output of frame old-d", "--matte"});
+  write_bytes(list, entry("b", list));
+  test::expect_refused(run_program({"run", list}), 3, {"frame b", "is a list itself"});
 }
 
 TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {

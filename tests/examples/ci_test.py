@@ -23,6 +23,7 @@ LISTS = {
     "a frame": GOOD,
     "limits": GOOD + "max-rmse = 1e-4\nmin-ssim = -1\n",
     "a limit of no name": GOOD + "max-rsme = 1e-4\n",
+    "a limit out of its range": GOOD + "max-rmse = -1\n",
     "a limit in words": GOOD + 'max-rmse = "low"\n',
     "two references": GOOD + 'reference = ["a.exr", "b.exr"]\n',
     "three references": GOOD + 'reference = ["a.exr", "b.exr", "c.exr"]\n',

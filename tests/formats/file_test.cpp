@@ -435,17 +435,36 @@ TEST_F(Files, a_png_that_is_damaged_is_refused_at_every_length) {
   }
 }
 
+/// The bytes that hexadecimal digits say.
+std::string bytes_of_digits(std::string_view digits) {
+  std::string bytes;
+  for (std::size_t i = 0; i < digits.size(); i += 2)
+    bytes += char(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16));
+  return bytes;
+}
+
 TEST_F(Files, an_interlaced_png_with_a_palette_is_read) {
   // Red, blue; blue, red: 1 bit per pixel, by Adam7's passes, written with Python's zlib.
   const std::string_view digits =
       "89504e470d0a1a0a0000000d49484452000000020000000201030000013f7faff100000006504c5445ff00000000ff6c"
       "a1fd8e0000000e49444154789c63606068606800000206010149a78c5f0000000049454e44ae426082";
-  std::string bytes;
-  for (std::size_t i = 0; i < digits.size(); i += 2)
-    bytes += char(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16));
-  write_bytes(folder / "a.png", bytes);
+  write_bytes(folder / "a.png", bytes_of_digits(digits));
   const auto picture = open_png(folder / "a.png", "--normal");
   EXPECT_THAT(whole(*picture).pixels, ElementsAre(1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 1, 0));
+}
+
+TEST_F(Files, an_empty_png_with_a_palette_is_not_too_small_for_its_pixels) {
+  // 3200 x 300 clear black pixels of 1 bit, written with Python's zlib.
+  const std::string_view digits =
+      "89504e470d0a1a0a0000000d4948445200000c800000012c01030000003b43bb6e00000006504c5445000000000000a567b9cf0000"
+      "000174524e530040e6d8660000008b4944415478daedc13101000000c2a0f54f6d094fa00000000000000000000000000000000000"
+      "0000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+      "00000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000e063d5fb0001d8"
+      "0e323d0000000049454e44ae426082";
+  write_bytes(folder / "a.png", bytes_of_digits(digits));
+  const Image image = whole(*open_png(folder / "a.png", "--normal"));
+  EXPECT_EQ(image.data, (Window{0, 0, 3200, 300}));
+  EXPECT_THAT(image.pixels, Each(0));
 }
 
 TEST_F(Files, a_png_that_cannot_be_written_is_an_output_error) {

@@ -123,6 +123,7 @@ TEST(Grain, of_a_few_values_is_told_where_they_are_no_walls) {
     EXPECT_NEAR(grain(rounded).step, 1 / per_unit, 1e-5);
     EXPECT_TRUE(grain(rounded).is_coarse && grain(rounded).is_fixed);
     EXPECT_EQ(grain(rounded, true).step, 0) << "stairs from above";
+    EXPECT_EQ(grain([=](double x, double y) { return rounded(x, y) / 240; }).step, 0) << "walls within a range";
   }
   EXPECT_EQ(grain([](double x, double) { return 2.17 + 0.3 * std::floor(x / 25); }).step, 0) << "shelves";
   EXPECT_EQ(grain([](double x, double) { return 10 * std::floor(1 + x / 90); }).step, 0) << "a few cards";

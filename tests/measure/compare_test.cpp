@@ -609,6 +609,15 @@ TEST_F(CompareSequence, junit_has_a_case_for_each_frame_and_a_picture_for_each_t
   EXPECT_EQ(read_bytes(picture).substr(1, 3), "PNG");
 }
 
+TEST_F(Compare, reports_of_an_earlier_comparison_do_not_stay_where_one_comes_to_no_end) {
+  const std::string a = exr("a.exr", {{"Y", ramp}}), b = exr("b.exr", {{"Y", ramp}});
+  const Options reports{"--junit", folder / "j.xml", "--report", folder / "r.html"};
+  ASSERT_EQ(compare(joined({a, b}, reports)).code, 0);
+  ASSERT_TRUE(fs::exists(folder / "j.xml") && fs::exists(folder / "r.html"));
+  expect_error(3, joined({a, folder / "gone.exr"}, reports), {"gone.exr"});
+  EXPECT_FALSE(fs::exists(folder / "j.xml") || fs::exists(folder / "r.html"));
+}
+
 TEST_F(Compare, junit_escapes_names_and_writes_over_no_input) {
   const auto a = exr("a&b.exr", {{"Y", ramp}}), b = exr("<b>.exr", {{"Y", ramp}});
   ASSERT_EQ(compare({a, b, "--junit", folder / "j.xml"}).code, 0);
@@ -617,6 +626,14 @@ TEST_F(Compare, junit_escapes_names_and_writes_over_no_input) {
   const std::string taken = folder / "j._b__exr.error.png";
   fs::copy_file(a, taken);
   expect_error(2, {taken, b, "--junit", folder / "j.xml"}, {"--junit"});
+  std::string frames;
+  for (const std::string name : {"a b", "a_b"}) {
+    fs::copy_file(a, folder / name + ".exr");
+    frames += "[[frame]]\nname = '" + name + "'\ninput = 'x'\nreference = 'a&b.exr'\n";
+  }
+  write_bytes(folder / "list.toml", frames);
+  expect_error(2, {folder / "{name}.exr", folder / "list.toml", "--junit", folder / "j.xml"},
+               {"frame a b", "frame a_b"});
 }
 
 // Lists of frames.
@@ -640,6 +657,17 @@ TEST_F(Compare, frames_of_a_list_have_names_and_limits_of_their_own_and_no_flick
   expect_error(6, {results, list, "--max-rmse", "0.09"}, {"frame yard: rmse is 0.1"});
   expect_error(2, {folder / "hall.exr", list}, {"{name}"});
   expect_error(2, {results, list, "--report", list}, {"REFERENCE"});
+  expect_error(2, {results, list, "--frames", "1-2"}, {"--frames 1-2", "unlike frames"});
+  const std::string hall = "[[frame]]\nname = 'hall'\ninput = 'x'\nreference = 'grey.exr'\n";
+  const std::string yard = "[[frame]]\nname = 'yard'\ninput = 'x'\nreference = 'grey.exr'\nmax-rmse = 1\n";
+  write_bytes(list, hall + "max-excluded = 0.5\n" + yard);
+  EXPECT_EQ(measured({results, list})["limits"][0]["option"], "--max-excluded") << "that one frame has";
+  write_bytes(list, hall + "max-grain = 0.1\n");
+  expect_error(2, {results, list}, {"--max-grain 0.1", "--depth"});
+  for (const char* limit : {"max-rmse = -1", "min-ssim = 7", "max-excluded = 1.5"}) {
+    write_bytes(list, hall + limit + "\n");
+    expect_error(3, {results, list}, {std::string(limit).substr(0, 8), "range"});
+  }
   write_bytes(list, "[[frame]]\nname = 'hall'\ninput = 'x'\n");
   expect_error(3, {results, list}, {"frame hall has neither \"reference\" nor \"truth\""});
 }

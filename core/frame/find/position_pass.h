@@ -34,8 +34,8 @@ std::string fault_of_positions(std::span<const SeenPoint> points, const ExrFile&
 /// Points of a few bands, if the camera or the depth can be held against them; none if not.
 std::vector<SeenPoint> points_to_check(FrameSource& source, double sky);
 
-/// Compares the camera with these points of the positions. Notes a lens or a place that they refute by pixels, and gives
-/// the note's text; "" if they do not. Refuses panoramas.
+/// Compares the camera with these points of the positions. Notes a lens or a place that they refute by pixels, and
+/// gives the note's text; "" if they do not. Refuses panoramas.
 std::string settle_camera(FrameSource& source, const InputSettings& settings, std::span<const SeenPoint> points);
 
 /// Gives the kind by which the depth is that of the positions beside it: planar, ray or inverse. Gives none if there

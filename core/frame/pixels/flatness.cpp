@@ -337,7 +337,9 @@ Grain grain_of(std::span<const float> raw, double sky, bool orthographic) {
   const std::vector<std::size_t> counts = counts_of_equal(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
   const bool are_few = values.size() < 2 * kAbout;
-  if ((values.size() < kFewest && !are_whole_numbers(values)) || (are_few && orthographic)) return grain;
+  if (values.size() < kFewest && !are_whole_numbers(values)) return grain;
+  // Stairs from above have few distances, and so have walls in fractions of a range.
+  if (are_few && (orthographic || values.back() <= 1)) return grain;
   const std::array places{place_at(0.1, values, counts), place_at(0.5, values, counts), place_at(0.9, values, counts)};
   grain.step = places[1].step;
   if (are_few && grain.step > 0 && !are_multiples(values, grain.step)) grain.step = 0;

@@ -19,8 +19,8 @@ namespace {
 /// From so many on the field of view is not doubted. With half or twice the right one it was 41 % at most.
 constexpr double kSurelyClose = 0.5;
 
-/// Degrees. By their own cameras the normals of 14 frames are turned as a whole by 0.2 at most, or do not fit better once
-/// they are turned back.
+/// Degrees. By their own cameras the normals of 14 frames are turned as a whole by 0.2 at most, or do not fit better
+/// once they are turned back.
 constexpr double kOtherFrame = 0.3;
 
 class NormalDoubts : private NormalSettlement {

@@ -21,7 +21,9 @@ class SpaceSettlement : private NormalSettlement {
   void run(const NormalStatistics& statistics) {
     const bool has_world = reading_.camera.view_from_world.has_value();
     // The usual reading, and that of view space where the camera knows no world.
-    const NormalSpace usual = lacks_sign() ? NormalSpace::view : source_.program.normal_space;
+    const NormalSpace usual = lacks_sign(source_.channels[RawPlane::normal].size(), reading_.normal_encoding)
+                                  ? NormalSpace::view
+                                  : source_.program.normal_space;
     const bool has_usual = has_world || usual == NormalSpace::view;
     if (statistics.count == 0) {
       seen_.tells = false;
@@ -29,7 +31,7 @@ class SpaceSettlement : private NormalSettlement {
       return;
     }
     auto all_scores = score_normals(planes());
-    if (lacks_sign()) refuse_world(all_scores);
+    if (lacks_sign(source_.channels[RawPlane::normal].size(), reading_.normal_encoding)) refuse_world(all_scores);
     if (settle_cut_normals(*this, all_scores, statistics)) return;
     if (!all_scores.empty()) refuse_other_components(*this, all_scores, statistics);
     if (!source_.open.normal_space) return doubt_normals(*this, all_scores);
@@ -57,13 +59,6 @@ class SpaceSettlement : private NormalSettlement {
   }
 
  private:
-  /// Whether two components are those of vectors: nothing in them tells whether z is above or below 0, and only in view
-  /// space is it above, since all that is seen faces the camera.
-  bool lacks_sign() const {
-    return source_.channels[RawPlane::normal].size() == 2 && reading_.normal_encoding != NormalEncoding::octahedral &&
-           reading_.normal_encoding != NormalEncoding::spheremap;
-  }
-
   /// Refuses two components of world space, and takes that reading away.
   void refuse_world(std::vector<NormalScore>& scores) const {
     const auto is_world = [](const NormalScore& s) { return s.space == NormalSpace::world; };
