@@ -1,12 +1,12 @@
 // How far back what each pixel shows is solid, as far as other pixels of its surface tell.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth of the first surfaces that may block, view normals.
+// In: planar depth of the first surfaces that may block, view normals, the chains of pixels of one surface along rows
+// and columns.
 // Out: a word per pixel, see backs.glsl.
 //
-// A dispatch looks along all rows or all columns, both ways. Neighbours that show one surface (solids.glsl) are a
-// chain. Of the chain that comes to a pixel one way some places tell, none farther away than kLongestChain, so that a
-// part of the frame has the words of the whole.
+// Of the four chains that go from a pixel to the left, to the right, up and down some places tell, none farther away
+// than kLongestChain, so that a part of the frame has the words of the whole.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
@@ -15,140 +15,95 @@
 #include "kernels/estimate/solids.glsl"
 #include "kernels/estimate/backs.glsl"
 
-layout(local_size_x = kBacksGroup) in;
-layout(constant_id = 0) const uint kSteep = 0;  // 1: along columns, and joins what rows have told
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { BacksParams params; };
-readonly buffer Depth { float depth[]; };   // one float per pixel
-readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
-readonly buffer Told { uint told[]; };      // from the rows; only with kSteep
-buffer Backs { uint backs[]; };
+readonly buffer Depth { float depth[]; };    // one float per pixel
+readonly buffer Normal { uint normal[]; };   // one uint per pixel, from prepare
+readonly buffer Chains { uint chains[]; };   // from chains
+writeonly buffer Backs { uint backs[]; };
 
-/// As kRunSlope of slice.glsl.
-const float kChainSlope = 8.0;
-
-/// Places of a chain that tell, evenly from a pixel to the chain's first one, or as far as it tells.
+/// Places of a chain that tell, evenly from a pixel to the chain's end, or as far as it tells.
 const int kTelling = 2;
 
-/// A chain up to a pixel.
-struct Chain {
-  int start;                    // its first step
-  int count;                    // pixels
-  vec3 normal;                  // at its start
-  bool may_be_round, is_round;  // it begins with a rounded outline
-};
-
-int index_of(int line, int step) {
-  return kSteep != 0u ? step * params.view.size.x + line : line * params.view.size.x + step;
+/// How many steps a chain goes on from a pixel of a line before it, and after it, at most so many. words: the line's
+/// first.
+ivec2 steps_of_chain(int words, int step, int most, int steps) {
+  const int word = step >> 5;
+  const uint here = ~chains[words + 3 * word];
+  uint ends = here & 0xffffffffu >> 31 - (step & 31);
+  int at = word;
+  const int first = max(step - most, 0) >> 5, last = min(step + most, steps - 1) >> 5;
+  if (ends == 0u && at > first) do
+      ends = ~chains[words + 3 * --at];
+    while (ends == 0u && at > first);
+  ivec2 chain;
+  chain.x = min(step - 32 * at - max(findMSB(ends), 0), most);
+  ends = here & 0xfffffffeu << (step & 31);
+  at = word;
+  if (ends == 0u && at < last) do
+      ends = ~chains[words + 3 * ++at];
+    while (ends == 0u && at < last);
+  chain.y = min(32 * at + (ends == 0u ? 32 : findLSB(ends)) - 1 - step, most);
+  return chain;
 }
 
 float distance_from_eye(View view, vec3 position) { return view.orthographic == 0 ? length(position) : -position.z; }
 
-Facet facet_at(View view, int line, int step, int steps) {
-  const bool exists = step >= 0 && step < steps;
-  const int at = clamp(step, 0, steps - 1);
-  const int index = index_of(line, at);
-  const vec2 pixel = kSteep != 0u ? vec2(line, at) : vec2(at, line);
-  Facet f;
-  f.z = exists ? depth[index] : kSkyDepth;
-  f.position = position_of(view, pixel + 0.5, f.z);
-  f.normal = unpack_normal(normal[index]);
-  return f;
-}
+/// What a chain tells of a pixel, in scene units along the eye's ray.
+struct Told {
+  float depth;     // how much deeper than its front it is solid
+  float size;      // of what is seen of its surface
+  float mirrored;  // as depth, by a rounded outline; below 0: the chain has none
+};
 
-/// Whether two neighbouring pixels, the second one step on, are one surface. before, after: the pixels beside them.
-bool are_one(View view, Facet before, Facet a, Facet b, Facet after) {
-  const float pixel = pixels_of(view, min(a.z, b.z)), apart = abs(a.z - b.z);
-  const bool recedes = b.z > a.z;
-  const vec2 step = kSteep != 0u ? vec2(0, 1) : vec2(1, 0);
-  bool one;
-  if (apart < kChainSlope * pixel)
-    one = !(apart > kParallelSlope * pixel && are_parallel(view, a, b, params.radius));
-  else
-    one = params.has_normals != 0u &&
-          (are_coplanar(view, a, b, kPlaneDot, kPlaneOff) ||
-           (recedes ? meet_at_edge(view, b, a, after, -step) : meet_at_edge(view, a, b, before, step)));
-  return one && max(a.z, b.z) < kSkyDepth;
-}
-
-/// The chain up to a pixel at a step from that up to the one before.
-Chain chain_to(View view, Chain last, bool goes_on, Facet before, Facet here, int step, bool is_first) {
-  Chain chain = last;
-  if (!goes_on) {
-    const bool grazes = dot(here.normal, toward_eye(view, here.position)) < kRoundFacing;
-    return Chain(step, 1, here.normal, !is_first && before.z > here.z && grazes, false);
-  }
-  chain.count++;
-  if (chain.count == 3) chain.is_round = chain.may_be_round && dot(chain.normal, here.normal) < kRoundDot;
-  return chain;
-}
-
-vec3 position_at(View view, int line, int step) {
-  const vec2 pixel = kSteep != 0u ? vec2(line, step) : vec2(step, line);
-  return position_of(view, pixel + 0.5, depth[index_of(line, step)]);
-}
-
-/// What a chain tells at its last pixel, at a step. Its outline is that of one side.
-Back back_of(View view, Chain chain, Facet here, int line, int step) {
-  const float pixel = abs(kSteep != 0u ? view.tangent_per_pixel.y : view.tangent_per_pixel.x);
-  const float longest = kLongestChain * params.radius, e = distance_from_eye(view, here.position);
-  const int most = int(min(longest / (pixel * (view.orthographic == 0 ? here.z : 1.0)), 1e5));
-  const int away = clamp(chain.start - step, -most, most);
-  float back = 0.0, size = 0.0, farther = 0.0;
-  int i = 1;
-  do {
-    const vec3 other = position_at(view, line, step + away * i / kTelling);
+/// away: from the pixel to the end of the chain.
+Told told_by(View view, vec3 here, vec3 n, ivec2 pixel, ivec2 away, bool is_round) {
+  const float e = distance_from_eye(view, here);
+  float farther = 0.0;
+  Told told = Told(0.0, 0.0, -1.0);
+  for (int i = 1; i <= kTelling; i++) {
+    const ivec2 place = pixel + away * i / kTelling;
+    const vec3 other = position_of(view, vec2(place) + 0.5, depth[index_of(view, place)]);
     farther = distance_from_eye(view, other) - e;
-    back = max(back, min(farther, -dot(here.normal, other - here.position)));
-    size = length(other - here.position);
-  } while (++i <= kTelling);
-  const bool is_round = chain.is_round && step + away == chain.start;
-  const float per_distance = here.z / e;
-  const float mirrored = max(2.0 * farther, pixels_of(view, here.z)) * per_distance;
-  return Back(back * per_distance, min(size, longest), is_round ? mirrored : -1.0, -1.0);
+    told.depth = max(told.depth, min(farther, -dot(n, other - here)));
+    told.size = length(other - here);
+  }
+  if (is_round) told.mirrored = max(2.0 * farther, 0.0);
+  return told;
+}
+
+/// The same of both chains of a line.
+struct Line {
+  float depth, size;
+  vec2 mirrored;  // by the outline before, and after
+};
+
+Line line_of(View view, vec3 here, vec3 n, ivec2 pixel, int most, bool is_column) {
+  const ivec2 along = is_column ? ivec2(0, 1) : ivec2(1, 0);
+  const int step = is_column ? pixel.y : pixel.x, steps = is_column ? view.size.y : view.size.x;
+  const int words = first_word(view, is_column, is_column ? pixel.x : pixel.y);
+  const ivec2 away = steps_of_chain(words, step, most, steps);
+  const ivec2 ends = step + ivec2(-away.x, away.y);
+  const uint begins = chains[words + 3 * (ends.x >> 5) + 1] >> (ends.x & 31) & 1u;
+  const uint stops = chains[words + 3 * (ends.y >> 5) + 2] >> (ends.y & 31) & 1u;
+  const Told before = told_by(view, here, n, pixel, -away.x * along, begins != 0u && away.x >= 2 && away.x < most);
+  const Told after = told_by(view, here, n, pixel, away.y * along, stops != 0u && away.y >= 2 && away.y < most);
+  return Line(max(before.depth, after.depth), before.size + after.size, vec2(before.mirrored, after.mirrored));
 }
 
 void main() {
   const View view = params.view;
-  const int lines = kSteep != 0u ? view.size.x : view.size.y, steps = kSteep != 0u ? view.size.y : view.size.x;
-  const int line = int(gl_GlobalInvocationID.x);
-  if (line >= lines) return;
-  Facet before = facet_at(view, line, -1, steps), a = before, here = facet_at(view, line, 0, steps);
-  Chain chain;
-  chain.count = 0;
-  int s = 0;
-  do {
-    const Facet after = facet_at(view, line, s + 1, steps);
-    const bool goes_on = s > 0 && are_one(view, before, a, here, after);
-    chain = chain_to(view, chain, goes_on, a, here, s, s == 0);
-    backs[index_of(line, s)] =
-        pack_line(back_of(view, chain, here, line, s), params.radius) | (goes_on ? kBackLinked : 0u);
-    before = a;
-    a = here;
-    here = after;
-  } while (++s < steps);
-  s = steps - 1;
-  bool goes_on = false;
-  do {
-    here = facet_at(view, line, s, steps);
-    chain = chain_to(view, chain, goes_on, a, here, s, s == steps - 1);
-    const int index = index_of(line, s);
-    const uint word = backs[index];
-    goes_on = (word & kBackLinked) != 0u;
-    Back back = unpack_line(word, params.radius);
-    const Back backward = back_of(view, chain, here, line, s);
-    back.after = backward.before;
-    back.depth = max(back.depth, backward.depth);
-    back.width += backward.width + pixels_of(view, here.z);
-    uint result;
-    if (kSteep != 0u) {
-      const Back other = unpack_line(told[index], params.radius);
-      const float depth =
-          max(min(back.depth, kBackPerWidth * other.width), min(other.depth, kBackPerWidth * back.width));
-      result = pack_back(depth, vec4(other.before, other.after, back.before, back.after), params.radius);
-    } else {
-      result = pack_line(back, params.radius);
-    }
-    backs[index] = result;
-    a = here;
-  } while (--s >= 0);
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (!inside(view, pixel)) return;
+  const int index = index_of(view, pixel);
+  const float z = depth[index], width = pixels_of(view, z);
+  const vec3 here = position_of(view, vec2(pixel) + 0.5, z), n = unpack_normal(normal[index]);
+  const vec2 longest = kLongestChain * params.radius / (view.orthographic == 0 ? z : 1.0) / abs(view.tangent_per_pixel);
+  const ivec2 most = ivec2(min(longest, 1e5));
+  const Line row = line_of(view, here, n, pixel, most.x, false), column = line_of(view, here, n, pixel, most.y, true);
+  const vec2 widths = kBackPerWidth * (vec2(row.size, column.size) + width);
+  const float told = max(min(row.depth, widths.y), min(column.depth, widths.x));
+  // Of depth along the eye's ray that along the axis, in pixels' widths.
+  const float scale = z / (distance_from_eye(view, here) * width), farthest = kMostBack * params.radius * scale;
+  backs[index] = pack_back(min(told * scale, farthest), min(vec4(row.mirrored, column.mirrored) * scale, farthest));
 }

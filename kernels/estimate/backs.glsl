@@ -1,48 +1,43 @@
 // How far back a pixel's surface is solid, by what else is seen of it, packed into a word. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
-
-const uint kBackLinked = 0x80000000u;  // only while it is made: the pixel goes on from the one before
+//
+// Depths are held in widths of the pixel, so that a word tells the same at any scale of the scene, and of the radius.
 
 /// What is seen along a line tells no more than so many times the width across it: the rod of a railing is not as deep
 /// as the balcony below it.
 const float kBackPerWidth = 1.5;
 
-/// What a line tells of a pixel.
-struct Back {
-  float depth;          // how much deeper than its front it is solid
-  float width;          // of its surface along the line
-  float before, after;  // as depth, by the rounded outline before it and after it; below 0: there is none
-};
-
-uint pack_mirrored(float depth, float radius) {
-  return depth < 0.0 ? 0u : uint(sqrt(min(depth / (kMostBack * radius), 1.0)) * 62.0 + 0.5) + 1u;
+/// A number of at least a quarter in so many bits, of which four are its exponent; less and more are held to that.
+uint pack_float(float x, int bits) {
+  const int rest = 27 - bits;
+  const uint half_a_step = 1u << rest - 1, least = 125u << 23;
+  return min(max(floatBitsToUint(x) + half_a_step, least) - least >> rest, (1u << bits) - 1u);
 }
-float unpack_mirrored(uint word, float radius) {
-  const float part = (float(word & 63u) - 1.0) / 62.0;
-  return (word & 63u) == 0u ? -1.0 : part * part * kMostBack * radius;
-}
+float unpack_float(uint packed, int bits) { return uintBitsToFloat((packed << 27 - bits) + (125u << 23)); }
 
-uint pack_depth(float depth, float radius) { return uint(clamp(depth / (kMostBack * radius), 0.0, 1.0) * 255.0 + 0.5); }
-float unpack_depth(uint word, float radius) { return float(word & 255u) * (kMostBack / 255.0) * radius; }
+// An outline's depth is a pixel at least, so 0 is left for that there is none.
+uint pack_mirrored(float depth) { return depth < 0.0 ? 0u : max(pack_float(depth, 6), 1u); }
+float unpack_mirrored(uint word) { return (word & 63u) == 0u ? -1.0 : unpack_float(word & 63u, 6); }
 
-uint pack_line(Back back, float radius) {
-  const uint width = uint(clamp(back.width / (2.0 * kLongestChain * radius), 0.0, 1.0) * 2047.0 + 0.5);
-  return pack_depth(back.depth, radius) | pack_mirrored(back.before, radius) << 8 |
-         pack_mirrored(back.after, radius) << 14 | width << 20;
-}
+float unpack_depth(uint word) { return unpack_float(word & 255u, 8); }
 
-Back unpack_line(uint word, float radius) {
-  return Back(unpack_depth(word, radius), float(word >> 20 & 2047u) * (2.0 * kLongestChain / 2047.0) * radius,
-              unpack_mirrored(word >> 8, radius), unpack_mirrored(word >> 14, radius));
-}
-
-uint pack_back(float depth, vec4 mirrored, float radius) {
-  return pack_depth(depth, radius) | pack_mirrored(mirrored.x, radius) << 8 | pack_mirrored(mirrored.y, radius) << 14 |
-         pack_mirrored(mirrored.z, radius) << 20 | pack_mirrored(mirrored.w, radius) << 26;
+/// depth: of the front to the back. mirrored: the same by the rounded outline to the left, to the right, above and below;
+/// below 0: there is none.
+uint pack_back(float depth, vec4 mirrored) {
+  return pack_float(depth, 8) | pack_mirrored(mirrored.x) << 8 | pack_mirrored(mirrored.y) << 14 |
+         pack_mirrored(mirrored.z) << 20 | pack_mirrored(mirrored.w) << 26;
 }
 
 /// Where in a word the outline is told that lies towards a receiver from which samples go this way.
 uint outline_of(vec2 direction) {
   const bool across = abs(direction.x) >= abs(direction.y);
   return across ? (direction.x > 0.0 ? 8u : 14u) : (direction.y > 0.0 ? 20u : 26u);
+}
+
+/// Chains are pixels of a line that show one surface, each with the next. Of 32 pixels of a line three words tell, a bit
+/// for each: whether it goes on from the one before; whether a chain that begins with it begins with a rounded outline;
+/// whether one that ends with it ends so. The first of a row or a column, which lie behind the rows:
+int first_word(View view, bool is_column, int line) {
+  const ivec2 words = 3 * (view.size + 31 >> 5);
+  return is_column ? view.size.y * words.x + line * words.y : line * words.x;
 }

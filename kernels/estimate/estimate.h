@@ -69,7 +69,7 @@ ALCOVE_CONSTANT uint kCompletesHidden = 8;   // another one: they go on behind w
 ALCOVE_CONSTANT uint kInSectors = 16;        // another one: all that blocks is counted in sectors, no horizon is exact
 ALCOVE_CONSTANT uint kHiddenSurface = 32;
 
-ALCOVE_CONSTANT int kBacksGroup = 16;
+ALCOVE_CONSTANT int kChainsGroup = 16;
 // radii: nothing farther away along a row of pixels of one surface tells how far back it is solid
 ALCOVE_CONSTANT float kLongestChain = 1.9f;
 ALCOVE_CONSTANT float kMostBack = 4;  // radii: solids reach back as far as they are seen to, but no farther

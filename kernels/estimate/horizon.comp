@@ -167,9 +167,10 @@ float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width, f
   return run.is_round ? 0.0 : levelled(width, kWidestRun * reach.radius);
 }
 
-/// How much deeper than its front the solid of a pixel is told to be, by its word of backs.glsl.
-float depth_told(Reach reach, Run run, uint word, float mirrored) {
-  return both(run.is_round, mirrored >= 0.0) ? mirrored : unpack_depth(word, reach.radius);
+/// How much deeper than its front, at depth z, the solid of a pixel is told to be, by its word of backs.glsl.
+float depth_told(Receiver r, Reach reach, Run run, float z, uint word, float mirrored) {
+  const float told = both(run.is_round, mirrored >= 0.0) ? mirrored : unpack_depth(word);
+  return told * reach.pixel_size * (r.perspective ? z : 1.0);
 }
 
 /// slope_of() the end of a sample's solid that is so much deeper than its front; 1 where it does not block.
@@ -431,7 +432,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       // The receiver itself need be no occluder.
       const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
       const uint word = kThickness == kThicknessWidth ? backs[here.y * reach.width + here.x] : 0u;
-      const float mirrored = unpack_mirrored(word >> outline, reach.radius);
+      const float mirrored = unpack_mirrored(word >> outline);
       const Sample s = sample_of(r, side, reach, offset, beside, z);
       last_pixel = here;
       const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
@@ -449,7 +450,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       run.end = s.place;
       run.near = greater(own ? -1.0 : slopes.x, ends ? -1.0 : run.near);
       run.is_round = ends ? mirrored >= 0.0 : run.is_round;
-      const float told = depth_told(reach, run, word, mirrored);
+      const float told = depth_told(r, reach, run, s.z, word, mirrored);
       const float far =
           kThickness == kThicknessWidth ? lesser(slopes.y, slope_behind(r, side, s, beside, told)) : slopes.y;
       run.far = lesser(own ? 1.0 : far, ends ? 1.0 : run.far);
@@ -608,9 +609,9 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
         // Of first surfaces without a known one behind them their pixel tells how far back they are solid.
         const bool is_told = kThickness == kThicknessWidth && i == 0 && !knows && !here.has_back[i];
         const uint word = is_told ? backs[pixel.y * reach.width + pixel.x] : 0u;
-        const float mirrored = unpack_mirrored(word >> outline, reach.radius);
+        const float mirrored = unpack_mirrored(word >> outline);
         slot.run.is_round = begins ? mirrored >= 0.0 : slot.run.is_round;
-        const float told = depth_told(reach, slot.run, word, mirrored);
+        const float told = depth_told(r, reach, slot.run, s.z, word, mirrored);
         const float behind = is_told ? slope_behind(r, side, s, vec2(pixel - r.pixel), told) : 1.0;
         found.blocked.near = max(found.blocked.near, both(here.exists[i], own) ? open.x : -1.0);
         slot.run.near = max(slot.run.near, counts ? slopes.x : -1.0);

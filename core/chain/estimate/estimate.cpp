@@ -266,14 +266,19 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
 }
 
 const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
-  gpu::Buffer& rows = gpu.buffer("backs of rows", plane_bytes(gbuffer.view));
-  gpu::Buffer& all = gpu.buffer("backs", plane_bytes(gbuffer.view));
-  const BacksParams params{gbuffer.view, reach.radius, has_normals ? 1u : 0u};
+  const View& view = gbuffer.view;
+  const auto words = [](int steps) { return 3 * uint((steps + 31) / 32); };
+  const uint of_rows = uint(view.size.y) * words(view.size.x), of_columns = uint(view.size.x) * words(view.size.y);
+  gpu::Buffer& chains = gpu.buffer("chains", (of_rows + of_columns) * sizeof(uint));
+  gpu::Buffer& all = gpu.buffer("backs", plane_bytes(view));
+  const BacksParams params{view, reach.radius, has_normals ? 1u : 0u};
   const gpu::Binding depth{"Depth", occluder_depth_of(gbuffer)}, normal{"Normal", gbuffer.normal};
-  gpu.dispatch("backs", params,
-               {depth, normal, {"Told", gpu::Optional(static_cast<const gpu::Buffer*>(nullptr))}, {"Backs", rows}},
-               uint(gbuffer.view.size.y), {0u});
-  gpu.dispatch("backs", params, {depth, normal, {"Told", rows}, {"Backs", all}}, uint(gbuffer.view.size.x), {1u});
+  const auto write_chains = [&](int lines, int steps, uint is_column) {
+    gpu.dispatch("chains", params, {depth, normal, {"Chains", chains}}, {uint(lines), uint(steps + 31) / 32}, {is_column});
+  };
+  write_chains(view.size.y, view.size.x, 0);
+  write_chains(view.size.x, view.size.y, 1);
+  gpu.dispatch("backs", params, {depth, normal, {"Chains", chains}, {"Backs", all}}, extent_of(view));
   return all;
 }
 
