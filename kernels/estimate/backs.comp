@@ -5,8 +5,8 @@
 // and columns.
 // Out: a word per pixel, see backs.glsl.
 //
-// Of the four chains that go from a pixel to the left, to the right, up and down some places tell, none farther away
-// than kLongestChain, so that a part of the frame has the words of the whole.
+// Of the four chains that go from a pixel to the left, to the right, up and down the last pixels tell, or those
+// kLongestChain away, so that a part of the frame has the words of the whole.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
@@ -19,33 +19,22 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { BacksParams params; };
 readonly buffer Depth { float depth[]; };    // one float per pixel
 readonly buffer Normal { uint normal[]; };   // one uint per pixel, from prepare
-readonly buffer Chains { uint chains[]; };   // from chains
+readonly buffer Chains { uint chains[]; };   // two words per segment, from chains
+readonly buffer Ends { uint ends[]; };       // the same, from chain_ends
 writeonly buffer Backs { uint backs[]; };
 
-/// Places of a chain that tell, evenly from a pixel to the chain's end, or as far as it tells.
-const int kTelling = 2;
-
-/// How many steps a chain goes on from a pixel of a line before it, and after it, at most so many. words: the line's
-/// first.
-ivec2 steps_of_chain(int words, int step, int most, int steps) {
-  const int word = step >> 5;
-  const uint here = ~chains[words + 3 * word];
-  uint ends = here & 0xffffffffu >> 31 - (step & 31);
-  int at = word;
-  const int first = max(step - most, 0) >> 5, last = min(step + most, steps - 1) >> 5;
-  if (ends == 0u && at > first) do
-      ends = ~chains[words + 3 * --at];
-    while (ends == 0u && at > first);
-  ivec2 chain;
-  chain.x = min(step - 32 * at - max(findMSB(ends), 0), most);
-  ends = here & 0xfffffffeu << (step & 31);
-  at = word;
-  if (ends == 0u && at < last) do
-      ends = ~chains[words + 3 * ++at];
-    while (ends == 0u && at < last);
-  chain.y = min(32 * at + (ends == 0u ? 32 : findLSB(ends)) - 1 - step, most);
-  return chain;
+/// How many steps the chain of a pixel goes on before it, and after it, at most so many. first: the line's segment.
+ivec2 steps_of_chain(int first, int step, int most) {
+  const int segment = first + (step >> 5), at = step & 31;
+  const uint parted = ~chains[2 * segment];
+  const uint before = parted & 0xffffffffu >> 31 - at, after = parted & 0xfffffffeu << at;
+  const ivec2 beyond = ivec2(ends[2 * segment], ends[2 * segment + 1]);
+  return min(ivec2(before == 0u ? at + beyond.x : at - findMSB(before),
+                   after == 0u ? 31 - at + beyond.y : findLSB(after) - 1 - at),
+             most);
 }
+
+bool is_round_at(int first, int step) { return (chains[2 * (first + (step >> 5)) + 1] >> (step & 31) & 1u) != 0u; }
 
 float distance_from_eye(View view, vec3 position) { return view.orthographic == 0 ? length(position) : -position.z; }
 
@@ -56,20 +45,12 @@ struct Told {
   float mirrored;  // as depth, by a rounded outline; below 0: the chain has none
 };
 
-/// away: from the pixel to the end of the chain.
+/// away: from the pixel to the end of the chain, or as far as it tells.
 Told told_by(View view, vec3 here, vec3 n, ivec2 pixel, ivec2 away, bool is_round) {
-  const float e = distance_from_eye(view, here);
-  float farther = 0.0;
-  Told told = Told(0.0, 0.0, -1.0);
-  for (int i = 1; i <= kTelling; i++) {
-    const ivec2 place = pixel + away * i / kTelling;
-    const vec3 other = position_of(view, vec2(place) + 0.5, depth[index_of(view, place)]);
-    farther = distance_from_eye(view, other) - e;
-    told.depth = max(told.depth, min(farther, -dot(n, other - here)));
-    told.size = length(other - here);
-  }
-  if (is_round) told.mirrored = max(2.0 * farther, 0.0);
-  return told;
+  const ivec2 end = pixel + away;
+  const vec3 other = position_of(view, vec2(end) + 0.5, depth[index_of(view, end)]), along = other - here;
+  const float farther = distance_from_eye(view, other) - distance_from_eye(view, here);
+  return Told(min(farther, -dot(n, along)), length(along), is_round ? max(2.0 * farther, 0.0) : -1.0);
 }
 
 /// The same of both chains of a line.
@@ -80,15 +61,13 @@ struct Line {
 
 Line line_of(View view, vec3 here, vec3 n, ivec2 pixel, int most, bool is_column) {
   const ivec2 along = is_column ? ivec2(0, 1) : ivec2(1, 0);
-  const int step = is_column ? pixel.y : pixel.x, steps = is_column ? view.size.y : view.size.x;
-  const int words = first_word(view, is_column, is_column ? pixel.x : pixel.y);
-  const ivec2 away = steps_of_chain(words, step, most, steps);
-  const ivec2 ends = step + ivec2(-away.x, away.y);
-  const uint begins = chains[words + 3 * (ends.x >> 5) + 1] >> (ends.x & 31) & 1u;
-  const uint stops = chains[words + 3 * (ends.y >> 5) + 2] >> (ends.y & 31) & 1u;
-  const Told before = told_by(view, here, n, pixel, -away.x * along, begins != 0u && away.x >= 2 && away.x < most);
-  const Told after = told_by(view, here, n, pixel, away.y * along, stops != 0u && away.y >= 2 && away.y < most);
-  return Line(max(before.depth, after.depth), before.size + after.size, vec2(before.mirrored, after.mirrored));
+  const int step = is_column ? pixel.y : pixel.x;
+  const int first = first_segment(view, is_column, is_column ? pixel.x : pixel.y);
+  const ivec2 away = steps_of_chain(first, step, most);
+  const bvec2 may_be_round = bvec2(uvec2(greaterThanEqual(away, ivec2(2))) & uvec2(lessThan(away, ivec2(most))));
+  const Told before = told_by(view, here, n, pixel, -away.x * along, may_be_round.x && is_round_at(first, step - away.x)),
+             after = told_by(view, here, n, pixel, away.y * along, may_be_round.y && is_round_at(first, step + away.y));
+  return Line(max(max(before.depth, after.depth), 0.0), before.size + after.size, vec2(before.mirrored, after.mirrored));
 }
 
 void main() {

@@ -34,10 +34,11 @@ uint outline_of(vec2 direction) {
   return across ? (direction.x > 0.0 ? 8u : 14u) : (direction.y > 0.0 ? 20u : 26u);
 }
 
-/// Chains are pixels of a line that show one surface, each with the next. Of 32 pixels of a line three words tell, a bit
-/// for each: whether it goes on from the one before; whether a chain that begins with it begins with a rounded outline;
-/// whether one that ends with it ends so. The first of a row or a column, which lie behind the rows:
-int first_word(View view, bool is_column, int line) {
-  const ivec2 words = 3 * (view.size + 31 >> 5);
-  return is_column ? view.size.y * words.x + line * words.y : line * words.x;
+/// Chains are pixels of a line that show one surface, each with the next. Lines are cut into segments of 32 pixels. Two
+/// words tell of a segment, a bit for each pixel: whether it goes on from the one before; and whether a chain that
+/// begins or ends with it has a rounded outline there. The first segment of a row, or of a column, which lie behind the
+/// rows:
+int first_segment(View view, bool is_column, int line) {
+  const ivec2 segments = view.size + 31 >> 5;
+  return is_column ? view.size.y * segments.x + line * segments.y : line * segments.x;
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth of the first surfaces that may block, view normals.
-// Out: three words per 32 pixels of a line, see backs.glsl. A dispatch writes those of all rows or of all columns.
+// Out: two words per 32 pixels of a line, see backs.glsl. A dispatch writes those of all rows or of all columns.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
@@ -36,22 +36,26 @@ Facet facet_at(View view, int line, int step, int steps) {
 /// Whether two neighbouring pixels, the second one step on, are one surface. before, after: the pixels beside them.
 bool are_one(View view, Facet before, Facet a, Facet b, Facet after) {
   const float pixel = pixels_of(view, min(a.z, b.z)), apart = abs(a.z - b.z);
-  const bool recedes = b.z > a.z;
   const vec2 step = kSteep != 0u ? vec2(0, 1) : vec2(1, 0);
-  bool one;
-  if (apart < kChainSlope * pixel)
-    one = !(apart > kParallelSlope * pixel && are_parallel(view, a, b, params.radius));
-  else
-    one = params.has_normals != 0u &&
-          (are_coplanar(view, a, b, kPlaneDot, kPlaneOff) ||
-           (recedes ? meet_at_edge(view, b, a, after, -step) : meet_at_edge(view, a, b, before, step)));
+  const bool recedes = b.z > a.z;
+  Facet near = b, far = a, next = before;
+  if (recedes) {
+    near = a;
+    far = b;
+    next = after;
+  }
+  const bool by_depth = !(apart > kParallelSlope * pixel && are_parallel(view, a, b, params.radius));
+  const bool by_normals =
+      are_coplanar(view, a, b, kPlaneDot, kPlaneOff) || meet_at_edge(view, far, near, next, recedes ? -step : step);
+  const bool one = apart < kChainSlope * pixel ? by_depth : params.has_normals != 0u && by_normals;
   return one && min(a.z, b.z) > 0.0 && max(a.z, b.z) < kSkyDepth;
 }
 
-/// Whether a chain of three pixels or more that ends at `end` has a rounded outline there. third: two pixels inward.
-bool is_round(View view, Facet beyond, Facet end, Facet third) {
-  return beyond.z > end.z && dot(end.normal, toward_eye(view, end.position)) < kRoundFacing &&
-         dot(end.normal, third.normal) < kRoundDot;
+/// Whether a chain of three pixels or more that ends at `end` has a rounded outline there. beyond: depth of the pixel
+/// beyond it. third: the normal two pixels inward.
+bool is_round(View view, float beyond, Facet end, vec3 third) {
+  return beyond > end.z && dot(end.normal, toward_eye(view, end.position)) < kRoundFacing &&
+         dot(end.normal, third) < kRoundDot;
 }
 
 void main() {
@@ -62,7 +66,7 @@ void main() {
   // The pixel at a step, two before it, and two after it.
   Facet b2, b1 = facet_at(view, line, first - 2, steps), here = facet_at(view, line, first - 1, steps),
             a1 = facet_at(view, line, first, steps), a2 = facet_at(view, line, first + 1, steps);
-  uvec3 word = uvec3(0);
+  uint links = 0u, rounds = 0u;
   int i = 0;
   do {
     b2 = b1;
@@ -70,11 +74,14 @@ void main() {
     here = a1;
     a1 = a2;
     a2 = facet_at(view, line, first + i + 2, steps);
-    const bvec3 bits = bvec3(are_one(view, b2, b1, here, a1), is_round(view, b1, here, a2), is_round(view, a1, here, b2));
-    word |= uvec3(bits) << i;
+    const bool goes_on = are_one(view, b2, b1, here, a1);
+    // Of a chain's two ends the last one goes on from the pixel before it.
+    const float beyond = goes_on ? a1.z : b1.z;
+    const vec3 third = goes_on ? b2.normal : a2.normal;
+    links |= goes_on ? 1u << i : 0u;
+    rounds |= is_round(view, beyond, here, third) ? 1u << i : 0u;
   } while (++i < 32);
-  const int at = first_word(view, kSteep != 0u, line) + 3 * (first >> 5);
-  chains[at] = word.x;
-  chains[at + 1] = word.y;
-  chains[at + 2] = word.z;
+  const int segment = first_segment(view, kSteep != 0u, line) + (first >> 5);
+  chains[2 * segment] = links;
+  chains[2 * segment + 1] = rounds;
 }

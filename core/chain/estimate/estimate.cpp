@@ -267,19 +267,21 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
 
 const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
   const View& view = gbuffer.view;
-  const auto words = [](int steps) { return 3 * uint((steps + 31) / 32); };
-  const uint of_rows = uint(view.size.y) * words(view.size.x), of_columns = uint(view.size.x) * words(view.size.y);
-  gpu::Buffer& chains = gpu.buffer("chains", (of_rows + of_columns) * sizeof(uint));
-  gpu::Buffer& all = gpu.buffer("backs", plane_bytes(view));
+  const auto segments_of = [](int steps) { return uint((steps + 31) / 32); };
+  const std::size_t segments = std::size_t(view.size.y) * segments_of(view.size.x) +
+                               std::size_t(view.size.x) * segments_of(view.size.y);
+  gpu::Buffer& chains = gpu.buffer("chains", segments * 2 * sizeof(uint));
+  gpu::Buffer& ends = gpu.buffer("chain ends", segments * 2 * sizeof(uint));
+  gpu::Buffer& result = gpu.buffer("backs", plane_bytes(view));
   const BacksParams params{view, reach.radius, has_normals ? 1u : 0u};
   const gpu::Binding depth{"Depth", occluder_depth_of(gbuffer)}, normal{"Normal", gbuffer.normal};
-  const auto write_chains = [&](int lines, int steps, uint is_column) {
-    gpu.dispatch("chains", params, {depth, normal, {"Chains", chains}}, {uint(lines), uint(steps + 31) / 32}, {is_column});
-  };
-  write_chains(view.size.y, view.size.x, 0);
-  write_chains(view.size.x, view.size.y, 1);
-  gpu.dispatch("backs", params, {depth, normal, {"Chains", chains}, {"Backs", all}}, extent_of(view));
-  return all;
+  for (const bool is_column : {false, true}) {
+    const int lines = is_column ? view.size.x : view.size.y, steps = is_column ? view.size.y : view.size.x;
+    gpu.dispatch("chains", params, {depth, normal, {"Chains", chains}}, {uint(lines), segments_of(steps)}, {is_column});
+    gpu.dispatch("chain_ends", params, {{"Chains", chains}, {"Ends", ends}}, uint(lines), {is_column});
+  }
+  gpu.dispatch("backs", params, {depth, normal, {"Chains", chains}, {"Ends", ends}, {"Backs", result}}, extent_of(view));
+  return result;
 }
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
