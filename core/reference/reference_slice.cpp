@@ -97,18 +97,30 @@ void end_solids(ReferenceLine& line) {
   }
 }
 
+/// The first sample of what would be the receiver's own run if that were sure to go on; -1: there is none.
+int rest_of_own(const ReferenceSolids& solids, const ReferenceLine& line) {
+  const int last = last_of_run(line, 0), next = (line.step_of(last) + 1) * line.surfaces;
+  if (next >= int(line.samples.size())) return -1;
+  for (int i = next; i < next + line.surfaces; i++)
+    if (line[i].nearer < 0 && solids.connect(line, last, i, false)) return i;
+  return -1;
+}
+
 void set_thickness(const ReferenceSolids& solids, ReferenceLine& line, const ReferenceSettings& settings) {
   if (settings.thickness != ThicknessRule::width) {
     const double value = settings.thickness == ThicknessRule::infinite ? INFINITY : settings.thickness_length;
     for (auto& sample : line.samples) sample.thickness = value;
   } else {
+    const int rest = rest_of_own(solids, line);
     for (int first = 0; first < int(line.samples.size()); first++) {
       if (line[first].depth == 0 || line[first].nearer >= 0) continue;
       std::vector<int> run;
       for (int i = first; i >= 0; i = line[i].farther) run.push_back(i);
-      if (first > 0) solids.thicken(line, run);
-      if (first == 0)
-        for (const int i : run) line[i].thickness = INFINITY;
+      if (first > 0 && first != rest) {
+        solids.thicken(line, run);
+        continue;
+      }
+      for (const int i : run) line[i].thickness = first == 0 ? INFINITY : solids.thickness_of_rest(line, run);
     }
   }
   end_solids(line);

@@ -122,20 +122,20 @@ double ReferenceSolids::widest(const ReferenceLine& line, int first) const {
   return (flat ? kWidestFlat : kWidest) * settings_.radius;
 }
 
-double ReferenceSolids::by_width(const ReferenceLine& line, const std::vector<int>& run) const {
+double ReferenceSolids::by_width(const ReferenceLine& line, const std::vector<int>& run, bool may_be_flat) const {
   // The width counts from outer edge to outer edge: n pixels are n wide, and their centres n - 1 apart. Otherwise
   // single blades of grass would vanish.
   const ReferenceSample& first = line[run.front()];
   const double pixel = pixels_at(first.depth);
   const double chord = length(line[run.back()].position - first.position) + pixel;
   // A long run levels off: a wall is not as thick as it is long.
-  const double most = widest(line, run.front());
+  const double most = may_be_flat ? widest(line, run.front()) : kWidest * settings_.radius;
   const double part = std::min((settings_.width_share * chord + settings_.width_pixels * pixel) / most, 1.0);
   const double thickness = most * part * (1 - part * part / 3);
   const bool cut = line.at_border && line.step_of(run.back()) + 1 == line.steps();
   if (!cut || settings_.complete == Completion::none) return thickness;
   const std::size_t n = run.size();
-  const bool flat = n > 2 && is_flat(line, run[n - 1], run[n - 2], run[n - 3]);
+  const bool flat = may_be_flat && n > 2 && is_flat(line, run[n - 1], run[n - 2], run[n - 3]);
   return std::max(thickness, (flat ? kThicknessOfFlatCut : kThicknessOfCut) * settings_.radius);
 }
 

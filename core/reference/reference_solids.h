@@ -26,6 +26,11 @@ class ReferenceSolids {
   /// to reach, and adds the hidden face that closes it towards the receiver.
   void thicken(ReferenceLine& line, const std::vector<int>& run) const;
 
+  /// That of a run that may be the receiver's own, but is not sure to be: by its width alone.
+  double thickness_of_rest(const ReferenceLine& line, const std::vector<int>& run) const {
+    return by_width(line, run, false);
+  }
+
  private:
   /// Rules hold for `auto`, and between first surfaces: others have no normals.
   bool has_normals(const ReferenceLine& line, int a, int b) const;
@@ -44,7 +49,7 @@ class ReferenceSolids {
   /// The width that counts at most of the run that begins with a sample, in scene units.
   double widest(const ReferenceLine& line, int first) const;
   bool mirrors(const ReferenceLine& line, const std::vector<int>& run) const;
-  double by_width(const ReferenceLine& line, const std::vector<int>& run) const;
+  double by_width(const ReferenceLine& line, const std::vector<int>& run, bool may_be_flat = true) const;
   double reaches_back(const ReferenceLine& line, int i, const std::vector<int>& run) const;
   void close(ReferenceLine& line, const std::vector<int>& run) const;
 

@@ -17,10 +17,10 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { BacksParams params; };
-readonly buffer Depth { float depth[]; };    // one float per pixel
-readonly buffer Normal { uint normal[]; };   // one uint per pixel, from prepare
-readonly buffer Chains { uint chains[]; };   // two words per segment, from chains
-readonly buffer Ends { uint ends[]; };       // the same, from chain_ends
+readonly buffer Depth { float depth[]; };   // one float per pixel
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+readonly buffer Chains { uint chains[]; };  // two words per segment, from chains
+readonly buffer Ends { uint ends[]; };      // the same, from chain_ends
 writeonly buffer Backs { uint backs[]; };
 
 /// How many steps the chain of a pixel goes on before it, and after it, at most so many. first: the line's segment.
@@ -65,9 +65,11 @@ Line line_of(View view, vec3 here, vec3 n, ivec2 pixel, int most, bool is_column
   const int first = first_segment(view, is_column, is_column ? pixel.x : pixel.y);
   const ivec2 away = steps_of_chain(first, step, most);
   const bvec2 may_be_round = bvec2(uvec2(greaterThanEqual(away, ivec2(2))) & uvec2(lessThan(away, ivec2(most))));
-  const Told before = told_by(view, here, n, pixel, -away.x * along, may_be_round.x && is_round_at(first, step - away.x)),
+  const Told before =
+                 told_by(view, here, n, pixel, -away.x * along, may_be_round.x && is_round_at(first, step - away.x)),
              after = told_by(view, here, n, pixel, away.y * along, may_be_round.y && is_round_at(first, step + away.y));
-  return Line(max(max(before.depth, after.depth), 0.0), before.size + after.size, vec2(before.mirrored, after.mirrored));
+  return Line(max(max(before.depth, after.depth), 0.0), before.size + after.size,
+              vec2(before.mirrored, after.mirrored));
 }
 
 void main() {

@@ -65,10 +65,6 @@ const float kLeastNearness = 0.02;
 
 const float kFar = 1e30;
 
-/// Radii: faces whose depths differ by less are no kParallelApart from each other. The eye's rays are up to twice as
-/// long as their depth, in all but the corners of the widest pictures.
-const float kLeastApart = 0.5 * kParallelApart;
-
 /// The known thickness of what has none: marks hold 0 where a thickness is not known.
 const float kNoThickness = 1e-30;
 
@@ -256,7 +252,9 @@ Link link_of(View view, Lines lines, ivec2 steps, int line, Step last, Step here
   Link link = Link(exists && apart < kRunSlope * pixel, false);
   const bool has_normals = params.solids != 0u && exists && here.is_first && last.is_first;
   // Faces that are nearer together than that are not parallel ones before each other.
-  const bool may_be_parallel = apart > kParallelSlope * pixel && apart > kLeastApart * params.radius;
+  const vec2 along = here.place - last.place;
+  const float nearest = kParallelApart * params.radius;
+  const bool may_be_parallel = apart > kParallelSlope * pixel && dot(along, along) > nearest * nearest;
   if (has_normals && (may_be_parallel || apart >= kOwnSlope * pixel)) {
     const Facet a = facet_at(view, lines, line, here.at - 1), b = facet_at(view, lines, line, here.at);
     const bool by_depth = link.is_one && !(may_be_parallel && are_parallel(view, a, b, params.radius));

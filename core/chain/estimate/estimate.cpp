@@ -268,8 +268,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
 const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
   const View& view = gbuffer.view;
   const auto segments_of = [](int steps) { return uint((steps + 31) / 32); };
-  const std::size_t segments = std::size_t(view.size.y) * segments_of(view.size.x) +
-                               std::size_t(view.size.x) * segments_of(view.size.y);
+  const std::size_t segments =
+      std::size_t(view.size.y) * segments_of(view.size.x) + std::size_t(view.size.x) * segments_of(view.size.y);
   gpu::Buffer& chains = gpu.buffer("chains", segments * 2 * sizeof(uint));
   gpu::Buffer& ends = gpu.buffer("chain ends", segments * 2 * sizeof(uint));
   gpu::Buffer& result = gpu.buffer("backs", plane_bytes(view));
@@ -280,7 +280,8 @@ const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach
     gpu.dispatch("chains", params, {depth, normal, {"Chains", chains}}, {uint(lines), segments_of(steps)}, {is_column});
     gpu.dispatch("chain_ends", params, {{"Chains", chains}, {"Ends", ends}}, uint(lines), {is_column});
   }
-  gpu.dispatch("backs", params, {depth, normal, {"Chains", chains}, {"Ends", ends}, {"Backs", result}}, extent_of(view));
+  gpu.dispatch("backs", params, {depth, normal, {"Chains", chains}, {"Ends", ends}, {"Backs", result}},
+               extent_of(view));
   return result;
 }
 
