@@ -54,22 +54,22 @@ Told told_by(View view, vec3 here, vec3 n, ivec2 pixel, ivec2 away, bool is_roun
 }
 
 /// The same of both chains of a line.
-struct Line {
+struct Sides {
   float depth, size;
   vec2 mirrored;  // by the outline before, and after
 };
 
-Line line_of(View view, vec3 here, vec3 n, ivec2 pixel, int most, bool is_column) {
+Sides sides_of(View view, vec3 here, vec3 n, ivec2 pixel, int most, bool is_column) {
   const ivec2 along = is_column ? ivec2(0, 1) : ivec2(1, 0);
   const int step = is_column ? pixel.y : pixel.x;
-  const int first = first_segment(view, is_column, is_column ? pixel.x : pixel.y);
+  const int first = line_of(view, is_column, is_column ? pixel.x : pixel.y).first;
   const ivec2 away = steps_of_chain(first, step, most);
   const bvec2 may_be_round = bvec2(uvec2(greaterThanEqual(away, ivec2(2))) & uvec2(lessThan(away, ivec2(most))));
   const Told before =
                  told_by(view, here, n, pixel, -away.x * along, may_be_round.x && is_round_at(first, step - away.x)),
              after = told_by(view, here, n, pixel, away.y * along, may_be_round.y && is_round_at(first, step + away.y));
-  return Line(max(max(before.depth, after.depth), 0.0), before.size + after.size,
-              vec2(before.mirrored, after.mirrored));
+  return Sides(max(max(before.depth, after.depth), 0.0), before.size + after.size,
+               vec2(before.mirrored, after.mirrored));
 }
 
 void main() {
@@ -81,7 +81,8 @@ void main() {
   const vec3 here = position_of(view, vec2(pixel) + 0.5, z), n = unpack_normal(normal[index]);
   const vec2 longest = kLongestChain * params.radius / (view.orthographic == 0 ? z : 1.0) / abs(view.tangent_per_pixel);
   const ivec2 most = ivec2(min(longest, 1e5));
-  const Line row = line_of(view, here, n, pixel, most.x, false), column = line_of(view, here, n, pixel, most.y, true);
+  const Sides row = sides_of(view, here, n, pixel, most.x, false),
+              column = sides_of(view, here, n, pixel, most.y, true);
   const vec2 widths = kBackPerWidth * (vec2(row.size, column.size) + width);
   const float told = max(min(row.depth, widths.y), min(column.depth, widths.x));
   // Of depth along the eye's ray that along the axis, in pixels' widths.

@@ -21,8 +21,8 @@ float unpack_mirrored(uint word) { return (word & 63u) == 0u ? -1.0 : unpack_flo
 
 float unpack_depth(uint word) { return unpack_float(word & 255u, 8); }
 
-/// depth: of the front to the back. mirrored: the same by the rounded outline to the left, to the right, above and below;
-/// below 0: there is none.
+/// depth: of the front to the back. mirrored: the same by the rounded outline to the left, to the right, above and
+/// below; below 0: there is none.
 uint pack_back(float depth, vec4 mirrored) {
   return pack_float(depth, 8) | pack_mirrored(mirrored.x) << 8 | pack_mirrored(mirrored.y) << 14 |
          pack_mirrored(mirrored.z) << 20 | pack_mirrored(mirrored.w) << 26;
@@ -34,11 +34,26 @@ uint outline_of(vec2 direction) {
   return across ? (direction.x > 0.0 ? 8u : 14u) : (direction.y > 0.0 ? 20u : 26u);
 }
 
-/// Chains are pixels of a line that show one surface, each with the next. Lines are cut into segments of 32 pixels. Two
-/// words tell of a segment, a bit for each pixel: whether it goes on from the one before; and whether a chain that
-/// begins or ends with it has a rounded outline there. The first segment of a row, or of a column, which lie behind the
-/// rows:
-int first_segment(View view, bool is_column, int line) {
-  const ivec2 segments = view.size + 31 >> 5;
-  return is_column ? view.size.y * segments.x + line * segments.y : line * segments.x;
+/// Chains are pixels of a row or a column that show one surface, each with the next. Lines are cut into segments, of
+/// which two words tell, a bit for each pixel: whether it goes on from the one before; and whether a chain that begins
+/// or ends with it has a rounded outline there.
+const int kSegment = 32;
+
+struct Line {
+  bool is_column;
+  int number;  // the row, or the column
+  int steps;   // pixels
+  int first;   // segment of all
+};
+
+Line line_of(View view, bool is_column, int number) {
+  const ivec2 segments = (view.size + kSegment - 1) / kSegment;
+  return is_column ? Line(true, number, view.size.y, view.size.y * segments.x + number * segments.y)
+                   : Line(false, number, view.size.x, number * segments.x);
+}
+
+/// All rows, then all columns.
+Line line_at(View view, int index) {
+  const bool is_column = index >= view.size.y;
+  return line_of(view, is_column, is_column ? index - view.size.y : index);
 }

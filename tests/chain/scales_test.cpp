@@ -120,8 +120,8 @@ TEST(Scales, share_all_passes_but_the_search) {
     EXPECT_EQ(planes_of(frame, settings, aovs).passes, expected);
   };
   const Names sites{"links", "sites", "sites", "sites", "sites"},
-      search{"classify", "list_sites", "backs", "backs", "horizon"},
-      dense_search{"classify", "backs", "backs", "horizon"}, combine{"combine"}, fit{"fit_sites"},
+      search{"classify", "list_sites", "chains", "chain_ends", "backs", "horizon"},
+      dense_search{"classify", "chains", "chain_ends", "backs", "horizon"}, combine{"combine"}, fit{"fit_sites"},
       filter{"interpolate", "interpolate"}, denoise{"denoise"};
   expect_passes(settings_of({0.1, 0.6, 2}), "ao", {sites, search, search, search, combine, fit, filter});
   expect_passes(settings_of({0.1, 0.6, 2}), "ao,ao-scales",

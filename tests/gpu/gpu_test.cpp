@@ -41,7 +41,7 @@ TEST(Reflection, reads_blocks_groups_and_constants) {
   const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
   EXPECT_THAT(block_names(gpu::kernel_code("horizon")),
               UnorderedElementsAre("Depth", "Normal", "Ao", "Moments", "List", "Counts", "Completed", "Sites",
-                                   "SiteCountsBuffer", "Occluders"));
+                                   "SiteCountsBuffer", "Occluders", "Backs"));
   EXPECT_THAT(block_names(gpu::kernel_code("horizon_layers")), Contains("Hidden"));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
   EXPECT_THAT(horizon.constants,

@@ -207,7 +207,11 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
     Estimate out = of_radius(result, plane, radii.size());
     out.listed = classify(gpu, gbuffer, skipping, reach, sites, out);
     list_sites(gpu, gbuffer, sites, out.listed);
-    if (tells_backs(settings)) out.told = &backs(gpu, gbuffer, reach, frame[RawPlane::normal] != nullptr);
+    if (tells_backs(settings)) {
+      const Chains links = chains(gpu, gbuffer, reach, frame[RawPlane::normal] != nullptr);
+      chain_ends(gpu, gbuffer, links);
+      out.told = &backs(gpu, gbuffer, links);
+    }
     switch (settings.estimator) {
       case Estimator::gtao:
       case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
@@ -265,23 +269,34 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   return list;
 }
 
-const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
+Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
   const View& view = gbuffer.view;
-  const auto segments_of = [](int steps) { return uint((steps + 31) / 32); };
+  const auto segments_of = [](int steps) { return (uint(steps) + 31) / 32; };
   const std::size_t segments =
       std::size_t(view.size.y) * segments_of(view.size.x) + std::size_t(view.size.x) * segments_of(view.size.y);
-  gpu::Buffer& chains = gpu.buffer("chains", segments * 2 * sizeof(uint));
-  gpu::Buffer& ends = gpu.buffer("chain ends", segments * 2 * sizeof(uint));
-  gpu::Buffer& result = gpu.buffer("backs", plane_bytes(view));
-  const BacksParams params{view, reach.radius, has_normals ? 1u : 0u};
-  const gpu::Binding depth{"Depth", occluder_depth_of(gbuffer)}, normal{"Normal", gbuffer.normal};
-  for (const bool is_column : {false, true}) {
-    const int lines = is_column ? view.size.x : view.size.y, steps = is_column ? view.size.y : view.size.x;
-    gpu.dispatch("chains", params, {depth, normal, {"Chains", chains}}, {uint(lines), segments_of(steps)}, {is_column});
-    gpu.dispatch("chain_ends", params, {{"Chains", chains}, {"Ends", ends}}, uint(lines), {is_column});
-  }
-  gpu.dispatch("backs", params, {depth, normal, {"Chains", chains}, {"Ends", ends}, {"Backs", result}},
-               extent_of(view));
+  const std::size_t bytes = segments * 2 * sizeof(uint);
+  const Chains result{
+      {view, reach.radius, has_normals ? 1u : 0u}, gpu.buffer("chains", bytes), gpu.buffer("chain ends", bytes)};
+  gpu.dispatch("chains", result.params,
+               {{"Depth", occluder_depth_of(gbuffer)}, {"Normal", gbuffer.normal}, {"Chains", result.links}},
+               {uint(view.size.x + view.size.y), segments_of(std::max(view.size.x, view.size.y))});
+  return result;
+}
+
+void chain_ends(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains) {
+  gpu.dispatch("chain_ends", chains.params, {{"Chains", chains.links}, {"Ends", chains.ends}},
+               uint(gbuffer.view.size.x + gbuffer.view.size.y));
+}
+
+const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains) {
+  gpu::Buffer& result = gpu.buffer("backs", plane_bytes(gbuffer.view));
+  gpu.dispatch("backs", chains.params,
+               {{"Depth", occluder_depth_of(gbuffer)},
+                {"Normal", gbuffer.normal},
+                {"Chains", chains.links},
+                {"Ends", chains.ends},
+                {"Backs", result}},
+               extent_of(gbuffer.view));
   return result;
 }
 

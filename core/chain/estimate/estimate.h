@@ -7,6 +7,7 @@
 #include "core/base/settings.h"
 #include "core/chain/estimate/sites.h"
 #include "core/chain/geometry/geometry.h"
+#include "kernels/estimate/estimate.h"
 
 namespace alcove {
 
@@ -128,9 +129,20 @@ const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skip
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, const Reach& reach,
                   const Sites& sites, const Estimate& out, const std::string& prefix = "");
 
-/// How far back what each pixel shows is solid: see backs.comp. Without normals of their own, surfaces end where depth
-/// jumps.
-const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals);
+/// The pixels of rows and columns that show one surface, see backs.glsl, and how far they go on beyond segments.
+struct Chains {
+  BacksParams params;
+  gpu::Buffer &links, &ends;
+};
+
+/// Links pixels: see chains.comp. Without normals of their own, surfaces end where depth alone says so.
+Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals);
+
+/// Tells how far chains go on beyond segments: see chain_ends.comp.
+void chain_ends(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains);
+
+/// How far back what each pixel shows is solid: see backs.comp.
+const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains);
 
 /// gtao and bitmask. Tiles that have hidden surfaces within reach are searched by horizon_layers.
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,

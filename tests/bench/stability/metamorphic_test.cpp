@@ -60,8 +60,8 @@ TEST(Metamorphic, orthographic_is_the_limit_of_a_small_field_of_view) {
   }
 }
 
-// Only how exactly depth is known changes. By that a pixel of the exact search may find two neighbours to be one surface,
-// or not.
+// Only how exactly depth is known changes. By that a pixel of the exact search may find two neighbours to be one
+// surface, or not.
 TEST(Metamorphic, an_orthographic_eye_may_be_anywhere_on_its_ray) {
   const HostFrame frame = room(0, 1, 0, 48, 36).frame;
   for (const double farther : {10.0, 100.0, 1000.0}) {
@@ -84,7 +84,7 @@ TEST(Metamorphic, an_orthographic_eye_may_be_anywhere_on_its_ray) {
 // begin within a multiple of it, so a larger one may leave it out. The worst that was measured of bitmask with endless
 // occluders is 3.4e-4, from the sector that the tangent plane cuts; of finite ones 0.0102, since of several runs before
 // the sphere only the thickest counts. For a larger radius the exact search takes parallel faces farther apart for one:
-// 0.0261.
+// 0.0361.
 TEST(Metamorphic, a_larger_radius_only_darkens) {
   const HostFrame frame = room(55, 1, 0, 48, 36).frame;
   auto all = solid_estimators();
@@ -92,7 +92,7 @@ TEST(Metamorphic, a_larger_radius_only_darkens) {
   for (const auto& variant : all) {
     if (variant.settings.estimator == Estimator::crytek) continue;
     std::vector<float> smaller(frame.data.pixels(), 1.0f);
-    const float slack = searches_exactly(variant.settings)                       ? 0.027f
+    const float slack = searches_exactly(variant.settings)                       ? 0.038f
                         : variant.settings.thickness == ThicknessKind::automatic ? 0.012f
                         : variant.settings.thickness == ThicknessKind::constant  ? 0.006f
                         : variant.settings.estimator == Estimator::bitmask       ? 5e-4f
