@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "cli/commands.h"
@@ -24,7 +25,7 @@ constexpr std::size_t kMostPictures = 64;
 /// Options of run that a wedge has, beside those of groups of its own.
 const Words kOthers{"--frames", "--device", "--memory", "-q,--quiet"};
 /// Those that no look has.
-const Words kOwn{"-o,--output", "--sheet", "-q,--quiet"};
+const Words kOwn{"-o,--output", "--sheet", "-q,--quiet", "--dry-run"};
 
 bool has(const Words& words, const std::string& word) { return std::ranges::find(words, word) != words.end(); }
 
@@ -43,9 +44,12 @@ Command wedge_syntax() {
   command.name = "alcove wedge";
   command.description = kWedge;
   static const Words kGroups{"", "Input", "Hidden surfaces", "Estimator"};
-  std::erase_if(command.rows, [](const OptionRow& row) { return !has(kGroups, row.group) && !has(kOthers, row.name); });
+  std::erase_if(command.rows, [](const OptionRow& row) {
+    return !has(kGroups, row.group) && !has(kOthers, row.name) && row.name != "--dry-run";
+  });
   for (auto& row : command.rows) {
     if (row.name == "--frames") row.sentence = "such as 1001,1050; else the middle one of INPUT on the disk";
+    if (row.name == "--dry-run") row.sentence = "print frames, looks, memory and cost, and stop";
     if (row.name == "--preset") row.sentence = "settings from presets, a look for each of a list";
     if (row.name == "--set") row.value = "KEY=VALUE[,VALUE...]";
     if (row.name == "--radius")
@@ -70,7 +74,7 @@ Command wedge_syntax() {
 struct Typed {
   std::vector<Words> arguments;
   std::string input, page, sheet;
-  bool is_quiet = false;
+  bool is_quiet = false, is_dry = false;
   std::string no_composite = {};  // why there is none; "" where there may be one
 };
 
@@ -120,6 +124,14 @@ std::size_t count_of(const std::vector<Words>& arguments) {
   return count;
 }
 
+/// A file's name without the folder in which all of the list lie.
+std::string without_shared_folder(const Words& files, const std::string& file) {
+  const auto folder_of = [](const std::string& path) { return path.substr(0, path.rfind('/') + 1); };
+  const std::string folder = folder_of(file);
+  const bool is_shared = std::ranges::all_of(files, [&](const auto& other) { return folder_of(other) == folder; });
+  return is_shared ? file.substr(folder.size()) : file;
+}
+
 /// The look of that number: the values of the last list change fastest. The last argument is the radius.
 WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::size_t number) {
   Words chosen, parts;
@@ -136,7 +148,8 @@ WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::
     const std::string option = i > 0 ? arguments[i - 1].front() : "";
     const std::string name =
         option == "--preset" || option == "--set" ? "" : option.substr(std::min<std::size_t>(2, option.size())) + " ";
-    if (arguments[i].size() > 1 || (parts.empty() && i + 1 == arguments.size())) parts.push_back(name + value);
+    if (arguments[i].size() == 1 && !(parts.empty() && i + 1 == arguments.size())) continue;
+    parts.push_back(name + (option == "--preset" ? without_shared_folder(arguments[i], value) : value));
   }
   chosen.insert(chosen.end(), {"-o", usual_output(typed.input, "ao", ".exr")});
   if (typed.no_composite.empty())
@@ -231,16 +244,25 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
   for (std::size_t i = 0; i < count; i++) {
     looks.push_back(look_of(typed, all, i));
     std::string& name = looks.back().name;
-    if (proposed && looks.back().settings.estimator.radius == proposed)
-      name += name.find("radius") != name.npos ? " (proposed)" : " (proposed radius)";
+    const bool has_own_radius = radii.size() > 1 || count == 1;
+    if (proposed && has_own_radius && looks.back().settings.estimator.radius == proposed) name += " (proposed)";
   }
   check_looks(looks);
   return looks;
 }
 
 /// Makes the wedge, and says what became of each look. Gives the exit code.
-int make(const Typed& typed) {
-  std::vector<WedgeLook> looks = looks_of(typed);
+int make(const Typed& typed, std::vector<WedgeLook> looks) {
+  const std::string no_composite =
+      typed.no_composite.empty() ? "" : "note: there is no composite: " + printable(typed.no_composite);
+  if (typed.is_dry) {
+    fmt::print("{}{}{}", wedge_text(looks), no_composite, no_composite.empty() ? "" : "\n");
+    return 0;
+  }
+  // Of an earlier wedge: where this one comes to no end, they would be taken for its looks.
+  std::error_code none;
+  for (const std::string& path : {typed.page, typed.sheet})
+    if (!path.empty()) std::filesystem::remove(path, none);
   make_wedge(looks, typed.page, typed.sheet);
   std::set<std::string> told;
   const auto tell = [&](const std::string& line) {
@@ -256,7 +278,7 @@ int make(const Typed& typed) {
   if (const std::string& frames = looks.front().settings.frames.frames; !frames.empty())
     tell(
         fmt::format("note: the commands make the frames {}; for the whole shot leave out --frames", printable(frames)));
-  if (!typed.no_composite.empty()) tell("note: there is no composite: " + printable(typed.no_composite));
+  if (!no_composite.empty()) tell(no_composite);
   const bool is_whole = std::ranges::none_of(looks, [](const WedgeLook& look) { return look.error.has_value(); });
   return is_whole ? 0 : int(ErrorKind::some_frames_failed);
 }
@@ -275,6 +297,7 @@ int wedge_command(const std::vector<std::string>& arguments) {
     return found == options->end() ? std::string() : found->words.front();
   };
   Typed typed{{}, "", word_of_option("-o,--output"), word_of_option("--sheet"), !word_of_option("-q,--quiet").empty()};
+  typed.is_dry = !word_of_option("--dry-run").empty();
   for (const char* option : {"INPUT", "--depth", "--position"})
     if (typed.input.empty()) typed.input = word_of_option(option);
   const bool has_beauty = !word_of_option("--beauty").empty();
@@ -286,16 +309,18 @@ int wedge_command(const std::vector<std::string>& arguments) {
     typed.arguments = arguments_in(*options);
   });
   try {
-    return make(typed);
+    return make(typed, looks_of(typed));
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::input || has_beauty) throw;
     typed.no_composite = error.what();
+    std::vector<WedgeLook> looks;
     try {
-      return make(typed);
+      looks = looks_of(typed);
     } catch (const Error& without) {  // such as of settings of the composite
       if (without.kind() == ErrorKind::usage) throw error;
       throw;
     }
+    return make(typed, std::move(looks));
   }
 }
 

@@ -18,24 +18,6 @@
 namespace alcove {
 namespace {
 
-/// The G-buffers of a frame.
-struct Surfaces {
-  GBuffer frame;
-  GBuffer wide;  // with the margin in which other frames and views show more; else the same
-};
-
-/// The visibility of a frame's pixels, and what led to it. Null: nobody asked for it.
-struct Seen {
-  Visibility visibility;  // before any shaping
-  Matte matte;
-  Estimate estimate;  // of its own; none of a mean over frames
-  gpu::Buffer* completion = nullptr;
-  gpu::Buffer* error = nullptr;  // of the frame's pixels
-  gpu::Buffer* count = nullptr;  // of a mean: a plane of how many frames each pixel's visibility is the mean
-  DebugStages stages;
-  bool is_quick = false;  // by the quick search
-};
-
 /// All surfaces of the frame, with unit normals that face the eye.
 Surfaces surfaces_of(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings) {
   const Layering layering = layering_of(settings);
@@ -123,10 +105,11 @@ Seen visibility_of(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces&
 }
 
 /// The counts of the passes.
-FrameOutputs counts_of(const Surfaces& surfaces, const Seen& seen) {
-  return {.counts = surfaces.frame.counts,
-          .layer_counts = surfaces.frame.layer_counts,
-          .view_counts = surfaces.frame.view_counts,
+FrameOutputs counts_of(const Seen& seen) {
+  const GBuffer& gbuffer = seen.surfaces.frame;
+  return {.counts = gbuffer.counts,
+          .layer_counts = gbuffer.layer_counts,
+          .view_counts = gbuffer.view_counts,
           .tiles = seen.estimate.listed.counts,
           .sites = seen.estimate.listed.site_counts,
           .squares = seen.estimate.squares,
@@ -137,9 +120,9 @@ FrameOutputs counts_of(const Surfaces& surfaces, const Seen& seen) {
 }
 
 /// The estimate that the frame hands to others.
-FrameOutputs handed_out(const Surfaces& surfaces, const Seen& seen) {
-  FrameOutputs out = counts_of(surfaces, seen);
-  out.own = OwnEstimate{surfaces.frame, seen.visibility};
+FrameOutputs handed_out(const Seen& seen) {
+  FrameOutputs out = counts_of(seen);
+  out.own = OwnEstimate{seen.surfaces.frame, seen.visibility};
   return out;
 }
 
@@ -156,14 +139,14 @@ FrameOutputs with_transfer(gpu::Recorder& gpu, const FrameInputs& frame, const G
 }
 
 /// All that is wanted.
-FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces, const Seen& seen,
-                        const EstimatorSettings& settings, const Wanted& wanted) {
-  const GBuffer& gbuffer = surfaces.frame;
+FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen, const EstimatorSettings& settings,
+                    const Wanted& wanted) {
+  const GBuffer& gbuffer = seen.surfaces.frame;
   const bool has_open = wanted.has(&FrameOutputs::bent_normal) || wanted.has(&FrameOutputs::specular_occlusion);
   const gpu::Buffer& open = bent_normal(gpu, gbuffer, has_open ? seen.visibility.moments : nullptr);
   const Visibility visibility =
       shape(gpu, gbuffer, seen.visibility, shaping_of(settings), frame[RawPlane::material_ao], seen.matte);
-  FrameOutputs out = with_transfer(gpu, frame, gbuffer, seen.visibility, wanted, counts_of(surfaces, seen));
+  FrameOutputs out = with_transfer(gpu, frame, gbuffer, seen.visibility, wanted, counts_of(seen));
   out.ao = visibility.ao;
   out.error = seen.error;
   if (wanted.has(&FrameOutputs::scales)) out.scales = visibility.scales ? visibility.scales : visibility.ao;
@@ -174,7 +157,7 @@ FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Surf
   if (wanted.has(&FrameOutputs::depth)) out.depth = gbuffer.depth;
   if (wanted.has(&FrameOutputs::hidden)) out.hidden = &hidden_planes(gpu, gbuffer, layering_of(settings));
   if (wanted.has(&FrameOutputs::confidence))
-    out.confidence = cut(gpu, frame, &confidence(gpu, surfaces.wide, with_margin(frame), settings), "confidence");
+    out.confidence = cut(gpu, frame, &confidence(gpu, seen.surfaces.wide, with_margin(frame), settings), "confidence");
   if (wanted.has(&FrameOutputs::specular_occlusion))
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, open, *visibility.ao, settings.roughness);
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
@@ -200,13 +183,23 @@ FrameOutputs downloaded(gpu::Recorder& gpu, const FrameOutputs& out) {
 
 }  // namespace
 
+Seen see(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings, const Wanted& wanted) {
+  if (is_open_sky(frame, settings, wanted)) return {};
+  const Surfaces surfaces = surfaces_of(gpu, frame, settings);
+  Seen seen = visibility_of(gpu, frame, surfaces, settings, wanted);
+  seen.surfaces = surfaces;
+  return seen;
+}
+
+FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen,
+                        const EstimatorSettings& settings, const Wanted& wanted) {
+  if (is_open_sky(frame, settings, wanted)) return open_sky(gpu, frame, settings);
+  return downloaded(gpu, wanted.only_own ? handed_out(seen) : shaped(gpu, frame, seen, settings, wanted));
+}
+
 FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings,
                        const Wanted& wanted) {
-  if (is_open_sky(frame, settings, wanted)) return open_sky(gpu, frame, settings);
-  const Surfaces surfaces = surfaces_of(gpu, frame, settings);
-  const Seen seen = visibility_of(gpu, frame, surfaces, settings, wanted);
-  return downloaded(
-      gpu, wanted.only_own ? handed_out(surfaces, seen) : results_of(gpu, frame, surfaces, seen, settings, wanted));
+  return results_of(gpu, frame, see(gpu, frame, settings, wanted), settings, wanted);
 }
 
 }  // namespace alcove

@@ -4,9 +4,40 @@
 
 #include "core/base/settings.h"
 #include "core/chain/base/frame_inputs.h"
+#include "core/chain/estimate/estimate.h"
+#include "core/chain/geometry/matte.h"
+#include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
 
 namespace alcove {
+
+/// The G-buffers of a frame.
+struct Surfaces {
+  GBuffer frame;
+  GBuffer wide;  // with the margin in which other frames and views show more; else the same
+};
+
+/// The surfaces of a frame, the visibility of its pixels, and what led to it. Null: nobody asked for it. Its buffers
+/// stay as they are while the recorder records results alone.
+struct Seen {
+  Surfaces surfaces;
+  Visibility visibility;  // before any shaping
+  Matte matte;
+  Estimate estimate;  // of its own; none of a mean over frames
+  gpu::Buffer* completion = nullptr;
+  gpu::Buffer* error = nullptr;  // of the frame's pixels
+  gpu::Buffer* count = nullptr;  // of a mean: a plane of how many frames each pixel's visibility is the mean
+  DebugStages stages;
+  bool is_quick = false;  // by the quick search
+};
+
+/// Records the passes up to the visibility. settings.radius must be set where it is needed.
+Seen see(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings, const Wanted& wanted);
+
+/// Records the passes from there on, in the same recording or in later ones, for other settings than those of see()
+/// too, if they differ in the shaping or in the composite's look alone. What it repairs is counted each time.
+FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen,
+                        const EstimatorSettings& settings, const Wanted& wanted);
 
 /// Records the passes that make what is wanted of one frame, and the composite where the frame has a beauty.
 /// settings.radius must be set where they need AO.

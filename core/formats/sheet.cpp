@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostWidth = 3840, kLeastCell = 120, kGap = 8;  // px
 constexpr int kLetterWidth = 6, kLetterHeight = 8;            // px, with the gap to the next one
-constexpr int kLabelHeight = 2 * kLetterHeight + kGap;        // px: letters may have twice their size
+constexpr int kLetterOfCell = 300;                            // px of a cell for each pixel of a letter's dot
 constexpr float kPaper = 0.11f, kInk = 0.9f;
 
 /// The letters from the blank to ~: each has eight rows from the top, a digit of base 32 for the five pixels of each.
@@ -31,6 +31,22 @@ bool has_ink(char letter, int x, int y) {
   const char digit =
       kLetters[std::size_t(letter < ' ' || letter > '~' ? '?' - ' ' : letter - ' ') * kLetterHeight + std::size_t(y)];
   return ((digit <= '9' ? digit - '0' : digit - 'a' + 10) >> (kLetterWidth - 2 - x)) & 1;
+}
+
+/// The px of a letter's dot: letters grow with the cells, for sheets that are seen whole, and are never too small.
+int dot_of(int cell_width) { return std::clamp(cell_width / kLetterOfCell, 2, 4); }
+
+/// A label in lines of so many letters, broken at blanks, or within words that are longer.
+std::vector<std::string> lines_of(std::string label, std::size_t most) {
+  std::vector<std::string> lines;
+  while (label.size() > most) {
+    const std::size_t blank = label.rfind(' ', most);
+    const std::size_t end = blank == label.npos || blank == 0 ? most : blank;
+    lines.push_back(label.substr(0, end));
+    label.erase(0, std::min(label.find_first_not_of(' ', end), label.size()));
+  }
+  lines.push_back(label);
+  return lines;
 }
 
 }  // namespace
@@ -63,32 +79,40 @@ void Sheet::put(std::size_t number, const std::string& label, std::span<const Sh
 }
 
 void Sheet::write(const std::string& path) const {
-  int width = 0, height = 0;  // of a cell
+  int width = 0, height = 0;  // of a cell's picture
   for (const auto& [number, cell] : filled_) {
     width = std::max(width, cell.picture.width);
-    height = std::max(height, cell.picture.height + kLabelHeight + kGap);
+    height = std::max(height, cell.picture.height);
   }
   if (width == 0) return;
-  width += kGap;
-  const std::size_t row = 3 * (columns_ * std::size_t(width) + kGap);  // values
-  const std::size_t rows = (cells_ + columns_ - 1) / columns_ * std::size_t(height) + kGap;
+  width = std::max(width, kLeastCell);
+  const int dot = dot_of(width);
+  std::map<std::size_t, std::vector<std::string>> labels;
+  std::size_t lines = 1;
+  for (const auto& [number, cell] : filled_) {
+    labels[number] = lines_of(cell.label, std::size_t(width / (dot * kLetterWidth)));
+    lines = std::max(lines, labels[number].size());
+  }
+  const int line = dot * kLetterHeight + kGap / 2, label = int(lines) * line + kGap / 2;
+  const std::size_t row = 3 * (columns_ * std::size_t(width + kGap) + kGap);  // values
+  const std::size_t rows = (cells_ + columns_ - 1) / columns_ * std::size_t(label + height + kGap) + kGap;
   std::vector<float> pixels(row * rows, kPaper);
   for (const auto& [number, cell] : filled_) {
-    const auto at = [&, number = number](int x, int y) {
-      return pixels.begin() + std::ptrdiff_t(row * (number / columns_ * std::size_t(height) + std::size_t(kGap + y)) +
-                                             3 * (number % columns_ * std::size_t(width) + std::size_t(kGap + x)));
+    const std::size_t left = kGap + number % columns_ * std::size_t(width + kGap);
+    const std::size_t top = kGap + number / columns_ * std::size_t(label + height + kGap);
+    const auto at = [&](int x, int y) {
+      return pixels.begin() + std::ptrdiff_t(row * (top + std::size_t(y)) + 3 * (left + std::size_t(x)));
     };
+    for (int i = 0; i < int(labels[number].size()); i++) {
+      const std::string& text = labels[number][std::size_t(i)];
+      for (int y = 0; y < kLetterHeight * dot; y++)
+        for (int x = 0; x < int(text.size()) * kLetterWidth * dot; x++)
+          if (has_ink(text[std::size_t(x / dot / kLetterWidth)], x / dot % kLetterWidth, y / dot))
+            std::fill_n(at(x, i * line + y), 3, kInk);
+    }
     const auto& picture = cell.picture;
-    const std::size_t most = std::size_t((width - kGap) / kLetterWidth);
-    const std::string label = cell.label.size() > most ? cell.label.substr(0, most - 2) + ".." : cell.label;
-    const int size = int(label.size()) * kLetterWidth * 2 < width ? 2 : 1;
-    const int end = std::min(width - kGap, int(label.size()) * kLetterWidth * size);
-    for (int y = 0; y < kLetterHeight * size; y++)
-      for (int x = 0; x < end; x++)
-        if (has_ink(label[std::size_t(x / size / kLetterWidth)], x / size % kLetterWidth, y / size))
-          std::fill_n(at(x, y), 3, kInk);
     for (int y = 0; y < picture.height; y++)
-      std::copy_n(picture.pixels.begin() + 3 * y * picture.width, 3 * picture.width, at(0, kLabelHeight + y));
+      std::copy_n(picture.pixels.begin() + 3 * y * picture.width, 3 * picture.width, at(0, label + y));
   }
   write_png(path, int(row / 3), int(rows), 3, pixels);
 }

@@ -17,6 +17,7 @@
 #include "core/run/memory.h"
 #include "core/run/resume.h"
 #include "core/run/run_files.h"
+#include "core/run/shot.h"
 #include "core/run/tiles.h"
 
 namespace alcove {
@@ -311,22 +312,35 @@ std::string at_once_text(const RunMemory& memory, const FramePlan& plan, const F
   return fmt::format("{} at once, for which there is room (--memory)", count);
 }
 
-/// The least that --memory may be, with its cost, and what computes a frame at once; "" where its depth is unreadable.
-/// Fails as the run does where a single frame has less.
-std::string needs_text(FrameSource& source, const Settings& settings, const RunMemory& memory, const FrameMemory& frame,
-                       bool is_sequence) {
+/// The memory that a frame of a CPU has.
+WindowLimits limits_of(const Settings& settings, const RunMemory& memory, const FrameMemory& frame) {
   const Room room{.bytes = memory.host_bytes,
                   .buffer_bytes = Room::kEndless,
                   .program_bytes = memory.program_bytes,
                   .is_chosen = memory.is_chosen};
-  const WindowLimits limits{frame, room, longest_side(settings.estimator)};
+  return {frame, room, longest_side(settings.estimator)};
+}
+
+/// The number of tiles, and what they cost; "in tiles" where the depth is unreadable.
+std::string tiles_text(FrameSource& source, const Settings& settings, const WindowLimits& limits) {
+  try {
+    const MemoryNeeds cut = tiles_within(source, settings, limits);
+    return fmt::format("in tiles: {} of them compute the pixels of {:.2g} frames for each", cut.parts, cut.factor);
+  } catch (const Error&) {
+    return "in tiles";  // the frame fails by itself, and others of a sequence may not
+  }
+}
+
+/// The least that --memory may be, with its cost, and what computes a frame at once; "" where its depth is unreadable.
+/// Fails as the run does where a single frame has less.
+std::string needs_text(FrameSource& source, const Settings& settings, const WindowLimits& limits, bool is_sequence) {
   MemoryNeeds needs;
   try {
     needs = memory_needs(source, settings, limits);
   } catch (const Error&) {
     return "";  // the frame fails by itself, and others of a sequence may not
   }
-  const bool is_enough = needs.least <= room.bytes;
+  const bool is_enough = needs.least <= limits.room.bytes;
   if (!is_enough && !is_sequence) limits.refuse(fmt::format("{}: there is no room for it", source.depth_path()), needs);
   const std::string at_once = limits.option_for(needs.at_once) + " computes a frame at once";
   std::string text = at_once + ", and nothing less is enough";
@@ -335,9 +349,15 @@ std::string needs_text(FrameSource& source, const Settings& settings, const RunM
   return text + (is_enough ? "" : "; frames such as the first have no room");
 }
 
+/// "28 reads for 10 frames, 2.8 for each".
+std::string per_frame(std::size_t count, const char* what, std::size_t frames) {
+  return fmt::format("{} {} for {} frame{}, {:.2g} for each", count, what, frames, frames == 1 ? "" : "s",
+                     double(count) / double(frames));
+}
+
 }  // namespace
 
-std::string plan_text(FirstLook& look) {
+std::string plan_text(FirstLook& look, bool is_wedge) {
   const Notes notes = look.prepare();
   const FramePlan& plan = look.plan();
   std::string text;
@@ -349,12 +369,12 @@ std::string plan_text(FirstLook& look) {
   if (!plan.missing().empty())
     line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
   for (const auto& note : notes) line(level_of(note), line_of(note, ""));
-  refuse_overwriting(plan);
+  if (!is_wedge) refuse_overwriting(plan);
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
   require_endings(first.output);
   for (const auto& row : file_rows()) {
-    if (!row.is_of_frame) continue;
+    if (!row.is_of_frame || (is_wedge && row.role != FileRole::input)) continue;
     const auto of_first = row.files(first, row.role), of_last = row.files(last, row.role);
     for (std::size_t i = 0; i < of_first.size(); i++)
       line(of_first[i].option, span_text(of_first[i].path, of_last[i].path));
@@ -382,21 +402,28 @@ std::string plan_text(FirstLook& look) {
   const RunMemory of_frames = without_shared_frames(host, plan, source, first, wanted, 1);
   const std::uint64_t memory = of_frames.host_bytes;
   line("size", to_string(written_picture(source)));
-  const std::string at_once = bytes > memory ? "in tiles" : at_once_text(host, plan, source, first, wanted);
+  const WindowLimits limits = limits_of(first, of_frames, frame);
+  const std::string at_once = bytes <= memory ? at_once_text(host, plan, source, first, wanted)
+                              : is_wedge      ? "too little, for a wedge needs it whole: give a part by --roi"
+                                              : tiles_text(source, first, limits);
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
-  if (const std::string needs = needs_text(source, first, of_frames, frame, plan.is_sequence()); !needs.empty())
-    line("--memory", needs);
-  const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared) {
+  const std::string needs = is_wedge ? "" : needs_text(source, first, limits, plan.is_sequence());
+  if (!needs.empty()) line("--memory", needs);
+  const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared,
+                                  const std::string& cost) {
     line(name, fmt::format("up to {} of the {} frames of the shot: {} MiB of {} for each at once, beside what it takes "
-                           "itself",
-                           count, plan.shot().size(), shared >> 20, kind));
+                           "itself{}",
+                           count, plan.shot().size(), shared >> 20, kind, wanted.empty() ? "" : "; " + cost));
   };
+  const SharedCounts counts = shared_counts(plan, wanted);
   if (around_of(first.input) > 0)
     line_of_shared("around", most_others(plan, source, first.input), "prepared frames",
-                   bytes_of_shot(plan, source, first.input, 1));
+                   bytes_of_shot(plan, source, first.input, 1),
+                   per_frame(std::max(wanted.size(), counts.estimated) + counts.prepared, "reads", wanted.size()));
   if (first.input.accumulate > 0)
     line_of_shared("accumulate", std::min(plan.shot().size(), std::size_t(plan.turns())), "estimates",
-                   bytes_of_estimates(plan, source, first, wanted, 1));
+                   bytes_of_estimates(plan, source, first, wanted, 1),
+                   per_frame(counts.estimated, "estimates", wanted.size()));
   if (wanted.size() < plan.frames().size())
     line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));
   for (const auto& note : resumed) line(level_of(note), line_of(note, ""));

@@ -81,7 +81,7 @@ class FirstLook {
 Notes notes_on_number(const FramePlan& plan);
 
 /// The frames, files, size and memory of a run. Computes and writes nothing. Fails as the run would on settings, names,
-/// and a single frame that cannot be read as it is.
-std::string plan_text(FirstLook& look);
+/// and a single frame that cannot be read as it is. is_wedge: it writes none of the outputs, and needs a frame whole.
+std::string plan_text(FirstLook& look, bool is_wedge = false);
 
 }  // namespace alcove

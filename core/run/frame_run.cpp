@@ -252,8 +252,7 @@ class FrameRun {
     go_on();
     FrameSource source = open();
     require_numbered_lines(source, settings_.estimator);
-    const WindowLimits limits{memory_with_others(run_.plan, source, settings_), room_,
-                              longest_side(settings_.estimator)};
+    const WindowLimits limits{memory_of_looks(source), room_, longest_side(settings_.estimator)};
     require_room_for_preview(source, limits);
     take_others(source);
     if (!run_.planes && !source.region && limits.allow(source.reading.data))
@@ -290,6 +289,17 @@ class FrameRun {
     std::erase_if(source.suspicious, [](const Note& note) {
       return note.code == NoteCode::damaged_file || note.code == NoteCode::no_surfaces;
     });
+  }
+
+  /// The memory of the settings, or of the look that takes the most: one may have a buffer that another does without.
+  FrameMemory memory_of_looks(const FrameSource& source) const {
+    FrameMemory most = memory_with_others(run_.plan, source, settings_);
+    for (const auto& look : run_.looks) {
+      FrameMemory memory = most;
+      memory.take(look);
+      if (memory.of(source.reading.data).device > most.of(source.reading.data).device) most = memory;
+    }
+    return most;
   }
 
   /// Ends the frame before it is computed where what is known then counts as an error.
@@ -344,8 +354,8 @@ class FrameRun {
     read_ = std::move(estimates_.read);
   }
 
-  /// Reads and computes a window. reuses: what is as in the frame before is not computed again.
-  FrameOutputs compute(FrameSource& source, const Window& window, bool reuses) {
+  /// Reads a window.
+  FrameInputs load(FrameSource& source, const Window& window) {
     tally_.begin(window);
     watch_(++part_, parts_, 0);
     const Stopwatch reading;
@@ -353,20 +363,33 @@ class FrameRun {
     inputs.others = others_.seen;
     inputs.estimates = in_slots_;
     inputs.estimates.corner = {window.x - source.reading.data.x, window.y - source.reading.data.y};
-    reuses = reuses && last_.is_worth_comparing(inputs);
-    const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
-    if (!reuses) last_.forget();
     tally_.add_inputs(source, window, inputs, written_of(source));
     report_.read_ms += reading.ms();
     refuse_by_notes(source);
-
     go_on();
+    return inputs;
+  }
+
+  /// Runs what is recorded. Gives its device time, ms.
+  double run_passes() {
+    gpu_.run([&](double done) { watch_(part_, parts_, done); });
+    tally_.add_passes(gpu_.passes());
+    return milliseconds_of(gpu_.passes());
+  }
+
+  /// Reads and computes a window. reuses: what is as in the frame before is not computed again.
+  FrameOutputs compute(FrameSource& source, const Window& window, bool reuses) {
+    FrameInputs inputs = load(source, window);
+    const Stopwatch comparing;
+    reuses = reuses && last_.is_worth_comparing(inputs);
+    const bool is_same = reuses && last_.is_same(gpu_, inputs, settings_.estimator);
+    if (!reuses) last_.forget();
+    report_.read_ms += comparing.ms();
     const FrameOutputs outputs =
         is_same ? last_.outputs() : run_chain(gpu_, inputs, settings_.estimator, settings_.output);
     if (!is_same) {
-      gpu_.run([&](double done) { watch_(part_, parts_, done); });
-      tally_.add_passes(gpu_.passes());
-      if (!inputs.changes) last_.took(milliseconds_of(gpu_.passes()));
+      const double ms = run_passes();
+      if (!inputs.changes) last_.took(ms);
       if (outputs.count) in_slots_.is_further_part = true;
     }
     if (reuses) last_.keep(outputs);
@@ -381,14 +404,33 @@ class FrameRun {
             header_text(report_.notes), text_of(others_),       text_of(estimates_)};
   }
 
+  /// Computes the visibility once, and the results of each look from it.
+  void run_looks(FrameSource& source, const Window& computed) {
+    const FrameInputs inputs = load(source, computed);
+    last_.forget();
+    const Seen seen = see(gpu_, inputs, settings_.estimator, settings_.output);
+    LookTime time{run_passes()};
+    for (std::size_t i = 0; i < run_.looks.size(); i++) {
+      go_on();
+      const Settings& look = run_.looks[i];
+      const FrameOutputs outputs = results_of(gpu_, inputs, seen, look.estimator, look.output);
+      time.own_ms = run_passes();
+      // What is noted is the same of each.
+      if (i == 0) {
+        tally_.add_outputs(outputs, computed, false);
+        finish_tally(source);
+      }
+      run_.take_look(i, source, computed, outputs, time);
+    }
+  }
+
   void run_whole(FrameSource& source, const Window& computed) {
+    if (run_.take_look) return run_looks(source, computed);
     const EstimatorSettings& estimator = settings_.estimator;
-    // Planes that stay from run to run are estimated with other settings each time.
-    const bool reuses = run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed &&
-                        !run_.takes_means && !run_.planes;
+    const bool reuses =
+        run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.takes_means;
     const FrameOutputs outputs = compute(source, computed, reuses);
     finish_tally(source);
-    if (run_.take_results) return run_.take_results(source, computed, outputs);
     const Stopwatch writing;
     const Provenance by = provenance();
     make_folders(files_of(settings_, FileRole::output), settings_.output);
@@ -461,15 +503,16 @@ class FrameRun {
     const std::uint64_t side_by_side = settings_.output.preview_style == "split" ? 4 : 1;  // each, and both
     const std::uint64_t bytes = picture_of(source.reading, source.reading.display).pixels() * kBytes * side_by_side;
     if (bytes > room_.bytes)
-      limits.refuse(fmt::format("{}: a preview shows the display window, {}: leave out --preview", report_.input,
-                                to_string(source.reading.display)),
+      limits.refuse(fmt::format("{}: {} shows the display window, {}: {}", report_.input,
+                                run_.take_look ? "a wedge" : "a preview", to_string(source.reading.display),
+                                run_.take_look ? "use a smaller frame" : "leave out --preview"),
                     MemoryNeeds{bytes, bytes});
   }
 
   /// Pictures show a frame on a scale of its own, which no tile knows.
   void refuse_pictures(const FrameSource& source, WindowLimits limits, const Window& computed) const {
-    if (settings_.output.preview.empty() && settings_.output.debug.empty()) return;
-    const char* const whose = run_.take_results                  ? "a wedge needs it whole: give a part by --roi"
+    if (!run_.take_look && settings_.output.preview.empty() && settings_.output.debug.empty()) return;
+    const char* const whose = run_.take_look                     ? "a wedge needs it whole: give a part by --roi"
                               : settings_.output.preview.empty() ? "--set debug needs it whole: leave it out"
                                                                  : "--preview needs it whole: leave it out";
     if (!source.region && !run_.planes) limits.kept = 0;  // all of it is read into its buffers

@@ -63,6 +63,15 @@ class FrameTally {
 
 // The frame.
 
+/// The device time of a look: a run with it alone takes the sum.
+struct LookTime {
+  double estimate_ms = 0;  // of what all looks share
+  double own_ms = 0;
+};
+/// Takes the results of the look of that number, over a window.
+using TakeLook =
+    std::function<void(std::size_t look, FrameSource&, const Window&, const FrameOutputs&, const LookTime&)>;
+
 /// The common state of all frames of a run.
 struct RunContext {
   FirstLook& look;
@@ -76,8 +85,11 @@ struct RunContext {
   std::function<bool()> stop = {};              // asked between steps: true drops the frame
   // Takes the preview of a frame instead of its file; may be empty. Any thread calls it.
   std::function<void(int frame, const ShownPicture&)> take_preview = {};
-  // Instead of files, of a frame that is computed at once; may be empty.
-  std::function<void(FrameSource&, const Window&, const FrameOutputs&)> take_results = {};
+  // Instead of files, of a frame that is computed at once: takes the results of these settings one after the other;
+  // may be empty. They differ from the plan's in the shaping and the composite's look alone, so that one estimate
+  // serves them all. A frame that is tried again hands them over again.
+  std::vector<Settings> looks = {};
+  TakeLook take_look = {};
   ReadPlanes* planes = nullptr;  // of the only frame, from run to run; null: they are read
 };
 

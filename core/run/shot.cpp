@@ -336,6 +336,25 @@ std::vector<int> frames_seen_for(const FramePlan& plan, int frame) {
   return {seen.begin(), seen.end()};
 }
 
+SharedCounts shared_counts(const FramePlan& plan, std::span<const int> frames) {
+  std::set<int> prepared, estimated;
+  const auto add = [](std::set<int>& all, const std::vector<int>& more) { all.insert(more.begin(), more.end()); };
+  for (const int frame : frames) add(estimated, plan.accumulated(frame).there);
+  const std::set<int> takers = estimated.empty() ? std::set<int>(frames.begin(), frames.end()) : estimated;
+  const InputSettings& input = plan.settings().input;
+  for (const int taker : takers) {
+    const std::vector<int> around =
+        around_of(input) > 0 ? plan.around(taker, around_of(input)).there : std::vector<int>();
+    add(prepared, around);
+    for (const int other : around) add(prepared, judges_of(plan, other));
+    // Vectors are proved by the frames beside theirs.
+    if (estimated.empty() || input.motion.empty()) continue;
+    add(prepared, {taker});
+    add(prepared, plan.around(taker, 1).there);
+  }
+  return {prepared.size(), estimated.size()};
+}
+
 int farthest_seen(int count) {
   const int judges = judges_to_each_side(count);
   // At the ends of the shot they all lie on one side.

@@ -230,6 +230,12 @@ std::vector<int> frames_seen_for(const FramePlan& plan, int frame);
 /// The distance of the farthest of them from a frame, in frames of the shot.
 int farthest_seen(int count);
 
+/// How many frames of the shot are prepared and estimated for those that are computed in their order, each once.
+struct SharedCounts {
+  std::size_t prepared = 0, estimated = 0;
+};
+SharedCounts shared_counts(const FramePlan& plan, std::span<const int> frames);
+
 /// The upload buffers of a lane that frames' estimates are put into. What is there for one frame is there for the next.
 class EstimateSlots {
  public:

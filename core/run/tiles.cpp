@@ -330,15 +330,37 @@ MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, 
   return needs;
 }
 
-MemoryNeeds memory_needs(FrameSource& source, const Settings& settings, const WindowLimits& limits) {
+namespace {
+
+/// The surroundings by a depth that is read when they are asked for. Settles the frame where nobody has.
+Surroundings surroundings_of(FrameSource& source, const Settings& settings, const WindowLimits& limits) {
   if (!source.evidence) settle_by_rows(source, settings.input, limits.room.bytes);
-  const auto& channels = source.channels[RawPlane::depth];
-  Surroundings surroundings(source, settings, [&](const Window& rows) {
-    std::vector<float> depth(channels.size() * rows.pixels());
-    read_planes(source, rows, {{&channels, depth.data()}});
-    return depth;
-  });
+  return {source, settings, [&source](const Window& rows) {
+            const auto& channels = source.channels[RawPlane::depth];
+            std::vector<float> depth(channels.size() * rows.pixels());
+            read_planes(source, rows, {{&channels, depth.data()}});
+            return depth;
+          }};
+}
+
+}  // namespace
+
+MemoryNeeds memory_needs(FrameSource& source, const Settings& settings, const WindowLimits& limits) {
+  Surroundings surroundings = surroundings_of(source, settings, limits);
   return memory_needs(source, surroundings, limits);
+}
+
+MemoryNeeds tiles_within(FrameSource& source, const Settings& settings, const WindowLimits& limits) {
+  const WindowLimits of_parts = limits.in_parts(source, settings);
+  Surroundings surroundings = surroundings_of(source, settings, limits);
+  const Window& whole = written_of(source);
+  MemoryNeeds needs{.parts = 0, .factor = 0};
+  for (const auto& row : tiles_of(whole, surroundings, of_parts, source))
+    for (const auto& tile : row) {
+      needs.parts++;
+      needs.factor += double(surroundings.around(tile).pixels()) / double(surroundings.around(whole).pixels());
+    }
+  return needs;
 }
 
 WindowLimits WindowLimits::in_parts(FrameSource& source, const Settings& settings) const {

@@ -114,6 +114,10 @@ MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, 
 /// The same by a depth that is read for it, row by row. Settles the frame where nobody has.
 MemoryNeeds memory_needs(FrameSource& source, const Settings& settings, const WindowLimits& limits);
 
+/// The parts that a frame is computed in within the limits, and their cost. Settles the frame where nobody has. Fails
+/// as tiles_of() does.
+MemoryNeeds tiles_within(FrameSource& source, const Settings& settings, const WindowLimits& limits);
+
 /// Rows of tiles from the top, each from the left.
 using TileRows = std::vector<std::vector<Window>>;
 

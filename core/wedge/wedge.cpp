@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -17,6 +18,7 @@
 #include "core/formats/sheet.h"
 #include "core/frame/raw_plane.h"
 #include "core/measure/report.h"
+#include "core/options/options.h"
 #include "core/run/first_look.h"
 #include "core/run/memory.h"
 #include "core/run/pipeline.h"
@@ -48,6 +50,34 @@ Json scale_of(const Reading& reading, ShownPicture depth) {
           {"orthographic", view.orthographic != 0}};
 }
 
+/// The values that a run takes of its estimate, but for what shapes the visibility: looks with the same share one.
+std::string estimate_of(Settings settings) {
+  EstimatorSettings& estimator = settings.estimator;
+  const EstimatorSettings plain;
+  estimator.intensity = plain.intensity;
+  estimator.power = plain.power;
+  estimator.least = plain.least;
+  estimator.fade_start = plain.fade_start;
+  estimator.fade_end = plain.fade_end;
+  settings.output.look = {};
+  std::string text;
+  for (const auto& row : option_table())
+    if (row.words) text += fmt::format("{} {}\n", row.name, fmt::join(row.words(settings), "\n"));
+  return text;
+}
+
+/// Looks by their numbers, those together that have one estimate.
+std::vector<std::vector<std::size_t>> groups_of(const std::vector<WedgeLook>& looks) {
+  std::map<std::string, std::size_t> known;
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < looks.size(); i++) {
+    const auto [group, is_new] = known.emplace(estimate_of(looks[i].settings), groups.size());
+    if (is_new) groups.emplace_back();
+    groups[group->second].push_back(i);
+  }
+  return groups;
+}
+
 /// The looks of one frame after the other.
 class WedgeMaker {
  public:
@@ -71,12 +101,12 @@ class WedgeMaker {
       const std::string file = std::filesystem::path(main_input(looks_.front().settings.input)).filename().string();
       planes_ = {};
       frames_.push_back({{"name", plan().is_sequence() ? std::to_string(frame) : file}, {"scale", nullptr}});
-      for (std::size_t i = 0; i < looks_.size(); i++, cell_++) {
-        const auto shown = looks_[i].error ? std::vector<ShownPicture>() : make_look(looks_[i], firsts_[i], frame);
-        if (!sheet) continue;
-        const std::string number = plan().is_sequence() ? fmt::format("{}  ", frame) : "";
-        const std::string end = looks_[i].error ? "failed" : fmt::format("{:.0f} ms", rows_.back()["ms"].get<double>());
-        sheet->put(cell_, fmt::format("{}{}  {}", number, looks_[i].name, end), shown);
+      std::vector<PageCell> cells(looks_.size());
+      for (const auto& group : groups_) make_group(group, frame, cells, sheet);
+      first_cell_ += looks_.size();
+      for (const auto& [row, image] : cells) {
+        if (!row.is_null()) rows_.push_back(row);
+        if (!image.is_null()) images_.push_back(image);
       }
       if (beauty_.width) images_.push_back(image_of("beauty", beauty_, "beauty"));
       beauty_ = {};
@@ -105,6 +135,11 @@ class WedgeMaker {
   }
 
  private:
+  /// What the page has of a look of a frame; null: the look has failed, or there is no page.
+  struct PageCell {
+    Json row, image;
+  };
+
   const FramePlan& plan() { return firsts_.front().plan(); }
 
   /// An image of the page and of this frame, whose picture has that name.
@@ -116,8 +151,18 @@ class WedgeMaker {
             {name, url_of(picture)}};
   }
 
-  /// Gives the AO and the composite, if there is one; nothing where the look fails.
-  std::vector<ShownPicture> make_look(WedgeLook& look, FirstLook& first, int frame) {
+  /// Computes the looks of one estimate, unless they have failed in a frame before.
+  void make_group(const std::vector<std::size_t>& group, int frame, std::vector<PageCell>& cells, Sheet* sheet) {
+    if (!looks_[group.front()].error) run_group(group, frame, cells, sheet);
+    for (const std::size_t look : group) {
+      if (!looks_[look].error) continue;
+      cells[look] = {};
+      if (sheet) sheet->put(first_cell_ + look, label_of(look, frame, "failed"), {});
+    }
+  }
+
+  void run_group(const std::vector<std::size_t>& group, int frame, std::vector<PageCell>& cells, Sheet* sheet) {
+    FirstLook& first = firsts_[group.front()];
     const FramePlan& frames = first.plan();
     const FrameSource* const like = settled_ ? &*settled_ : nullptr;
     const InputSettings& input = frames.settings().input;
@@ -127,34 +172,58 @@ class WedgeMaker {
     InputIdentities identities(frames);
     RunContext run{first, frames, identities, like, nullptr, shot ? &*shot : nullptr, takes_means, {}};
     run.planes = &planes_;
-    // The driver compiles a kernel at its first use, which is no part of the look's time.
-    gpu::Recorder small(lanes_.device());
-    record_small_frame(small, frames.settings().estimator, frames.settings().output);
-    small.run();
-    std::vector<ShownPicture> shown;
-    run.take_results = [&](FrameSource& source, const Window& window, const FrameOutputs& outputs) {
-      const OutputSettings& output = look.settings.output;
-      shown.push_back(shown_plane(source, window, *outputs.ao));
-      if (outputs.composite) {
-        const DisplayTransform transform(output.ocio, output.display, output.view_transform);
-        shown.push_back(shown_colors(source, window, outputs.composite, &transform));
-        if (has_page_ && !beauty_.width) beauty_ = shown_colors(source, window, nullptr, &transform);
-      }
-      Json& scale = frames_.back()["scale"];
-      if (has_page_ && scale.is_null()) scale = scale_of(source.reading, shown_plane(source, window, *outputs.depth));
+    for (const std::size_t look : group) {
+      run.looks.push_back(firsts_[look].plan().at(frame));
+      // The driver compiles a kernel at its first use, which is no part of the look's time.
+      gpu::Recorder small(lanes_.device());
+      record_small_frame(small, run.looks.back().estimator, run.looks.back().output);
+      small.run();
+    }
+    std::vector<double> ms(group.size());
+    run.take_look = [&](std::size_t i, FrameSource& source, const Window& window, const FrameOutputs& outputs,
+                        const LookTime& time) {
+      ms[i] = time.estimate_ms + time.own_ms;
+      const std::vector<ShownPicture> shown = pictures_of(source, window, outputs, run.looks[i].output);
+      put_into_page(looks_[group[i]], shown, cells[group[i]]);
+      cells[group[i]].row["ms"] = ms[i];
+      cells[group[i]].row["estimate_ms"] = time.estimate_ms;
+      const std::string label = label_of(group[i], frame, fmt::format("{:.0f} ms", ms[i]));
+      if (sheet) sheet->put(first_cell_ + group[i], label, shown);
     };
     const auto take = [&](FrameReport&& report) {
-      look.ms += report.compute_ms;
-      look.error = report.error;
-      add_new(look.notes, report.notes);
-      if (report.error) return;
-      rows_.push_back({{"frame", frames_.back()["name"]}, {"candidate", look.name}, {"ms", report.compute_ms}});
-      if (!has_page_) return;
-      images_.push_back(image_of(look.name, shown[0], "result"));
-      if (shown.size() > 1) images_.back()["composite"] = url_of(shown[1]);
+      for (std::size_t i = 0; i < group.size(); i++) {
+        WedgeLook& look = looks_[group[i]];
+        look.ms += report.error ? 0 : ms[i];
+        look.error = report.error;
+        add_new(look.notes, report.notes);
+      }
     };
     run_pipeline(lanes_, run, room_of_lane(memory_, 1, lanes_.device().info()), std::span(&frame, 1), take, {});
+  }
+
+  /// The AO and the composite, if there is one.
+  std::vector<ShownPicture> pictures_of(FrameSource& source, const Window& window, const FrameOutputs& outputs,
+                                        const OutputSettings& output) {
+    std::vector<ShownPicture> shown{shown_plane(source, window, *outputs.ao)};
+    Json& scale = frames_.back()["scale"];
+    if (has_page_ && scale.is_null()) scale = scale_of(source.reading, shown_plane(source, window, *outputs.depth));
+    if (!outputs.composite) return shown;
+    const DisplayTransform transform(output.ocio, output.display, output.view_transform);
+    shown.push_back(shown_colors(source, window, outputs.composite, &transform));
+    if (has_page_ && !beauty_.width) beauty_ = shown_colors(source, window, nullptr, &transform);
     return shown;
+  }
+
+  void put_into_page(const WedgeLook& look, const std::vector<ShownPicture>& shown, PageCell& cell) const {
+    cell.row = {{"frame", frames_.back()["name"]}, {"candidate", look.name}};
+    if (!has_page_) return;
+    cell.image = image_of(look.name, shown[0], "result");
+    if (shown.size() > 1) cell.image["composite"] = url_of(shown[1]);
+  }
+
+  std::string label_of(std::size_t look, int frame, const std::string& end) {
+    const std::string number = plan().is_sequence() ? fmt::format("{}  ", frame) : "";
+    return fmt::format("{}{}  {}", number, looks_[look].name, end);
   }
 
   std::vector<WedgeLook>& looks_;
@@ -162,10 +231,11 @@ class WedgeMaker {
   const DeviceSettings& device_ = looks_.front().settings.device;
   Lanes lanes_{{device_.device, device_.require_gpu, device_.validate, !device_.no_pipeline_cache}, 1};
   const RunMemory memory_ = memory_for_frames(looks_.front().settings, lanes_.device().info());
+  const std::vector<std::vector<std::size_t>> groups_ = groups_of(looks_);
   std::deque<FirstLook> firsts_;        // of each look
   std::optional<FrameSource> settled_;  // as which all are read
   ReadPlanes planes_;                   // of the frame
-  std::size_t cell_ = 0;                // of the sheet
+  std::size_t first_cell_ = 0;          // of the sheet, of the frame
   ShownPicture beauty_;                 // of the frame, where there are composites
   Json rows_ = Json::array(), images_ = Json::array(), frames_ = Json::array();
 };
@@ -176,10 +246,24 @@ void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const st
   WedgeMaker maker(looks, !page.empty());
   std::set<std::optional<double>> radii;
   for (const auto& look : looks) radii.insert(look.settings.estimator.radius);
-  Sheet cells(maker.frames() * looks.size(), radii.size() < looks.size() ? radii.size() : 0);
+  const bool has_rows = radii.size() > 1 && radii.size() < looks.size();
+  Sheet cells(maker.frames() * looks.size(), has_rows ? radii.size() : 0);
   maker.make(sheet.empty() ? nullptr : &cells);
   if (!page.empty()) write_whole(page, maker.page());
   if (!sheet.empty()) cells.write(sheet);
+}
+
+std::string wedge_text(const std::vector<WedgeLook>& looks) {
+  FirstLook first(looks.front().settings);
+  const std::size_t estimates = groups_of(looks).size();
+  const InputSettings& input = looks.front().settings.input;
+  const bool takes_from_others = input.accumulate > 0 || takes_others(input);
+  std::string text = plan_text(first, true);
+  text += fmt::format("{:<14}{} of each frame, by {} estimate{}{}\n", "looks", looks.size(), estimates,
+                      estimates == 1 ? "" : "s",
+                      takes_from_others && estimates > 1 ? ", each of which takes frames around anew" : "");
+  for (const auto& look : looks) text += fmt::format("{:<14}{}\n", "", printable(look.name));
+  return text;
 }
 
 }  // namespace alcove

@@ -21,9 +21,14 @@ struct WedgeLook {
   std::optional<Error> error = {};  // why one of its frames failed
 };
 
-/// Computes looks of the same frames, which are read alike, and once; all but time, notes and errors is given. Writes a
-/// page and a sheet; "" stands for none. A row of the sheet has all radii, where anything else differs too. A look that
-/// fails is left out. Fails with the first error where all looks fail, and with ErrorKind::output.
+/// Computes looks of the same frames, which are read alike, and once; all but time, notes and errors is given. Looks
+/// that differ only in their shaping have one estimate. Writes a page and a sheet; "" stands for none. A row of the
+/// sheet has all radii, where there are several and anything else differs too. A look that fails is left out. Fails
+/// with the first error where all looks fail, and with ErrorKind::output.
 void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet);
+
+/// What make_wedge() would do, as --dry-run prints it. Computes and writes nothing. Fails as that would on settings,
+/// names, and a single frame that cannot be read as it is.
+std::string wedge_text(const std::vector<WedgeLook>& looks);
 
 }  // namespace alcove

@@ -486,5 +486,64 @@ TEST_F(ReuseOfFrames, a_camera_that_turns_turns_the_light) {
   EXPECT_EQ(relight(1), relight(4));
 }
 
+/// A frame with all that results are made of beside the visibility: a beauty, and materials' own AO.
+FrameInputs upload_lit(gpu::Recorder& gpu, const HostFrame& frame) {
+  std::vector<float> material(frame.data.pixels(), 1), beauty(3 * frame.data.pixels());
+  for (std::size_t i = 0; i < material.size(); i += 7) material[i] = 0.5f;
+  for (std::size_t i = 0; i < beauty.size(); i++) beauty[i] = 0.01f * float(i % 97);
+  HostPlanes planes;
+  planes[RawPlane::depth] = frame.depth;
+  planes[RawPlane::normal] = frame.normal;
+  planes[RawPlane::material_ao] = material;
+  planes[RawPlane::beauty] = beauty;
+  return upload(gpu, frame, planes, 0);
+}
+
+/// The AO, that of each radius, and the composite.
+std::vector<float> results_in(const FrameOutputs& outputs) {
+  std::vector<float> values;
+  for (const auto* planes : {outputs.ao, outputs.scales, outputs.composite}) {
+    const std::vector<float> plane = test::values_of(planes);
+    values.insert(values.end(), plane.begin(), plane.end());
+  }
+  return values;
+}
+
+TEST(Reuse, of_what_is_seen_gives_every_shaping_the_bits_of_a_run_of_its_own) {
+  const HostFrame frame = furnished_room(96, 64).frame;
+  std::vector<Settings> looks(6);
+  looks[1].estimator.intensity = 1.6;
+  looks[2].estimator.power = 0.7;
+  looks[2].estimator.least = 0.3;
+  looks[3].estimator.fade_start = 1;
+  looks[3].estimator.fade_end = 6;
+  looks[4].output.look = {0.1, 1.5, {0.2, 0.1, 0}, 0.8};
+  const std::vector<std::function<void(EstimatorSettings&)>> searches{
+      [](auto&) {}, [](auto& s) { s.search = SliceSearch::quick; }, [](auto& s) { s.further_radii = {0.2}; },
+      [](auto& s) { s.resolution = Resolution::half; }, [](auto& s) { s.estimator = Estimator::crytek; }};
+  for (const auto& search : searches) {
+    gpu::Recorder gpu(device());
+    std::optional<Seen> seen;
+    FrameInputs inputs;
+    for (auto& look : looks) {
+      look.estimator.radius = 0.5;
+      look.output.aovs = "ao,ao-scales";
+      search(look.estimator);
+      if (!seen) {
+        inputs = upload_lit(gpu, frame);
+        seen = see(gpu, inputs, look.estimator, look.output);
+        gpu.run();
+      }
+      const FrameOutputs outputs = results_of(gpu, inputs, *seen, look.estimator, look.output);
+      gpu.run();
+      for (const auto& pass : gpu.passes()) EXPECT_TRUE(pass.name == "shape" || pass.name == "composite") << pass.name;
+      const std::vector<float> shared = results_in(outputs);
+      const FrameOutputs own = run_chain(recorder(), upload_lit(recorder(), frame), look.estimator, look.output);
+      recorder().run();
+      EXPECT_TRUE(same_bits(shared, results_in(own))) << &look - looks.data() << " " << name_of(look.estimator);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace alcove::reuse_test

@@ -63,26 +63,42 @@ TEST_F(Sheets, shrink_large_pictures_by_the_mean_of_whole_blocks) {
   ASSERT_EQ(picture.window.width, 2 * (1800 + 8) + 8);
   EXPECT_NEAR(picture.at(100, 60), 0.3, 0.01);
   EXPECT_NEAR(picture.at(8 + 1808 + 10, 60), 0.5, 0.01);
-  EXPECT_NEAR(picture.at(8 + 1808 + 10, 8 + 24 + 179), 0.5, 0.01);
-  EXPECT_LT(picture.at(100, 8 + 24 + 101), 0.2);
+  EXPECT_NEAR(picture.at(8 + 1808 + 10, 8 + 40 + 179), 0.5, 0.01);
+  EXPECT_LT(picture.at(100, 8 + 40 + 101), 0.2);
 }
 
 TEST_F(Sheets, draw_each_letter_in_another_way) {
   std::string letters;
   for (char c = ' '; c <= '~'; c++) letters += c;
   Sheet sheet(1);
-  const ShownPicture wide = grey(1200, 20, 0);
+  const ShownPicture wide = grey(590, 20, 0);  // 49 letters
   sheet.put(0, letters, {&wide, 1});
   const Written picture = written(sheet);
   std::set<std::vector<bool>> shapes;
   for (int letter = 0; letter < int(letters.size()); letter++) {
     std::vector<bool> shape;
     for (int y = 0; y < 16; y++)
-      for (int x = 0; x < 12; x++) shape.push_back(picture.at(8 + 12 * letter + x, 8 + y) > 0.5F);
+      for (int x = 0; x < 12; x++)
+        shape.push_back(picture.at(8 + 12 * (letter % 49) + x, 8 + 20 * (letter / 49) + y) > 0.5F);
     EXPECT_EQ(std::ranges::count(shape, true) == 0, letter == 0) << letters[std::size_t(letter)];
     shapes.insert(shape);
   }
   EXPECT_EQ(shapes.size(), letters.size());
+}
+
+// A look of many settings differs from others by its last words, in cells as narrow as those of a large sheet.
+TEST_F(Sheets, draw_whole_labels_of_letters_that_can_be_read) {
+  const auto ink_of = [&](const std::string& label, int width) {
+    Sheet sheet(2);
+    const ShownPicture picture = grey(width, 4, 0);
+    sheet.put(0, label, {&picture, 1});
+    const Written drawn = written(sheet);
+    return std::ranges::count_if(drawn.values, [](float value) { return value > 0.5F; });
+  };
+  const auto of_a = ink_of("a", 120);
+  EXPECT_EQ(of_a, ink_of("a", 10)) << "no cell is too narrow for ten letters";
+  EXPECT_EQ(ink_of("a", 960), of_a * 9 / 4) << "letters grow with the cells";
+  EXPECT_EQ(ink_of("aaaa aaaaaaaaa aaaaaaaaaaaaaaaaaaaaaaa a", 120), 37 * of_a) << "no letter is left out or smaller";
 }
 
 TEST_F(Sheets, without_a_picture_are_not_written) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/estimate/estimate.h"
 #include "core/run/frame_files.h"
+#include "core/run/frame_run.h"
 #include "core/run/shot.h"
 #include "core/run/tiles.h"
 #include "tests/support/device.h"
@@ -219,6 +220,30 @@ TEST_F(Memory, of_parts_stays_within_any_limit_and_below_the_whole) {
     EXPECT_LE(peak, limits.room.bytes) << share;
     EXPECT_LT(peak, whole) << share;
   }
+}
+
+// A look that shapes has a buffer that one without shaping does not have.
+TEST_F(Memory, of_looks_is_that_of_the_one_that_takes_the_most) {
+  FirstLook first(settings);
+  first.prepare();
+  InputIdentities identities(first.plan());
+  Lanes lanes({"cpu", false, false, false}, 1);
+  const auto report_within = [&](std::uint64_t device_bytes, std::vector<double> intensities) {
+    RunContext run{first, first.plan(), identities, nullptr, nullptr, nullptr, false, {}};
+    for (const double intensity : intensities) {
+      run.looks.push_back(settings);
+      run.looks.back().estimator.intensity = intensity;
+    }
+    run.take_look = [](std::size_t, FrameSource&, const Window&, const FrameOutputs&, const LookTime&) {};
+    const Room room{.bytes = Room::kEndless, .device_bytes = device_bytes, .buffer_bytes = Room::kEndless};
+    return run_frame(lanes, run, room, 0, [](int, int, double) {});
+  };
+  const std::uint64_t unshaped = memory_of(open_frame(settings, 0), settings).of(window).device;
+  EXPECT_EQ(report_within(unshaped, {1, 1}).state, FrameState::done);
+  const FrameReport refused = report_within(unshaped, {1, 2});
+  ASSERT_TRUE(refused.error);
+  EXPECT_THAT(refused.error->what(), HasSubstr("a wedge needs it whole"));
+  EXPECT_EQ(report_within(unshaped + 2 * sizeof(float) * window.pixels(), {1, 2}).state, FrameState::done);
 }
 
 }  // namespace

@@ -44,6 +44,27 @@ TEST_F(Shots, each_frame_is_read_once_for_all_around_it) {
   EXPECT_THAT(frames[3]["frames_around"], Eq(json({2, 3, 5, 6})));
 }
 
+TEST_F(Shots, dry_runs_count_the_reads_and_estimates_of_a_run) {
+  for (const std::string more :
+       {"--around 2", "--around 1 --frames 4", "--around 2 --frames 5-7", "--around all --frames 2", "--accumulate 1",
+        "--accumulate 2 --frames 4", "--accumulate 1 --around 1 --frames 3-4"}) {
+    const auto told = [text = done(typed(more + " --dry-run")).out](const std::string& what) {
+      const std::size_t end = text.rfind(" " + what + " for ");
+      EXPECT_NE(end, text.npos) << text;
+      return std::atoi(text.substr(0, end).substr(text.rfind(' ', end - 1)).c_str());
+    };
+    std::uint64_t rows = 0;
+    const json frames = stats_of(typed(more + " --threads 1"))["frames"];
+    for (const auto& frame : frames) rows += frame["rows_read"].get<std::uint64_t>();
+    // An estimate reads its frame, which is not read again.
+    EXPECT_EQ(more.starts_with("--around") || more.ends_with("3-4") ? told("reads") : told("estimates"), rows / 36)
+        << more;
+  }
+  EXPECT_THAT(done(typed("--around 2 --dry-run")).out, HasSubstr("; 14 reads for 7 frames, 2 for each\n"));
+  EXPECT_THAT(done(typed("--accumulate 2 --frames 4 --dry-run")).out,
+              HasSubstr("; 5 estimates for 1 frame, 5 for each\n"));
+}
+
 TEST_F(Shots, headers_name_the_frames_that_were_taken) {
   const std::tuple<const char*, const char*, const char*, const char*> rows[] = {
       {"--around 2", "alcove/hidden", "frames 2-3", "frames 2-3, 5-6"},

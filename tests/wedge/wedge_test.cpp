@@ -3,6 +3,7 @@
 #include <regex>
 #include <sstream>
 
+#include "core/formats/picture.h"
 #include "core/measure/report.h"
 #include "tests/support/sequence_folder.h"
 
@@ -74,6 +75,26 @@ TEST_F(Wedge, shows_the_bits_of_its_commands) {
   expect_bits_of_commands(shown(of_frame("--radius .7 --estimator hbao,crytek,bitmask --intensity 1,2")));
 }
 
+// Looks that differ in their shaping alone take one estimate, and so one time of it.
+TEST_F(Wedge, estimates_once_for_looks_that_differ_in_their_shaping_alone) {
+  FrameFile with_beauty = wall_frame();
+  add_beauty(with_beauty);
+  with_beauty.write(frame);
+  const auto estimates_of = [](const json& report) {
+    std::set<double> times;
+    for (const auto& row : report["rows"]) times.insert(row["estimate_ms"].get<double>());
+    return times.size();
+  };
+  const json report = shown(of_frame("--radius .5,auto --set intensity=.5,1,1.5,2"));
+  ASSERT_EQ(report["rows"].size(), 8);
+  EXPECT_EQ(estimates_of(report), 2);
+  expect_bits_of_commands(report);
+  EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --set least=0,.2 --set gain=1,2 --set power=1,2"))), 1);
+  EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --set slices=2,4 --set intensity=1,2"))), 2);
+  write_bytes(folder / "dark.toml", "intensity=2\n");
+  EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --preset standard," + (folder / "dark.toml")))), 1);
+}
+
 // What a frame is read by goes into the commands, be it a guess's option, a name with blanks or a flag.
 TEST_F(Wedge, reads_the_frame_as_run_does) {
   FrameFile other = wall_frame();
@@ -106,10 +127,28 @@ TEST_F(Wedge, has_the_radius_that_inspect_proposes) {
   EXPECT_EQ(names_of(shown(of_frame("--radius 9,.01"))), (Names{"radius 0.01", name, "radius 9"}));
   EXPECT_EQ(names_of(shown(of_frame("--radius auto"))), Names{name});
   EXPECT_EQ(names_of(shown(of_frame("--set radius=9,.01"))), (Names{"radius 0.01", name, "radius 9"}));
-  EXPECT_EQ(names_of(shown(of_frame("--radius auto --set intensity=1,2"))),
-            (Names{"intensity=1 (proposed radius)", "intensity=2 (proposed radius)"}));
+  EXPECT_EQ(names_of(shown(of_frame("--radius auto --set intensity=1,2"))), (Names{"intensity=1", "intensity=2"}));
   EXPECT_EQ(names_of(shown(of_frame(fmt::format("--radius 9,{} --preset draft,standard", proposed)))),
             (Names{"draft, " + name, "draft, radius 9", "standard, " + name, "standard, radius 9"}));
+}
+
+TEST_F(Wedge, names_no_look_by_what_all_have) {
+  for (const char* preset : {"soft", "hard"}) write_bytes(folder / preset, "intensity=2\n");
+  const std::string presets = (folder / "soft") + "," + (folder / "hard");
+  EXPECT_EQ(names_of(shown(of_frame("--radius auto --preset " + presets))), (Names{"soft", "hard"}));
+  EXPECT_EQ(names_of(shown(of_frame("--radius auto --preset standard," + (folder / "soft")))),
+            (Names{"standard", folder / "soft"}));
+}
+
+// The sheet of looks of one radius is no column.
+TEST_F(Wedge, makes_sheets_about_as_wide_as_high) {
+  const auto width_of = [&](const std::string& more) {
+    EXPECT_EQ(run(typed(frame + " --camera " + camera + " --sheet " + sheet + " " + more)).code, 0);
+    return open_image(sheet, "the test", Formats::all).parts()[0].data.width;
+  };
+  const int cell = width_of("--radius auto") - 8;
+  EXPECT_EQ(width_of("--radius auto --set intensity=1,2,3,4"), 2 * cell + 8);
+  EXPECT_EQ(width_of("--radius .1,.2,auto --set intensity=1,2"), 3 * cell + 8) << "a row of all radii";
 }
 
 TEST_F(Wedge, of_a_beauty_shows_composites_and_makes_them) {
@@ -195,6 +234,27 @@ TEST_F(Wedge, tells_which_look_fails_and_shows_the_others) {
   EXPECT_THAT(finished.err, AllOf(HasSubstr("look multi-bounce=true"), HasSubstr("albedo")));
   EXPECT_EQ(report_in(page)["images"].size(), 2) << "a look, and the beauty";
   EXPECT_TRUE(fs::exists(sheet));
+}
+
+TEST_F(Wedge, that_fails_leaves_no_page_of_an_earlier_one_and_says_why) {
+  for (const auto& file : {page, sheet}) write_bytes(file, "of an earlier wedge");
+  const Finished failed = run(joined(of_frame("--radius 1,2 --memory 1M"), {"--sheet", sheet}));
+  EXPECT_EQ(failed.code, 2) << failed;
+  EXPECT_THAT(failed.err, AllOf(HasSubstr("at least --memory"), Not(HasSubstr("beauty"))));
+  EXPECT_FALSE(fs::exists(page) || fs::exists(sheet));
+}
+
+TEST_F(Wedge, may_be_tried_dry) {
+  write_bytes(page, "of an earlier wedge");
+  const Finished dry = run(of_frame("--radius 1,2 --set intensity=1,2 --dry-run"));
+  EXPECT_EQ(dry.code, 0) << dry;
+  EXPECT_THAT(dry.out, AllOf(HasSubstr("memory  "), Not(HasSubstr("ao.exr")), HasSubstr("no composite")));
+  EXPECT_THAT(dry.out, testing::ContainsRegex("looks +6 of each frame, by 3 estimates\n +intensity=1, radius"));
+  EXPECT_EQ(read_bytes(page), "of an earlier wedge");
+  write_frames(1, 5);
+  const std::string shot = in + "/f.####.exr";
+  EXPECT_THAT(run(of_frame("--radius auto --frames 3 --set intensity=1,2 --around 1 --dry-run", shot)).out,
+              AllOf(HasSubstr(" reads for 1 frame, "), HasSubstr("by 1 estimate\n")));
 }
 
 TEST_F(Wedge, may_say_nothing) {
