@@ -17,8 +17,9 @@ writeonly buffer Ends { uint ends[]; };
 
 void main() {
   const View view = params.view;
-  if (int(gl_GlobalInvocationID.x) >= view.size.x + view.size.y) return;
-  const Line line = line_at(view, int(gl_GlobalInvocationID.x));
+  const int index = int(gl_GlobalInvocationID.x);
+  if (index >= view.size.x + view.size.y) return;
+  const Line line = line_at(view, index);
   const int first = line.first, last = first + (line.steps - 1) / kSegment;
   int before = 0, after = 0, at = first;
   do {

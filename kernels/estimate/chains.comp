@@ -58,7 +58,9 @@ bool is_round(View view, float beyond, Facet end, vec3 third) {
 
 void main() {
   const View view = params.view;
-  const Line line = line_at(view, int(gl_GlobalInvocationID.x));
+  const int index = int(gl_GlobalInvocationID.x);
+  if (index >= view.size.x + view.size.y) return;
+  const Line line = line_at(view, index);
   const int first = kSegment * int(gl_GlobalInvocationID.y);
   if (first >= line.steps) return;
   const vec2 along = line.is_column ? vec2(0, 1) : vec2(1, 0);
