@@ -308,7 +308,7 @@ std::span<const float> copied_64(std::size_t from, std::size_t to) {
 
 TEST(Recorder, tells_which_share_of_a_long_recording_is_done) {
   auto& gpu = test::recorder();
-  for (int i = 0; i < 40; i++) record_copy_of_64(64, 64);
+  for (int i = 0; i < 60; i++) record_copy_of_64(64, 64);
   std::vector<double> shares;
   gpu.run([&](double share) { shares.push_back(share); });
   EXPECT_GE(shares.size(), 3u);
