@@ -62,7 +62,7 @@ bool ReferenceSolids::connect(const ReferenceLine& line, int a, int b, bool is_o
   const ReferenceSample& to = line[b];
   if (from.depth == 0 || to.depth == 0) return false;
   const bool by_normals = has_normals(line, a, b);
-  const double slope = is_own && settings_.thickness == ThicknessRule::width ? kOwnSlope : kRunSlope;
+  const double slope = is_own && by_normals ? kOwnSlope : kRunSlope;
   if (std::abs(from.depth - to.depth) < slope * pixels_at(std::min(from.depth, to.depth)))
     return !by_normals || !are_parallel(from, to);
   return by_normals && (are_coplanar(from, to, kPlaneDot, kPlaneOff) || meet_at_edge(line, a, b));
@@ -180,8 +180,9 @@ void ReferenceSolids::thicken(ReferenceLine& line, const std::vector<int>& run) 
   for (const int i : run) line[i].thickness = width;
   const bool mirrored = mirrors(line, run), reaches = !is_long(line, run.front(), run.back());
   const double pixel = pixels_at(line[run[0]].depth), outline = distance_from_eye(line[run[0]]);
+  const double most = kFarthestBack * settings_.radius;
   for (const int i : run)
-    line[i].thickness = mirrored ? std::max(2 * (outline - distance_from_eye(line[i])), pixel)
+    line[i].thickness = mirrored ? std::max(std::min(2 * (outline - distance_from_eye(line[i])), most), pixel)
                         : reaches && has_normals(line, i, i) ? std::max(width, reaches_back(line, i, run))
                                                              : width;
   close(line, run);

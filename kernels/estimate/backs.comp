@@ -64,10 +64,11 @@ Sides sides_of(View view, vec3 here, vec3 n, ivec2 pixel, int most, bool is_colu
   const int step = is_column ? pixel.y : pixel.x;
   const int first = line_of(view, is_column, is_column ? pixel.x : pixel.y).first;
   const ivec2 away = steps_of_chain(first, step, most);
-  const bvec2 may_be_round = bvec2(uvec2(greaterThanEqual(away, ivec2(2))) & uvec2(lessThan(away, ivec2(most))));
-  const Told before =
-                 told_by(view, here, n, pixel, -away.x * along, may_be_round.x && is_round_at(first, step - away.x)),
-             after = told_by(view, here, n, pixel, away.y * along, may_be_round.y && is_round_at(first, step + away.y));
+  const bool may_be_round = away.x + away.y >= kRoundPixels - 1;
+  const Told before = told_by(view, here, n, pixel, -away.x * along,
+                              may_be_round && away.x < most && is_round_at(first, step - away.x)),
+             after = told_by(view, here, n, pixel, away.y * along,
+                             may_be_round && away.y < most && is_round_at(first, step + away.y));
   return Sides(max(max(before.depth, after.depth), 0.0), before.size + after.size,
                vec2(before.mirrored, after.mirrored));
 }

@@ -11,12 +11,12 @@ const float kBackPerWidth = 1.5;
 uint pack_float(float x, int bits) {
   const int rest = 27 - bits;
   const uint half_a_step = 1u << rest - 1, least = 125u << 23;
-  return min(max(floatBitsToUint(x) + half_a_step, least) - least >> rest, (1u << bits) - 1u);
+  return min(floatBitsToUint(greater(x, 0.25)) + half_a_step - least >> rest, (1u << bits) - 1u);
 }
 float unpack_float(uint packed, int bits) { return uintBitsToFloat((packed << 27 - bits) + (125u << 23)); }
 
 // An outline's depth is a pixel at least, so 0 is left for that there is none.
-uint pack_mirrored(float depth) { return depth < 0.0 ? 0u : max(pack_float(depth, 6), 1u); }
+uint pack_mirrored(float depth) { return depth < 0.0 ? 0u : pack_float(greater(depth, 1.0), 6); }
 float unpack_mirrored(uint word) { return (word & 63u) == 0u ? -1.0 : unpack_float(word & 63u, 6); }
 
 float unpack_depth(uint word) { return unpack_float(word & 255u, 8); }
@@ -37,8 +37,6 @@ uint outline_of(vec2 direction) {
 /// Chains are pixels of a row or a column that show one surface, each with the next. Lines are cut into segments, of
 /// which two words tell, a bit for each pixel: whether it goes on from the one before; and whether a chain that begins
 /// or ends with it has a rounded outline there.
-const int kSegment = 32;
-
 struct Line {
   bool is_column;
   int number;  // the row, or the column

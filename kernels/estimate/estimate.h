@@ -67,9 +67,11 @@ ALCOVE_CONSTANT uint kThicknessEndless = 2;  // solid as far as the sphere of th
 ALCOVE_CONSTANT uint kCompletesBorder = 4;   // a bit beside them: surfaces go on beyond the image's border
 ALCOVE_CONSTANT uint kCompletesHidden = 8;   // another one: they go on behind what is nearer, if not kThicknessEndless
 ALCOVE_CONSTANT uint kInSectors = 16;        // another one: all that blocks is counted in sectors, no horizon is exact
-ALCOVE_CONSTANT uint kHiddenSurface = 32;
+ALCOVE_CONSTANT uint kTellsBacks = 32;       // another one: pixels tell how far back they are solid
+ALCOVE_CONSTANT uint kHiddenSurface = 64;
 
 ALCOVE_CONSTANT int kChainsGroup = 16;
+ALCOVE_CONSTANT int kSegment = 32;  // px of a row or a column: see backs.glsl
 // radii: nothing farther away along a row of pixels of one surface tells how far back it is solid
 ALCOVE_CONSTANT float kLongestChain = 1.9f;
 ALCOVE_CONSTANT float kMostBack = 4;  // radii: solids reach back as far as they are seen to, but no farther

@@ -2,7 +2,7 @@
 // thickness.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals.
+// In: planar depth, view normals; how far back each pixel is solid.
 // Out: visibility, 1 = open; where they are asked for, the moments of the blocked directions (see moments.glsl), and
 // the visibility that completed surfaces took.
 //
@@ -20,7 +20,7 @@
 //     all below its horizon (line 24). A sample below the tangent plane says nothing else.
 //  6. Every other run blocks from its front to its back, and nothing beyond the radius. The back lies further along the
 //     eye's ray by the run's width ("width as thickness": a blade of grass is as thin as it is narrow, a column as
-//     thick as it is broad), or by what the user says. A front before the sphere blocks by the part of its solid
+//     thick as it is broad), or as far as the sample's pixel tells (backs.comp), or by what the user says. A front before the sphere blocks by the part of its solid
 //     within the sphere. The paper lets the horizon sink instead (section 4.3).
 //     Runs are counted in 24 sectors, as in the mask of Therrien et al., "Screen Space Indirect Lighting with
 //     Visibility Bitmask", 2023; see sectors.glsl. With kInSectors, which is `--estimator bitmask`, so is the own
@@ -52,9 +52,9 @@ layout(constant_id = 0) const uint kSlices = 3;  // slices per pixel
 layout(constant_id = 1) const uint kSteps = 6;   // steps to each side of a slice
 // CMakeLists.txt makes specialization constants of these two, 2 and 4, but in the twin.
 ALCOVE_MODE const uint kMode = kFalloffNone;  // one of kFalloff* of slice.glsl, and kWith* or not
-// one of kThickness*, of what is not connected to the receiver, kCompletes* and kInSectors or not, and
+// one of kThickness*, of what is not connected to the receiver, kCompletes*, kInSectors and kTellsBacks or not, and
 // kHiddenSurface times as many surfaces as a pixel may have behind the first
-ALCOVE_SOLID const uint kSolid = kThicknessWidth | kCompletesBorder | kCompletesHidden;
+ALCOVE_SOLID const uint kSolid = kThicknessWidth | kCompletesBorder | kCompletesHidden | kTellsBacks;
 // 0: all pixels are estimated; else only the sites of the list, and those of the widest lattice by so many slices
 layout(constant_id = 3) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
@@ -75,7 +75,7 @@ layout(binding = 8) writeonly buffer Moments { float moments[]; };
 layout(binding = 9) writeonly buffer Completed { float completed[]; };
 // planes of hidden surfaces that may block, see GBuffer; with layers only
 layout(binding = 10) readonly buffer Hidden { float hidden[]; };
-// one uint per pixel, how far back it is solid, from backs; only with kThicknessWidth
+// one uint per pixel, how far back it is solid, from backs; only with kTellsBacks
 layout(binding = 11) readonly buffer Backs { uint backs[]; };
 
 // How many surfaces a pixel has at most: 1, or for horizon_layers as kSolid says. CMakeLists.txt makes kernels of
@@ -90,6 +90,7 @@ const uint kThickness = kSolid & 3u;
 const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
 const bool kBehindOthers = (kSolid & kCompletesHidden) != 0u;
 const bool kAllInSectors = (kSolid & kInSectors) != 0u;
+const bool kHasBacks = (kSolid & kTellsBacks) != 0u;
 
 /// A run is so many times as thick as it is wide.
 const float kThicknessPerWidth = 1.25;
@@ -113,7 +114,7 @@ struct Run {
   float near, far;  // largest and smallest of the samples that block
   float gap;        // steps from the sample before it
   bool is_round;    // it begins behind a rounded outline, of which its back is the mirror image
-  float deepest;    // of its samples before the sphere: how far back they are told to be solid
+  float deepest;    // of its samples before the sphere: how far back along the eye's ray they are told to be solid
 };
 
 /// The blocked directions: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors
@@ -167,10 +168,11 @@ float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width, f
   return run.is_round ? 0.0 : levelled(width, kWidestRun * reach.radius);
 }
 
-/// How much deeper than its front, at depth z, the solid of a pixel is told to be, by its word of backs.glsl.
-float depth_told(Receiver r, Reach reach, Run run, float z, uint word, float mirrored) {
-  const float told = both(run.is_round, mirrored >= 0.0) ? mirrored : unpack_depth(word);
-  return told * reach.pixel_size * (r.perspective ? z : 1.0);
+/// How much deeper than its front the solid of a sample is that its pixel tells, in pixels' widths; below 0: nothing is
+/// told, or it does not reach into the sphere.
+float depth_told(Receiver r, Reach reach, Sample s, float pixels) {
+  const float depth = pixels * reach.pixel_size * (r.perspective ? s.z : 1.0);
+  return both(pixels >= 0.0, depth * r.ray_length > sqrt(s.distance_sq) - reach.radius) ? depth : -1.0;
 }
 
 /// slope_of() the end of a sample's solid that is so much deeper than its front; 1 where it does not block.
@@ -431,8 +433,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       const float z = occluder_depth[here.y * reach.width + here.x];
       // The receiver itself need be no occluder.
       const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
-      const uint word = kThickness == kThicknessWidth ? backs[here.y * reach.width + here.x] : 0u;
-      const float mirrored = unpack_mirrored(word >> outline);
+      const uint word = kHasBacks ? backs[here.y * reach.width + here.x] : 0u;
       const Sample s = sample_of(r, side, reach, offset, beside, z);
       last_pixel = here;
       const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
@@ -449,16 +450,20 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       run.start = ends ? s.place : run.start;
       run.end = s.place;
       run.near = greater(own ? -1.0 : slopes.x, ends ? -1.0 : run.near);
-      run.is_round = ends ? mirrored >= 0.0 : run.is_round;
-      const float told = depth_told(r, reach, run, s.z, word, mirrored);
-      const float far =
-          kThickness == kThicknessWidth ? lesser(slopes.y, slope_behind(r, side, s, beside, told)) : slopes.y;
+      float told = 0.0, far = slopes.y;
+      if (kHasBacks) {
+        const float mirrored = depth_told(r, reach, s, unpack_mirrored(word >> outline));
+        run.is_round = ends ? mirrored >= 0.0 : run.is_round;
+        told =
+            both(run.is_round, mirrored >= 0.0) ? mirrored : greater(depth_told(r, reach, s, unpack_depth(word)), 0.0);
+        far = lesser(far, slope_behind(r, side, s, beside, told));
+      }
       run.far = lesser(own ? 1.0 : far, ends ? 1.0 : run.far);
       run.gap = ends ? gap : run.gap;
       found.blocked.near = greater(own ? slopes.x : -1.0, found.blocked.near);
       const bool here_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place));
       is_before = here_before ? true : both(is_before, !ends);
-      run.deepest = greater(here_before ? told : 0.0, ends ? 0.0 : run.deepest);
+      run.deepest = greater(here_before ? told * r.ray_length : 0.0, ends ? 0.0 : run.deepest);
       if (!kHard) {
         const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 0.0);
         found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
@@ -607,18 +612,19 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
         const bool counts = both(here.exists[i], !own);
         const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
         // Of first surfaces without a known one behind them their pixel tells how far back they are solid.
-        const bool is_told = kThickness == kThicknessWidth && i == 0 && !knows && !here.has_back[i];
+        const bool is_told = kHasBacks && i == 0 && !knows && !here.has_back[i];
         const uint word = is_told ? backs[pixel.y * reach.width + pixel.x] : 0u;
-        const float mirrored = unpack_mirrored(word >> outline);
+        const float mirrored = is_told ? depth_told(r, reach, s, unpack_mirrored(word >> outline)) : -1.0;
         slot.run.is_round = begins ? mirrored >= 0.0 : slot.run.is_round;
-        const float told = depth_told(r, reach, slot.run, s.z, word, mirrored);
+        const float seen = is_told ? greater(depth_told(r, reach, s, unpack_depth(word)), 0.0) : 0.0;
+        const float told = both(slot.run.is_round, mirrored >= 0.0) ? mirrored : seen;
         const float behind = is_told ? slope_behind(r, side, s, vec2(pixel - r.pixel), told) : 1.0;
         found.blocked.near = max(found.blocked.near, both(here.exists[i], own) ? open.x : -1.0);
         slot.run.near = max(slot.run.near, counts ? slopes.x : -1.0);
         slot.run.far = min(slot.run.far, counts ? min(slopes.y, behind) : 1.0);
         const bool is_open = both(counts, !here.has_back[i]);
         const bool is_before = kHard ? both(both(is_open, s.above), is_before_sphere(r, reach, s.place)) : false;
-        slot.run.deepest = max(is_before ? told : 0.0, begins ? 0.0 : slot.run.deepest);
+        slot.run.deepest = max(is_before ? told * r.ray_length : 0.0, begins ? 0.0 : slot.run.deepest);
         slot.bits = (begins ? 0u : slot.bits & (kSlotOpen | kSlotKnows | kSlotBefore)) | (s.above ? kSlotAbove : 0u) |
                     (s.within ? kSlotWithin : 0u) | (own ? kSlotOwn : 0u) | (knows ? kSlotKnows : 0u) |
                     (is_open ? kSlotOpen : 0u) | (is_before ? kSlotBefore : 0u);

@@ -28,6 +28,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/exact.h"
+#include "kernels/estimate/estimate.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/arcs.glsl"
@@ -345,7 +346,7 @@ float back_at(View view, vec2 place, vec2 n, vec2 other) {
 float thickness_at(View view, float by_width, float by_back, End end, vec2 place) {
   const bool perspective = view.orthographic == 0;
   const float before = perspective ? length(end.place) - length(place) : end.place.y - place.y;
-  const float mirrored = max(min(2.0 * before, kFarthestBack * params.radius), end.pixel);
+  const float mirrored = max(min(2.0 * before, kMostBack * params.radius), end.pixel);
   return end.is_round ? mirrored : max(by_width, by_back);
 }
 
@@ -376,17 +377,17 @@ uint thickness_of(View view, Lines lines, LinePlane plane, int line, Solidity s,
   const vec2 n = in_plane(view, plane, unpack_normal(normal[pixel]));
   const float seen = max(back_at(view, corner.place, n, s.first.place), back_at(view, corner.place, n, s.last.place));
   const bool reaches = s.reaches && (corner.marked & kVertexHidden) == 0u;
-  const float back = reaches ? clamp(seen, 0.0, kFarthestBack * params.radius) : 0.0;
+  const float back = reaches ? clamp(seen, 0.0, kMostBack * params.radius) : 0.0;
   return pack_thickness(thickness_at(view, s.by_width.x, back, s.first, corner.place),
                         thickness_at(view, s.by_width.y, back, s.last, corner.place));
 }
 
 /// The same of the part of a run from a corner on.
-uint thickness_of_part(Solidity s, Corner corner) {
-  const vec2 widths = vec2(length(s.last.place - corner.place), length(s.first.place - corner.place)) + s.first.pixel;
-  const bool is_cut = s.first.is_cut || s.last.is_cut;
-  return pack_thickness(thickness_by_width(widths.x, s.first.pixel, false, is_cut, false),
-                        thickness_by_width(widths.y, s.first.pixel, false, is_cut, false));
+uint thickness_of_part(View view, Solidity s, Corner corner) {
+  const float pixel = pixels_of(view, corner.z);
+  const vec2 widths = vec2(length(s.last.place - corner.place), length(s.first.place - corner.place)) + pixel;
+  return pack_thickness(thickness_by_width(widths.x, pixel, false, s.last.is_cut, false),
+                        thickness_by_width(widths.y, pixel, false, s.first.is_cut, false));
 }
 
 /// 2. Gives all vertices of a slot's profile their thickness, where it is not known. This follows the profile, since a
@@ -403,7 +404,7 @@ void thicken(Run run, View view, Lines lines, LinePlane plane, ivec2 steps, int 
         mark[corner.index] |= s.first.closes ? kVertexCloses : 0u;
         mark[last] |= s.last.closes ? kVertexClosesAgainst : 0u;
       }
-      const uint whole = thickness_of(view, lines, plane, line, s, corner), part = thickness_of_part(s, corner);
+      const uint whole = thickness_of(view, lines, plane, line, s, corner), part = thickness_of_part(view, s, corner);
       const uint along = (corner.marked & kVertexApart) != 0u ? part : whole;
       const uint against = (corner.marked & kVertexApartAgainst) != 0u ? part : whole;
       if (solid[corner.index] == 0u) solid[corner.index] = along & 0xffffu | against & ~0xffffu;
@@ -578,6 +579,6 @@ void main() {
   } while (++t <= steps.y);
   for (uint slot = 0u; slot < kSlots; slot++) {
     finish(runs[slot], steps);
-    thicken(runs[slot], view, lines, plane, steps, line);
+    if (params.solids != 0u || kSurfaces > 1u) thicken(runs[slot], view, lines, plane, steps, line);
   }
 }

@@ -27,9 +27,6 @@ const float kClearEdge = 0.8;     // the dot of normals that differ clearly
 const float kFlatDot = 0.9995;  // the least of the normals of one flat face
 const float kFlatOff = 0.25;    // px from each other's planes
 
-/// Radii: solids reach back as far as they are seen to, but no farther.
-const float kFarthestBack = 4.0;
-
 // Rounded outlines.
 const float kRoundFacing = 0.35;  // the sine of the angle to the eye's ray below which an outline may be rounded
 const float kRoundDot = 0.999;    // the dot of the normals of the first pixel and the third

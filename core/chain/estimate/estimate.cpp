@@ -30,7 +30,7 @@ float thickness_of(const EstimatorSettings& settings) {
 double front_reach_of(const EstimatorSettings& settings, double radius) {
   double thickness = 0;
   if (settings.falloff == Falloff::none && settings.thickness == ThicknessKind::automatic)
-    thickness = 2.0 / 3 * kWidestRun * radius;
+    thickness = (tells_backs(settings) ? kMostBack : 2.0 / 3 * kWidestRun) * radius;
   if (settings.falloff == Falloff::none && settings.thickness == ThicknessKind::constant)
     thickness = settings.thickness_length;
   return std::max(radius + thickness, kFarEnd * radius);
@@ -115,7 +115,8 @@ bool searches_slices(const EstimatorSettings& settings) {
 }
 
 bool tells_backs(const EstimatorSettings& settings) {
-  return searches_slices(settings) && !searches_exactly(settings) && settings.thickness == ThicknessKind::automatic;
+  return searches_slices(settings) && settings.search == SliceSearch::steps &&
+         settings.thickness == ThicknessKind::automatic;
 }
 
 bool completes(const EstimatorSettings& settings) {
@@ -271,7 +272,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
 
 Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
   const View& view = gbuffer.view;
-  const auto segments_of = [](int steps) { return (uint(steps) + 31) / 32; };
+  const auto segments_of = [](int steps) { return uint((steps + kSegment - 1) / kSegment); };
   const std::size_t segments =
       std::size_t(view.size.y) * segments_of(view.size.x) + std::size_t(view.size.x) * segments_of(view.size.y);
   const std::size_t bytes = segments * 2 * sizeof(uint);
@@ -319,7 +320,8 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
                                  {"Backs", gpu::Optional(out.told)}});
   const uint mode = uint(reach.falloff) | (out.order > 0 ? kWithFirst : 0) | (out.order > 1 ? kWithSecond : 0) |
                     (out.completed ? kWithCompleted : 0);
-  const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
+  const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0) |
+                     (out.told ? kTellsBacks : 0);
   const uint sites = out.listed.sites ? uint(sampling.wide_slices) : 0;
   std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, sites, solid};
   gpu.dispatch("horizon", params, buffers, estimate_extent(out.listed), constants);
