@@ -20,8 +20,9 @@
 //     all below its horizon (line 24). A sample below the tangent plane says nothing else.
 //  6. Every other run blocks from its front to its back, and nothing beyond the radius. The back lies further along the
 //     eye's ray by the run's width ("width as thickness": a blade of grass is as thin as it is narrow, a column as
-//     thick as it is broad), or as far as the sample's pixel tells (backs.comp), or by what the user says. A front before the sphere blocks by the part of its solid
-//     within the sphere. The paper lets the horizon sink instead (section 4.3).
+//     thick as it is broad), or as far as the sample's pixel tells (backs.comp), or by what the user says. A front
+//     before the sphere blocks by the part of its solid within the sphere. The paper lets the horizon sink instead
+//     (section 4.3).
 //     Runs are counted in 24 sectors, as in the mask of Therrien et al., "Screen Space Indirect Lighting with
 //     Visibility Bitmask", 2023; see sectors.glsl. With kInSectors, which is `--estimator bitmask`, so is the own
 //     surface; else its interval is exact.
