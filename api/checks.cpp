@@ -92,7 +92,8 @@ Notes check_planes(Reading& reading, const HostPlanes& planes, const InputSettin
   said.said_by = "--depth-kind, the camera or default";
   seen.grain = measure_rounding(reading, raw.window, depth, name);
   settle_depth({reading, notes, settings, raw, seen, name}, said);
-  if (!normal.empty()) check_normals(reading, planes, notes);
+  // Coarse disparity has been held against them for its shift, which is all that it can tell.
+  if (!normal.empty() && !seen.space_by_shift) check_normals(reading, planes, notes);
   add_new(notes, detected(findings_of(reading, raw, seen, name, true)));
   measure_levels(reading, depth);
   return notes;

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/frame/pixels/radius.h"
 
 namespace alcove {
@@ -261,9 +262,9 @@ void Session::run(int frame) {
   std::vector<float> behind;
   const HostPlanes planes = planes_over(reading.data, behind);
   Notes notes = check_planes(reading, planes, all.input);
-  if (all.estimator.radius_auto) {
-    all.estimator.radius = proposed_radius(reading.camera, median_depth(reading, depth().values));
-    if (!all.estimator.radius) all.estimator.radius = 1;  // there is no surface, and no AO to compute
+  if (depends_on_depth(all.estimator)) {
+    const auto radii = radii_by_depth(all.estimator, reading.camera, median_depth(reading, depth().values));
+    take_radii(all.estimator, radii.empty() ? std::vector{1.0} : radii);  // without a surface there is no AO to compute
   }
   add_new(notes, check_radius(reading, planes[RawPlane::depth], all.estimator));
   std::string sentences;

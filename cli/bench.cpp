@@ -93,9 +93,11 @@ Settings settings_of(const SuiteCandidate& candidate, const SuiteFrame& frame, c
   try {
     if (!parse_run_options(candidate.arguments, options))
       fail(ErrorKind::usage, "it asks for what only alcove run prints");
-    if (settings.estimator.radius_auto && names_radius(candidate))
-      fail(ErrorKind::usage, "--radius auto: without a --radius each frame is measured at that of its truth");
-    settings.estimator.radius_auto = false;
+    EstimatorSettings& estimator = settings.estimator;
+    if ((estimator.radius_auto || estimator.radius_in_medians) && names_radius(candidate))
+      fail(ErrorKind::usage, "--radius {}: without a --radius each frame is measured at that of its truth",
+           estimator.radius_auto ? "auto" : "in percent");
+    estimator.radius_auto = estimator.radius_in_medians = false;
     settings.input.input = frame.input;
     settings.input.camera = frame.camera;
     Settings checked = settings;

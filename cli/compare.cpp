@@ -81,16 +81,9 @@ CommandOf<CompareArguments> compare_syntax() {
                "print no table and no warnings: the exit code says whether limits hold");
   OptionGroup limits(command.rows, "Limits, for every frame; one that is broken ends with exit code 6", Effect::none,
                      within(&CompareArguments::settings, &CompareSettings::limits));
-  limits.number("--max-rmse", &CompareLimits::max_rmse, "", at_least(0), "the largest rmse");
-  limits.number("--max-p99", &CompareLimits::max_p99, "", at_least(0),
-                "the largest 99th percentile of the error's size");
-  limits.number("--min-ssim", &CompareLimits::min_ssim, "", between(-1, 1), "the least structural similarity");
-  limits.number("--max-flip", &CompareLimits::max_flip, "", between(0, 1), "the largest mean FLIP");
-  limits.number("--max-bias", &CompareLimits::max_bias, "", at_least(0), "the largest size of the mean error");
-  limits.number("--max-grain", &CompareLimits::max_grain, "", at_least(0),
-                "the largest grain, which needs --depth; a frame without plain surfaces ends with exit code 3");
-  limits.number("--max-excluded", &CompareLimits::max_excluded, "", between(0, 1),
-                "the largest share of pixels that are NaN or infinite in one file only; else any breaks all limits");
+  for (const auto& row : kLimitTable)
+    limits.number(row.option, row.value, "", row.high == kNoLimit ? at_least(row.low) : between(row.low, row.high),
+                  row.sentence);
   return command;
 }
 
@@ -201,15 +194,41 @@ void print_sequence(const CompareReport& report) {
 void write_junit(const CompareReport& report, const std::string& path) {
   make_folder_of(path, "--junit");
   for (const auto& frame : report.frames)
-    if (is_broken(frame)) write_whole(failure_path(path, frame.name), frame.error_png);
+    if (fails(frame, report)) write_whole(failure_path(path, frame.name), frame.error_png);
   write_whole(path, compare_junit(report, path));
 }
 
-void fail_where_broken(const std::vector<CheckedLimit>& limits) {
-  const auto broken = broken_limits(limits);
-  if (broken.empty()) return;
-  const bool is_unread = std::ranges::any_of(limits, [](const auto& l) { return l.kind == ErrorKind::input; });
-  fail(is_unread ? ErrorKind::input : ErrorKind::comparison, "{}", fmt::join(broken, "; "));
+/// Removes the reports of an earlier comparison: where this one comes to no end, they would be taken for its verdict.
+void remove_reports(const CompareArguments& arguments, const std::vector<CompareSettings>& frames) {
+  std::vector<std::string> paths{arguments.report, arguments.junit};
+  if (!arguments.junit.empty())
+    for (const auto& frame : frames) paths.push_back(failure_path(arguments.junit, name_of(frame)));
+  std::error_code none;
+  for (const auto& path : paths)
+    if (!path.empty()) std::filesystem::remove(path, none);
+}
+
+void print_report(const CompareReport& report, const CompareArguments& arguments,
+                  const std::vector<CheckedLimit>& limits) {
+  if (arguments.json)
+    fmt::print("{}\n", compare_json(report, limits));
+  else if (report.has_several() && !arguments.quiet)
+    print_sequence(report);
+  else if (!arguments.quiet)
+    print_picture(report.frames[0]);
+  if (arguments.quiet) return;
+  for (const auto& note : notes_on(report, arguments.settings))
+    print_error("alcove: {}: {}\n", level_of(note), printable(line_of(note, "")));
+}
+
+/// Fails where a frame could not be compared, or a limit is broken.
+void fail_where_broken(const CompareReport& report, const std::vector<CheckedLimit>& limits) {
+  std::vector<std::string> sentences = errors_in(report);
+  if (has_limits(report)) std::ranges::copy(broken_limits(limits), std::back_inserter(sentences));
+  if (sentences.empty()) return;
+  const bool is_unread =
+      !report.failed.empty() || std::ranges::any_of(limits, [](const auto& l) { return l.kind == ErrorKind::input; });
+  fail(is_unread ? ErrorKind::input : ErrorKind::comparison, "{}", fmt::join(sentences, "; "));
 }
 
 }  // namespace
@@ -227,28 +246,18 @@ int compare_command(const std::vector<std::string>& arguments) {
   check_report(a, frames, syntax.rows);
   a.settings.pictures = !a.report.empty();
   a.settings.failures = !a.junit.empty();
-  // Of an earlier comparison: where this one comes to no end, they would be taken for its verdict.
-  std::error_code none;
-  for (const std::string& path : {a.report, a.junit})
-    if (!path.empty()) std::filesystem::remove(path, none);
+  remove_reports(a, frames);
 
   const CompareReport report = compare_pictures(a.settings);
+  if (!a.junit.empty()) write_junit(report, a.junit);
+  if (report.frames.empty()) fail_where_broken(report, {});
   const auto limits = checked_limits(report);
-  if (a.json)
-    fmt::print("{}\n", compare_json(report, limits));
-  else if (report.has_several() && !a.quiet)
-    print_sequence(report);
-  else if (!a.quiet)
-    print_picture(report.frames[0]);
-  if (!a.quiet)
-    for (const auto& note : notes_on(report, a.settings))
-      print_error("alcove: {}: {}\n", level_of(note), printable(line_of(note, "")));
+  print_report(report, a, limits);
   if (!a.report.empty()) {
     make_folder_of(a.report, "--report");
     write_whole(a.report, compare_page(report, limits));
   }
-  if (!a.junit.empty()) write_junit(report, a.junit);
-  if (has_limits(report)) fail_where_broken(limits);
+  fail_where_broken(report, limits);
   return 0;
 }
 

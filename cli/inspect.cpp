@@ -80,7 +80,8 @@ int inspect_command(const std::vector<std::string>& arguments) {
   const std::string& path = main_input(input);
   if (path.empty()) fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   const FramePlan plan = plan_of(options.settings);
-  FileUses uses = inputs_of(plan);
+  FileUses uses;
+  add_inputs(uses, plan);
   for (const auto& file : files_of(options.settings, FileRole::input)) uses.add_input(file);
   for (const auto& [option, file] :
        {std::pair("--preview", options.settings.output.preview), {"--write-camera", asked.write_camera}})

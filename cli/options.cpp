@@ -68,10 +68,14 @@ Words presets_in(const TypedOptions& typed) {
   return presets;
 }
 
-/// The values of presets and then of the command line.
-std::vector<OptionValue> all_values(const TypedOptions& typed) {
+/// The values of presets and then of the command line; `files` gets those of the presets.
+std::vector<OptionValue> all_values(const TypedOptions& typed, std::vector<std::string>& files) {
   std::vector<OptionValue> values;
-  for (const auto& preset : presets_in(typed)) std::ranges::copy(values_of_preset(preset), std::back_inserter(values));
+  for (const auto& preset : presets_in(typed)) {
+    PresetChain chain = read_chain(preset);
+    std::ranges::move(chain.values, std::back_inserter(values));
+    std::ranges::move(chain.files, std::back_inserter(files));
+  }
   for (auto& value : values_of_sets(words_for(typed, "--set"))) {
     if (!words_for(typed, value.row->name).empty())
       fail(ErrorKind::usage, "{} is given more than once", value.row->long_name());
@@ -108,8 +112,9 @@ bool is_told_otherwise(const OptionValue& value) {
 }
 
 /// What was typed for the run that inspect proposes: all that has an effect there.
-std::vector<ProposedOption> proposed_options(const TypedOptions& typed, const Settings& settings) {
-  std::vector<OptionValue> values = all_values(typed), of_presets;
+std::vector<ProposedOption> proposed_options(const TypedOptions& typed, const RunOptions& options) {
+  const Settings& settings = options.settings;
+  std::vector<OptionValue> values = options.values, of_presets;
   std::ranges::copy_if(values, std::back_inserter(of_presets), std::not_fn(&OptionValue::is_typed));
   std::erase_if(values, is_told_otherwise);
   const Settings initial = with_values({}, of_presets, Reader::inspect);
@@ -234,16 +239,16 @@ std::optional<TypedOptions> read_arguments(const Command& command, const std::ve
   if (const Words input = words_for(*typed, "INPUT"); !input.empty()) options.settings.input.input = input.front();
   bool prints_config = false;
   with_help(command, [&] {
-    options.settings = with_values(options.settings, all_values(*typed), reader);
-    for (const auto& preset : presets_in(*typed))
-      std::ranges::copy(files_of_preset(preset), std::back_inserter(options.settings.preset_files));
+    options.values = all_values(*typed, options.settings.preset_files);
+    options.settings = with_values(options.settings, options.values, reader);
     options.dry_run = is_on(*typed, "--dry-run");
     prints_config = is_on(*typed, "--print-config");
     if (is_on(*typed, "--shareable") && !prints_config)
       fail(ErrorKind::usage, "--shareable has no effect without --print-config");
   });
   if (!prints_config) return typed;
-  fmt::print("{}", preset_text(options.settings, is_on(*typed, "--shareable")));
+  const Settings whole = with_idle_values(options.settings, options.values);
+  fmt::print("{}", is_on(*typed, "--shareable") ? shareable_text(whole) : preset_text(whole));
   return std::nullopt;
 }
 
@@ -271,7 +276,7 @@ bool parse_inspect_options(const std::vector<std::string>& arguments, InspectOpt
   const auto typed = read_arguments(command, arguments, options.run, Reader::inspect);
   if (!typed) return false;
   with_help(command, [&] { options.json = is_on(*typed, "--json"); });
-  options.typed = proposed_options(*typed, options.run.settings);
+  options.typed = proposed_options(*typed, options.run);
   const Words path = words_for(*typed, "--write-camera");
   if (!path.empty()) options.write_camera = path.front();
   return true;

@@ -14,6 +14,7 @@ namespace alcove {
 /// What the command line of `alcove run` says.
 struct RunOptions {
   Settings settings;
+  std::vector<OptionValue> values;  // of presets and of the command line, which make the settings
   bool dry_run = false;
 };
 
@@ -52,13 +53,16 @@ std::vector<std::string> preset_names();
 std::string preset_file(const std::string& name);
 /// Gives the presets of words that may be lists with commas: each word is a preset, or else its parts are.
 std::vector<std::string> presets_of(const std::vector<std::string>& words);
-/// Gives the files of a preset and of those that it builds on.
-std::vector<std::string> files_of_preset(const std::string& preset);
 /// Gives the alcove.toml beside a file or in the nearest folder above it. Fails with ErrorKind::usage.
 std::string project_file(const std::string& input);
-/// Gives what a preset says, behind what those say that it builds on, in the order of the files. Fails with
-/// ErrorKind::usage, naming preset and key, on keys that are no options.
-std::vector<OptionValue> values_of_preset(const std::string& preset);
+/// What a preset says, behind what those say that it builds on, and the files in the same order.
+struct PresetChain {
+  std::vector<std::string> files;
+  std::vector<OptionValue> values;  // files that they name are found: they lie beside the preset
+};
+/// Reads a preset. Fails with ErrorKind::usage, naming preset and key, on keys that are no options, and on presets that
+/// build on themselves.
+PresetChain read_chain(const std::string& name);
 
 /// Gives what a preset is for: the first sentence of the comment that its file begins with, "" without one.
 std::string preset_sentence(const std::string& text);

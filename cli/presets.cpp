@@ -27,22 +27,14 @@ bool is_file(const std::string& path) {
   return fs::exists(path, error) && !fs::is_directory(path, error);
 }
 
-}  // namespace
-
-namespace {
-
-/// The user's own folders, which come before that of the program. One that is named and not there is an error: another
-/// preset of the same name would be taken.
+/// The user's own folders, which come before that of the program. One that is not there is passed over, as in PATH.
 std::vector<std::string> own_folders() {
   std::vector<std::string> folders;
   std::error_code error;
   const char* path = std::getenv("ALCOVE_PRESET_PATH");
   std::istringstream list(path ? path : "");
-  for (std::string folder; std::getline(list, folder, ':');) {
-    if (folder.empty()) continue;
-    if (!fs::is_directory(folder, error)) fail(ErrorKind::usage, "ALCOVE_PRESET_PATH: there is no folder {}", folder);
-    folders.push_back(folder);
-  }
+  for (std::string folder; std::getline(list, folder, ':');)
+    if (!folder.empty() && fs::is_directory(folder, error)) folders.push_back(folder);
   const char *config = std::getenv("XDG_CONFIG_HOME"), *home = std::getenv("HOME");
   const fs::path base = config && *config ? fs::path(config) : home ? fs::path(home) / ".config" : fs::path();
   if (!base.empty() && fs::is_directory(base / "alcove/presets", error)) folders.push_back(base / "alcove/presets");
@@ -66,54 +58,53 @@ std::vector<std::string> names_below(const fs::path& folder) {
   return names;
 }
 
-/// The file of a known name, of the first folder that has it.
-std::string file_of(const std::string& name) {
+/// The files of a known name, in the order of the folders.
+std::vector<std::string> files_of_name(const std::string& name) {
+  std::vector<std::string> files;
   for (const auto& folder : all_folders())
-    if (const std::string file = folder + "/" + name + ".toml"; is_file(file)) return file;
-  return "";
+    if (const std::string file = folder + "/" + name + ".toml"; is_file(file)) files.push_back(file);
+  return files;
 }
 
-/// What a preset builds on: a known name, or a file, which is beside the preset or at a path of its own.
-std::string base_of(const std::string& file, const FlatEntry& entry) {
-  if (entry.values.size() != 1) fail(ErrorKind::usage, "preset takes one name, and the list has several");
-  const std::string& name = entry.values.front();
+/// The file that a preset builds on. A name leads past the preset itself: `draft` of a show builds on that of the
+/// program. Another word is a file beside the preset, or at a path of its own.
+std::string base_file(const std::string& file, const std::string& name) {
+  const auto files = files_of_name(name);
+  std::error_code error;
+  const auto itself =
+      std::ranges::find_if(files, [&](const auto& other) { return fs::equivalent(other, file, error); });
+  if (itself != files.end() && itself + 1 == files.end())
+    fail(ErrorKind::usage, "it builds on itself: no folder after its own has a preset {}", name);
+  if (itself != files.end()) return *(itself + 1);
   const std::string beside = (fs::path(file).parent_path() / name).string();
-  const auto names = preset_names();
-  return std::ranges::find(names, name) == names.end() && is_file(beside) ? beside : name;
+  return files.empty() && is_file(beside) ? beside : preset_file(name);
 }
 
-/// A preset as it is named, its file, and the text of that.
+/// A preset as it is named, and its file with the values in it.
 struct ReadPreset {
-  std::string name, file, text;
+  std::string name, file;
+  std::vector<OptionValue> values;
 };
 
-ReadPreset read_preset(const std::string& name) {
-  const std::string file = preset_file(name);
-  return {name, file, read_text(file, "preset", "--preset")};
+/// Files that a preset names lie beside it, as those of a list of frames do.
+void find_beside(const fs::path& preset, OptionValue& value) {
+  for (auto& word : value.words)
+    if (value.row->names_file(word)) word = (preset.parent_path() / word).string();
 }
 
-/// The preset and those that it builds on, what is built on first.
-std::vector<ReadPreset> chain_of(const std::string& preset) {
-  constexpr std::size_t kMost = 8;
-  std::vector<ReadPreset> chain;
-  std::string name = preset;
-  while (chain.size() < kMost) {
-    const ReadPreset& last = chain.emplace_back(read_preset(name));
-    const auto entries = parse_flat_toml(last.text);
-    const auto base = std::ranges::find(entries, "preset", &FlatEntry::key);
-    if (base == entries.end()) return {chain.rbegin(), chain.rend()};
-    name = base_of(last.file, *base);
-  }
-  fail(ErrorKind::usage, "it builds on itself, or on more than {} others", kMost);
-}
-
-/// The same, with the preset in the sentence of an Error.
-std::vector<ReadPreset> named_chain_of(const std::string& preset) {
+/// Reads a preset, and tells what it builds on; "" for nothing.
+std::string read_preset(ReadPreset& preset) {
+  const std::string text = read_text(preset.file, "preset", "--preset");
+  preset.values = preset_values(preset.name, text, true);
+  for (auto& value : preset.values) find_beside(preset.file, value);
   try {
-    return chain_of(preset);
+    const auto entries = parse_flat_toml(text);
+    const auto base = std::ranges::find(entries, "preset", &FlatEntry::key);
+    if (base == entries.end()) return "";
+    if (base->values.size() != 1) fail(ErrorKind::usage, "preset takes one name, and the list has several");
+    return base_file(preset.file, base->values.front());
   } catch (const Error& error) {
-    if (std::string(error.what()).find(preset) != std::string::npos) throw;
-    fail(error.kind(), "{} (--preset): {}", preset, error.what());
+    fail(error.kind(), "{} (--preset): {}", preset.name, error.what());
   }
 }
 
@@ -142,10 +133,10 @@ std::vector<std::string> preset_names() {
 std::string preset_file(const std::string& name) {
   // A known name is never a file that happens to lie in the working directory.
   const auto names = preset_names();
-  if (std::ranges::find(names, name) != names.end()) return file_of(name);
+  if (std::ranges::find(names, name) != names.end()) return files_of_name(name).front();
   if (is_file(name)) return name;
   if (const auto known = std::ranges::find(names, lower_case(name), lower_case); known != names.end())
-    return file_of(*known);
+    return files_of_name(*known).front();
   std::vector<std::string> own = names;
   std::erase_if(own, [](const auto& known) { return known.find('/') != known.npos; });
   fail(ErrorKind::usage,
@@ -162,17 +153,21 @@ std::vector<std::string> presets_of(const std::vector<std::string>& words) {
   return presets;
 }
 
-std::vector<OptionValue> values_of_preset(const std::string& preset) {
-  std::vector<OptionValue> values;
-  for (const auto& [name, file, text] : named_chain_of(preset))
-    std::ranges::copy(preset_values(name, text, true), std::back_inserter(values));
-  return values;
-}
-
-std::vector<std::string> files_of_preset(const std::string& preset) {
-  std::vector<std::string> files;
-  for (const auto& one : named_chain_of(preset)) files.push_back(one.file);
-  return files;
+PresetChain read_chain(const std::string& name) {
+  constexpr std::size_t kMost = 8;
+  std::vector<ReadPreset> presets{{name, preset_file(name), {}}};
+  for (std::string base; !(base = read_preset(presets.back())).empty();) {
+    if (presets.size() == kMost)
+      fail(ErrorKind::usage, "{} (--preset): it builds on itself, or on more than {} others", name, kMost);
+    presets.push_back({base, base, {}});
+  }
+  PresetChain chain;
+  std::ranges::reverse(presets);
+  for (const auto& preset : presets) {
+    chain.files.push_back(preset.file);
+    std::ranges::copy(preset.values, std::back_inserter(chain.values));
+  }
+  return chain;
 }
 
 std::string project_file(const std::string& input) {

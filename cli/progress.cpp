@@ -7,10 +7,12 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "core/base/error.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
@@ -65,10 +67,17 @@ void Progress::begin(const RunReport& report, int frames) {
   is_sequence_ = report.is_sequence;
   frames_ = frames;
   open_log();  // now that the run's checks have let it through
-  log("begin",
-      fmt::format("\"frames\":{},\"options\":\"{}\",\"notes\":{}", frames, report.options, notes_json(report.notes)));
+  log("begin", fmt::format("\"frames\":{},\"options\":\"{}\",\"presets\":{},\"notes\":{}", frames, report.options,
+                           json_text(report.presets), notes_json(report.notes)));
   if (log_failure_) throw *log_failure_;  // before a frame has taken any time
+  say_presets(report.presets);
   note(report);
+}
+
+/// A name may stand for a file of the show, of the user or of the program: those of the program need no word.
+void Progress::say_presets(std::vector<std::string> files) {
+  std::erase_if(files, [](const std::string& file) { return file.starts_with(preset_folder() + "/"); });
+  if (!files.empty() && !options_.quiet) say(printable(fmt::format("alcove: settings of {}", fmt::join(files, ", "))));
 }
 
 void Progress::say(const std::string& file, const Note& note) {

@@ -41,6 +41,7 @@ class Progress {
   void open_log();
   void say(const std::string& line);
   void say(const std::string& file, const Note& note);
+  void say_presets(std::vector<std::string> files);
   void note_frame(const FrameReport& frame);
   void say_further();
   void show_bar();

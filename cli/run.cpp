@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cctype>
 
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -16,6 +16,7 @@
 #include "core/options/files.h"
 #include "core/run/batch.h"
 #include "core/run/first_look.h"
+#include "core/run/run_files.h"
 
 namespace alcove {
 namespace {
@@ -54,61 +55,51 @@ bool has_all(FirstLook& look, const Settings& settings, const std::vector<std::s
   return false;
 }
 
-/// Fails where two frames of a list would write one file, or one of them what another reads.
-void require_places(const Settings& settings, const std::vector<ListedFrame>& frames) {
-  const std::string& list = settings.input.input;
-  FileUses uses;
-  for (const auto& frame : frames) {
-    uses.add_input({"INPUT", frame.input});
-    uses.add_input({"--camera", frame.camera});
-    for (const auto& file : files_of(settings, FileRole::input))
-      uses.add_input({file.option, with_name(file.path, frame.name)});
-  }
-  for (const FileRole role : {FileRole::output, FileRole::report})
-    for (const auto& file : files_of(settings, role)) {
-      if (file.path.find(kNamePlace) == file.path.npos)
-        fail(ErrorKind::usage, "{} {}: {}", file.option, file.path, why_no_place(list));
-      for (const auto& frame : frames)
-        uses.add_output({file.option, with_name(file.path, frame.name)}, " of frame " + frame.name);
-    }
-}
-
-/// Whether an option is typed, or its key behind --set.
-bool is_typed(const Words& arguments, const std::string& option) {
-  const std::string key = option.substr(2) + "=";
-  return std::ranges::any_of(arguments, [&](const auto& word) {
-    return word.starts_with(option) || word.starts_with(key) || word.starts_with("--set=" + key);
+/// Whether the command line gives a setting of these keys.
+bool is_typed(const RunOptions& options, const Words& keys) {
+  return std::ranges::any_of(options.values, [&](const OptionValue& value) {
+    return value.is_typed() && std::ranges::find(keys, value.row->key()) != keys.end();
   });
 }
 
-/// The command for a frame of a list: its file, and its camera and radius unless others are typed.
-Words words_of_frame(const Words& arguments, const Settings& settings, const ListedFrame& frame) {
-  Words words;
-  for (const auto& word : arguments)
-    words.push_back(word == settings.input.input ? frame.input : with_name(word, frame.name));
-  const bool has_camera =
-      std::ranges::any_of(std::array{"--camera", "--fov", "--vertical-fov", "--focal", "--aperture", "--ortho-width"},
-                          [&](const char* option) { return is_typed(arguments, option); });
-  if (!frame.camera.empty() && !has_camera) words.push_back("--camera=" + frame.camera);
-  if (frame.radius && !is_typed(arguments, "--radius")) words.push_back(fmt::format("--radius={}", *frame.radius));
-  return words;
+/// The camera file, and all that say otherwise what the camera sees.
+Words camera_keys() {
+  Words keys{"camera"};
+  const auto others = std::ranges::find(rivals(), keys, &Rivals::one);
+  keys.insert(keys.end(), others->other.begin(), others->other.end());
+  return keys;
 }
 
-/// Computes the frames of a list, each as by a command of its own. The first that fails ends it.
-int run_list(const Words& arguments, const Settings& settings) {
-  const auto frames = read_frame_list(settings.input.input, "INPUT");
-  require_places(settings, frames);
-  for (const auto& frame : frames)
-    if (const int code = run_command(words_of_frame(arguments, settings, frame))) return code;
-  return 0;
+/// The options for a frame of a list: its file, and its camera and radius unless others are typed.
+RunOptions options_of(const RunOptions& options, const ListedFrame& frame) {
+  RunOptions own = options;
+  for (auto& value : own.values)
+    for (auto& word : value.words) word = with_name(word, frame.name);
+  if (!frame.camera.empty() && !is_typed(options, camera_keys()))
+    own.values.push_back({&row_of_key("camera"), {frame.camera}});
+  if (frame.radius && !is_typed(options, {"radius"}))
+    own.values.push_back({&row_of_key("radius"), {fmt::format("{}", *frame.radius)}});
+  Settings initial;
+  initial.input.input = frame.input;
+  own.settings = with_values(initial, own.values);
+  own.settings.preset_files = options.settings.preset_files;
+  return own;
 }
 
-}  // namespace
+/// Adds the presets that give the options which a sentence names.
+std::string with_presets(std::string sentence, const Settings& settings) {
+  for (const auto& [option, preset] : settings.input.from_presets) {
+    const std::size_t at = sentence.find(option), end = at + option.size();
+    const bool is_named =
+        at != sentence.npos &&
+        (end == sentence.size() || (!std::isalnum((unsigned char)sentence[end]) && sentence[end] != '-'));
+    if (is_named) sentence += fmt::format("; {} is of {}", option, preset);
+  }
+  return sentence;
+}
 
-int run_command(const std::vector<std::string>& arguments) {
-  RunOptions options;
-  if (!parse_run_options(arguments, options)) return 0;
-  if (is_frame_list(options.settings.input.input)) return run_list(arguments, options.settings);
+/// Computes the frames of one input. Gives the exit code.
+int run_input(const RunOptions& options, const Words& arguments) {
   FirstLook look(options.settings);
   if (!has_all(look, options.settings, arguments)) return int(ErrorKind::usage);
   if (options.dry_run) {
@@ -129,11 +120,106 @@ int run_command(const std::vector<std::string>& arguments) {
   progress.end(report);
   if (report.stop && !report.is_sequence) throw *report.stop;
   // Of a sequence each failure was told of with its frame.
-  if (failure && !report.is_sequence) print_error("alcove: error: {}\n", printable(failure->what()));
+  if (failure && !report.is_sequence)
+    print_error("alcove: error: {}\n", printable(with_presets(failure->what(), options.settings)));
   if (report.stop && report.failed == 0) print_error("alcove: error: {}\n", printable(report.stop->what()));
   if (report.stop) return int(report.stop->kind());
   if (caught_signal()) return 128 + caught_signal();
   return report.failed ? int(ErrorKind::some_frames_failed) : 0;
+}
+
+/// The same, with the presets in the sentence of an Error.
+int run_named(const RunOptions& options, const Words& arguments) {
+  try {
+    return run_input(options, arguments);
+  } catch (const Error& error) {
+    fail(error.kind(), "{}", with_presets(error.what(), options.settings));
+  }
+}
+
+/// A frame of a list with all that its run takes.
+struct ListedRun {
+  std::string name;
+  RunOptions options;
+};
+
+/// Fails where a frame's output has no place for its name, where two frames would write one file, and where one would
+/// write what another reads.
+void require_places(const Settings& settings, const std::vector<ListedRun>& runs) {
+  for (const FileRole role : {FileRole::output, FileRole::report})
+    for (const auto& file : files_of(settings, role))
+      if (file.path.find(kNamePlace) == file.path.npos)
+        fail(ErrorKind::usage, "{} {}: {}", file.option, file.path, why_no_place(settings.input.input));
+  FileUses uses;
+  uses.add_input({"INPUT", settings.input.input});
+  std::vector<std::pair<std::string, FramePlan>> plans;
+  for (const auto& run : runs) try {
+      add_inputs(uses, plans.emplace_back(run.name, FramePlan(run.options.settings)).second);
+    } catch (const Error& error) {  // a missing input is told of later
+      if (error.kind() != ErrorKind::input) throw;
+    }
+  for (const auto& [name, plan] : plans) add_outputs(uses, plan, " of frame " + name);
+}
+
+/// Fails where an input of a frame is not there.
+void require_inputs(const ListedRun& run) {
+  const FramePlan plan(run.options.settings);
+  for (const int frame : plan.frames())
+    for (const auto& file : files_of(plan.at(frame), FileRole::input))
+      require_readable(file.path, ("frame " + run.name + "'s").c_str(), file.option.c_str());
+}
+
+/// Leaves out frames of which an input is missing, and tells whether one has failed by it: unless the settings leave
+/// such frames out, they are an error before any work, or with --keep-going frames that fail.
+bool leave_out_missing(std::vector<ListedRun>& runs, const FrameSettings& frames) {
+  const bool is_error = frames.missing == Missing::error;
+  const auto leaves_out = [&](const ListedRun& run) {
+    try {
+      require_inputs(run);
+      return false;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::input || (is_error && !frames.keep_going)) throw;
+      print_error("alcove: {}frame {} is left out: {}\n", is_error ? "error: " : "", printable(run.name),
+                  printable(error.what()));
+      return true;
+    }
+  };
+  return std::erase_if(runs, leaves_out) > 0 && is_error;
+}
+
+/// Computes a frame of a list as by a command of its own. Gives the exit code.
+int run_listed(const ListedRun& run, const Words& arguments, bool keeps_going) {
+  try {
+    return run_named(run.options, arguments);
+  } catch (const Error& error) {
+    if (!keeps_going) throw;
+    print_error("alcove: error: frame {}: {}\n", printable(run.name), printable(error.what()));
+    return int(error.kind());
+  }
+}
+
+/// Computes the frames of a list. The first that fails ends it, unless the settings say to go on.
+int run_list(const RunOptions& options, const Words& arguments) {
+  const FrameSettings& frames = options.settings.frames;
+  std::vector<ListedRun> runs;
+  for (const auto& frame : read_frame_list(options.settings.input.input, "INPUT"))
+    runs.push_back({frame.name, options_of(options, frame)});
+  require_places(options.settings, runs);
+  bool has_failed = leave_out_missing(runs, frames);
+  for (const auto& run : runs) {
+    const int code = run_listed(run, arguments, frames.keep_going);
+    if (code && (!frames.keep_going || caught_signal())) return code;
+    has_failed |= code != 0;
+  }
+  return has_failed ? int(ErrorKind::some_frames_failed) : 0;
+}
+
+}  // namespace
+
+int run_command(const std::vector<std::string>& arguments) {
+  RunOptions options;
+  if (!parse_run_options(arguments, options)) return 0;
+  return is_frame_list(options.settings.input.input) ? run_list(options, arguments) : run_named(options, arguments);
 }
 
 }  // namespace alcove

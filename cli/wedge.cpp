@@ -189,10 +189,12 @@ void check_looks(const std::vector<WedgeLook>& looks) {
 
 /// Refuses to write over what is read: the frames, and the presets of all looks.
 void check_reports(const Typed& typed, const FramePlan& plan) {
-  FileUses uses = inputs_of(plan);
+  FileUses uses;
+  add_inputs(uses, plan);
   for (std::size_t i = 0; i + 1 < typed.arguments.size(); i++)
     if (typed.arguments[i] == Words{"--preset"})
-      for (const auto& preset : presets_of(typed.arguments[i + 1])) uses.add_input({"--preset", preset_file(preset)});
+      for (const auto& preset : presets_of(typed.arguments[i + 1]))
+        for (const auto& file : read_chain(preset).files) uses.add_input({"--preset", file});
   for (const auto& file : {NamedFile{"--output", typed.page}, {"--sheet", typed.sheet}}) {
     if (file.path.empty()) continue;
     uses.add_output(file);

@@ -27,6 +27,7 @@ const kColumns = {
   psnr: { heading: 'PSNR', hint: 'peak signal to noise ratio in dB' },
   estimator_rmse: { heading: 'estimator RMSE', hint: 'error against an exact search of the same depth buffer: what sampling costs', decimals: 4 },
   geometry_rmse: { heading: 'geometry RMSE', hint: 'error of that exact search against the truth: what a depth buffer cannot see', decimals: 4 },
+  holes: { heading: 'holes', hint: 'pixels that are NaN or infinite in one of the two files only' },
   flicker: { heading: 'flicker', hint: 'RMS of the change of the error on a surface from a frame to the next', decimals: 4 },
   samples_per_pixel: { heading: 'samples/px', hint: 'depth samples a pixel' },
 };
@@ -102,18 +103,22 @@ function start_header() {
   }
 }
 
-/// PASS or FAIL, and each limit with the value that comes nearest to it.
+/// PASS or FAIL, each limit with the value that comes nearest to it, and the frames that could not be compared.
 function start_verdict() {
   if (!report.verdict) return;
-  const { pass, limits } = report.verdict;
+  const { pass, limits, failed } = report.verdict;
   const verdict = document.getElementById('verdict');
-  verdict.hidden = document.getElementById('limits').hidden = false;
+  verdict.hidden = false;
+  document.getElementById('limits').hidden = limits.length === 0;
   verdict.textContent = pass ? 'PASS' : 'FAIL';
   verdict.className = pass ? 'pass' : 'fail';
   const exact = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(6))) : '–');
-  const rows = limits.map(({ option, limit, value, frame, holds }) => make('tr', { class: holds ? 'pass' : 'fail' }, make('th', { scope: 'row' }, option),
+  const rows = limits.map(({ option, limit, value, frame, holds }) => make('tr', { class: holds ? 'pass' : 'fail' }, make('th', { scope: 'row' }, holds ? option : `${option} ✗`),
     make('td', { class: 'number' }, exact(limit)), make('td', { class: 'number' }, exact(value)), make('td', {}, frame)));
   document.querySelector('#limits tbody').replaceChildren(...rows);
+  const errors = (failed ?? []).map(({ frame, error }) => make('li', {}, `frame ${frame} was not compared: ${error}`));
+  document.getElementById('failed').hidden = errors.length === 0;
+  document.getElementById('failed').replaceChildren(...errors);
 }
 
 start_header();

@@ -37,9 +37,9 @@ function fill_table(columns) {
   const settings = new Map(report.candidates.map((candidate) => [candidate.name, candidate.settings]));
   const cell = (row, column) => {
     if (!column.text) return make('td', { class: 'number' }, format(row[column.key], column.decimals, column.signed));
-    return column.key === 'candidate' ? make('th', { scope: 'row', title: settings.get(row.candidate) ?? '' }, row.candidate) : make('td', {}, row[column.key]);
+    return column.key === 'candidate' ? make('th', { scope: 'row', title: settings.get(row.candidate) ?? '' }, row.candidate) : make('td', {}, column.key === 'frame' && row.fails ? `${row.frame} ✗` : row[column.key]);
   };
-  document.querySelector('#table tbody').replaceChildren(...rows.map((row) => make('tr', {}, ...columns.map((column) => cell(row, column)))));
+  document.querySelector('#table tbody').replaceChildren(...rows.map((row) => make('tr', row.fails ? { class: 'fail', title: 'breaks a limit' } : {}, ...columns.map((column) => cell(row, column)))));
   for (const heading of document.querySelectorAll('#table thead th')) {
     heading.setAttribute('aria-sort', heading.dataset.key !== table_state.sort ? 'none' : table_state.descending ? 'descending' : 'ascending');
   }

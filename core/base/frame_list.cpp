@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/frame_list.h"
 
-#include <cmath>
 #include <filesystem>
-#include <map>
 #include <set>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -15,11 +12,6 @@ namespace alcove {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The least and the most that a limit of compare may be.
-const std::map<std::string, std::pair<double, double>> kLimits = {
-    {"max-rmse", {0, INFINITY}}, {"max-p99", {0, INFINITY}},   {"min-ssim", {-1, 1}},   {"max-flip", {0, 1}},
-    {"max-bias", {0, INFINITY}}, {"max-grain", {0, INFINITY}}, {"max-excluded", {0, 1}}};
 
 /// The files of a key that has one or two; none where it is not there.
 std::vector<std::string> files_of(const TomlTable& table, const char* key, const fs::path& folder) {
@@ -42,7 +34,7 @@ std::string file_of(const TomlTable& table, const char* key, const fs::path& fol
 
 ListedFrame frame_of(const TomlTable& table, const fs::path& folder) {
   std::set<std::string> known{"name", "input", "camera", "radius", "truth", "reference", "cpu-reference"};
-  for (const auto& [key, range] : kLimits) known.insert(key);
+  for (const auto& row : kLimitTable) known.insert(row.key());
   table.require_keys(known);
   ListedFrame frame{table.text("name"), (folder / table.text("input")).string()};
   frame.camera = file_of(table, "camera", folder);
@@ -50,10 +42,12 @@ ListedFrame frame_of(const TomlTable& table, const fs::path& folder) {
   frame.truth = files_of(table, "truth", folder);
   frame.reference = files_of(table, "reference", folder);
   frame.cpu_reference = file_of(table, "cpu-reference", folder);
-  for (const auto& [key, range] : kLimits) {
+  for (const auto& row : kLimitTable) {
+    const std::string key = row.key();
     if (!table.values.contains(key)) continue;
-    const double limit = frame.limits[key] = table.number(key);
-    if (limit < range.first || limit > range.second) table.refuse(key, "is out of its range, that of the option");
+    const double limit = table.number(key.c_str());
+    if (limit < row.low || limit > row.high) table.refuse(key.c_str(), "is out of its range, that of the option");
+    frame.limits.*row.value = limit;
   }
   return frame;
 }

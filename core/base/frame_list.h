@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/compare_limits.h"
 #include "core/base/toml.h"
 
 namespace alcove {
@@ -18,8 +18,7 @@ struct ListedFrame {
   std::vector<std::string> truth = {};      // ray-traced AO: none, one picture, or two with independent noise
   std::vector<std::string> reference = {};  // of `compare`: the same; empty: the truth
   std::string cpu_reference = {};           // of `bench`; see bench.h
-  // of `compare`, by the names of its options: "max-rmse"
-  std::map<std::string, double> limits = {};
+  CompareLimits limits = {};                // of `compare`
 
   const std::vector<std::string>& compared_with() const { return reference.empty() ? truth : reference; }
 };

@@ -78,6 +78,7 @@ constexpr std::array kTable = {
     NoteFacts{NoteCode::repaired_material_ao, "repaired-material-ao", true, "pixels had no usable material AO",
               InHeader::meaning},
     NoteFacts{NoteCode::repaired_beauty, "repaired-beauty", true, "pixels had no usable beauty", InHeader::meaning},
+    NoteFacts{NoteCode::transparent_beauty, "transparent-beauty", true, "alpha is 0 everywhere, so nothing is dimmed"},
     NoteFacts{NoteCode::no_normals, "no-normals", false, "normals were reconstructed from depth"},
     NoteFacts{NoteCode::unused_input, "unused-input", true, "no channel of INPUT is used, and there are no normals"},
     NoteFacts{NoteCode::unread_ranks, "unread-ranks", false, "a Cryptomatte has more ranks than are read"},

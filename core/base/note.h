@@ -67,6 +67,7 @@ enum class NoteCode {
   turned_normals,
   repaired_material_ao,
   repaired_beauty,
+  transparent_beauty,
   no_normals,
   unused_input,
   unread_ranks,

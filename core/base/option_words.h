@@ -16,7 +16,7 @@ namespace alcove {
 enum class BehindKind { surfaces, fronts, backs, thickness };
 // the frame that motion vectors point to
 enum class MotionKind { automatic, previous, next };
-enum class DepthKind { automatic, planar, ray, inverse, device, normalized, log, position };
+enum class DepthKind { automatic, planar, ray, inverse, device, normalized, log, position, disparity };
 // device depth between the near and the far plane; zero_to_one: Vulkan, Direct3D, and automatic, as nobody says so;
 // minus_one_to_one: OpenGL
 enum class DeviceRange { automatic, zero_to_one, minus_one_to_one };
@@ -48,13 +48,17 @@ enum class AoChannels { mono, rgb };
 enum class OutputType { half_float, single_float };
 enum class Missing { error, skip };  // treatment of a frame without its input
 
-/// The range between which device, normalized and log depth are counted.
+/// The numbers by which device, normalized and log depth, and disparity, are counted.
 struct DepthRange {
   // distance of the planes, in the file's units, 0 < near < far; far may be infinite (device only)
   std::optional<double> near, far;
   bool reversed = false;  // the near plane has the largest value
   DeviceRange device = DeviceRange::automatic;
   double log_constant = 1;  // C of z = ((1 + C far)^d - 1) / C, 1 / the file's units, > 0
+  // a and b of disparity d = a / z + b, a > 0; a in values times the file's units. Of a, b and the planes, at which d
+  // is 1 and 0, two say all
+  std::optional<double> disparity_scale = std::nullopt, disparity_shift = std::nullopt;
+  double disparity_error = 0;  // values that are no more than this above b are as good as infinitely far
   // planar, ray and inverse depth: the values are below 0; view positions: their z is not as the camera's
   bool negative = false;
   // normalized depth: values go on beyond the near plane, or beyond the far plane, and were not cut off there
@@ -83,10 +87,9 @@ template <class T>
 inline constexpr int kWordsOf = 0;
 template <>
 inline constexpr Word<DepthKind> kWordsOf<DepthKind>[] = {
-    {"auto", DepthKind::automatic},        {"device", DepthKind::device},
-    {"inverse", DepthKind::inverse},       {"log", DepthKind::log},
-    {"normalized", DepthKind::normalized}, {"planar", DepthKind::planar},
-    {"position", DepthKind::position},     {"ray", DepthKind::ray}};
+    {"auto", DepthKind::automatic},  {"device", DepthKind::device},     {"disparity", DepthKind::disparity},
+    {"inverse", DepthKind::inverse}, {"log", DepthKind::log},           {"normalized", DepthKind::normalized},
+    {"planar", DepthKind::planar},   {"position", DepthKind::position}, {"ray", DepthKind::ray}};
 template <>
 inline constexpr Word<BehindKind> kWordsOf<BehindKind>[] = {{"backs", BehindKind::backs},
                                                             {"fronts", BehindKind::fronts},

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -94,14 +95,16 @@ struct InputSettings {
   std::optional<double> vertical_fov;     // the same over the height
   std::optional<double> focal, aperture;  // mm, > 0: focal length and width of the film back
   std::optional<double> ortho_width;      // scene units across the display window, > 0
-  std::vector<std::string> from_presets;  // options that presets set, long names; without effect, they are ignored
+  // options that presets set, by their long names, and the presets; without effect, they are ignored
+  std::map<std::string, std::string> from_presets;
 };
 
 /// The estimate of ambient occlusion. The defaults are the preset `standard`.
 struct EstimatorSettings {
   Estimator estimator = Estimator::gtao;
-  std::optional<double> radius;  // scene units, > 0; no default, since no number fits all scenes
-  bool radius_auto = false;      // instead: as core/frame/pixels/radius.h proposes
+  std::optional<double> radius;    // scene units, > 0; no default, since no number fits all scenes
+  bool radius_auto = false;        // instead: as core/frame/pixels/radius.h proposes
+  bool radius_in_medians = false;  // the radii are parts of the median depth until a frame of the run tells it
   // scene units, > 0: more scales. The AO is the mean of all: that is AO itself, with a falloff that drops by a step at
   // each radius
   std::vector<double> further_radii;

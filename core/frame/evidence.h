@@ -48,6 +48,7 @@ struct Evidence {
   Curve curve;                           // of the same
   // of the surfaces, scene units; none until the frame is settled, and where all is sky
   std::optional<double> median_depth;
+  std::optional<NormalSpace> space_by_shift;  // of normals that give the shift of a coarse disparity
   std::vector<Guess> guesses;
 };
 

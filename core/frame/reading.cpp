@@ -16,7 +16,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double near_of(DepthKind kind, const DepthRange& range) {
-  if (!range.near) fail(ErrorKind::usage, "{} depth needs the distance of the near plane: give --near", word_of(kind));
+  if (!range.near)
+    fail(ErrorKind::usage, "{} depth needs the distance of the near plane: give --near{}", word_of(kind),
+         range.far ? "" : ", and --far, which is inf where there is no far plane");
   return *range.near;
 }
 
@@ -39,7 +41,14 @@ void count_between(DepthMap& map, double near_value, double far_value, double fr
 
 /// Sets the map of a z-buffer. Depth is counted from the far plane, where perspective depth is densest: the difference
 /// is exact there, and 1 minus it would not be.
-void set_device(DepthMap& map, const DepthRange& range, bool orthographic, double scale) {
+void set_device(DepthMap& map, const DepthRange& range, const Camera& camera, double scale) {
+  const bool orthographic = camera.orthographic;
+  if (!range.near && camera.matrix_near)
+    fail(
+        ErrorKind::usage,
+        "device depth needs the distance of the near plane: give --near; the camera file's projection has it at {:.4g} "
+        "if its z is 0 to 1, and at about half of that if it is OpenGL's, -1 to 1",
+        *camera.matrix_near);
   const double n = near_of(DepthKind::device, range);
   if (!(n > 0) && !orthographic) fail(ErrorKind::usage, "device depth needs a near plane above 0, and --near is {}", n);
   const double f = far_of(DepthKind::device, range, !orthographic);
@@ -77,6 +86,18 @@ void set_log(DepthMap& map, const DepthRange& range, double scale) {
   map.slope = std::log1p(range.log_constant * far_of(DepthKind::log, range, false)) * (1 - 2 * near_value);
 }
 
+/// Sets the map of disparity whose scale and shift are settled.
+void set_disparity(DepthMap& map, const DepthRange& range, double scale) {
+  const Disparity disparity = disparity_of(range);
+  if (!disparity.shift)
+    fail(ErrorKind::usage, "disparity needs b, the value of what is infinitely far: give --set disparity-shift");
+  map.form = kDepthReciprocal;
+  map.origin = *disparity.shift;
+  map.slope = 1 / (disparity.scale.value_or(1) * scale);
+  map.sky_below = -kInfinity;  // what is beyond the sky is told by its distance
+  map.sky_depth = std::min(map.sky_depth, 1 / (map.slope * range.disparity_error));
+}
+
 void set_position(DepthMap& map, PositionSpace space, bool negative, const Camera& camera, double scale) {
   map.form = kDepthPosition;
   map.sky_below = -kInfinity;
@@ -96,6 +117,22 @@ void set_position(DepthMap& map, PositionSpace space, bool negative, const Camer
 
 }  // namespace
 
+Disparity disparity_of(const DepthRange& range) {
+  Disparity found{range.disparity_scale, range.disparity_shift};
+  auto& [scale, shift] = found;
+  const double of_near = range.near ? 1 / *range.near : 0, of_far = range.far ? 1 / *range.far : 0;
+  if (range.near && range.far) scale = 1 / (of_near - of_far);
+  if (range.near && !range.far && shift) scale = (1 - *shift) / of_near;
+  if (range.far && !range.near && shift) scale = -*shift / of_far;
+  if (range.far && scale) shift = -*scale * of_far;
+  if (range.near && !range.far && scale) shift = 1 - *scale * of_near;
+  if (scale && !(*scale > 0 && std::isfinite(*scale)))
+    fail(ErrorKind::usage,
+         "disparity {} is 1 at --near and 0 at --far, and no scale above 0 is so: give other distances",
+         shift ? fmt::format("with the shift {:.4g}", *shift) : "");
+  return found;
+}
+
 DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale,
                    double sky) {
   DepthMap map;
@@ -114,9 +151,10 @@ DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space,
         map.sky_above = 0;
       }
       break;
-    case DepthKind::device: set_device(map, range, camera.orthographic, scale); break;
+    case DepthKind::device: set_device(map, range, camera, scale); break;
     case DepthKind::normalized: set_normalized(map, range, scale, sky); break;
     case DepthKind::log: set_log(map, range, scale); break;
+    case DepthKind::disparity: set_disparity(map, range, scale); break;
     case DepthKind::position: set_position(map, space, range.negative, camera, scale); break;
   }
   return map;
@@ -152,9 +190,12 @@ bool is_distance(DepthKind kind) { return kind == DepthKind::planar || kind == D
 
 std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind kind) {
   const bool is_device = kind == DepthKind::device, is_log = kind == DepthKind::log;
+  const bool is_disparity = kind == DepthKind::disparity, has_planes = is_disparity || is_between_planes(kind);
   std::vector<std::string> unused;
-  if (said.near && (is_log || !is_between_planes(kind))) unused.emplace_back("--near");
-  if (said.far && !is_between_planes(kind)) unused.emplace_back("--far");
+  if (said.near && (is_log || !has_planes)) unused.emplace_back("--near");
+  if (said.far && !has_planes) unused.emplace_back("--far");
+  if (said.disparity_scale && !is_disparity) unused.emplace_back("--set disparity-scale");
+  if (said.disparity_shift && !is_disparity) unused.emplace_back("--set disparity-shift");
   if (said.reversed && !is_between_planes(kind)) unused.emplace_back("--reversed-z");
   if (said.device != DeviceRange::automatic && !is_device) unused.emplace_back("--set device-range");
   if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.emplace_back("--set log-constant");
@@ -245,6 +286,7 @@ Window picture_of(const Reading& reading, const Window& part) {
 void read_like(Reading& reading, const Meaning& settled) {
   const DepthRange own = reading.depth_range;
   static_cast<Meaning&>(reading) = settled;
+  if (reading.depth_kind == DepthKind::disparity) return;  // whose scale and shift are no camera's
   reading.depth_range.near = own.near;
   reading.depth_range.far = own.far;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,12 +40,21 @@ struct DepthPrecision {
 
 /// With d the value and n, f the planes:
 /// planar z = d; ray: |position| = d; inverse z = 1/d; normalized z = n + d (f - n); log z = ((1 + C f)^d - 1) / C;
-/// device 1/z = 1/n - d (1/n - 1/f), of an orthographic camera z = n + d (f - n); position z = -(view z). `reversed`
-/// puts 1 - d for d, a device range of -1 to 1 (d + 1) / 2. Device, normalized and log depth is a surface only if it is
-/// strictly between 0 and 1; normalized depth may go on beyond its planes. Fails with
-/// ErrorKind::usage where the kind needs a plane, a world matrix or a perspective that is not there.
+/// disparity d = a / z + b; device 1/z = 1/n - d (1/n - 1/f), of an orthographic camera z = n + d (f - n); position z =
+/// -(view z). `reversed` puts 1 - d for d, a device range of -1 to 1 (d + 1) / 2. Device, normalized and log depth is a
+/// surface only if it is strictly between 0 and 1; normalized depth may go on beyond its planes. Disparity is one only
+/// if it is above b, and a is 1 where nothing tells it. Fails with ErrorKind::usage where the kind needs a plane, a
+/// world matrix or a perspective that is not there.
 DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space, const Camera& camera, double scale,
                    double sky);
+
+/// The numbers of disparity d = scale / z + shift; none: nothing tells.
+struct Disparity {
+  std::optional<double> scale, shift;
+};
+/// Gives them by those of a range, of which two are enough: d is 1 at its near plane and 0 at its far plane. Fails with
+/// ErrorKind::usage where the scale would not be above 0.
+Disparity disparity_of(const DepthRange& range);
 
 /// Whether the values are those of surfaces between a near and a far plane, which may be stored as integers.
 bool is_between_planes(DepthKind kind);

@@ -68,6 +68,15 @@ void add_behind(Command& command, const InputSettings& settings) {
     command.add("--set deep-opacity", std::optional(settings.deep_opacity));
 }
 
+/// The numbers that were typed, and the shift that was found.
+void add_disparity(Command& command, const Reading& reading, const DepthRange& said) {
+  command.add("--near", said.near);
+  command.add("--far", said.far);
+  command.add("--set disparity-scale", said.disparity_scale);
+  const bool is_said = disparity_of(said).shift.has_value();
+  command.add("--set disparity-shift", is_said ? said.disparity_shift : reading.depth_range.disparity_shift);
+}
+
 void add_depth(Command& command, const FrameSource& source, const InputSettings& settings) {
   command.add("--depth-kind", word_of(source.reading.depth_kind));
   if (is_between_planes(source.reading.depth_kind)) {
@@ -75,6 +84,7 @@ void add_depth(Command& command, const FrameSource& source, const InputSettings&
     command.add("--far", source.reading.depth_range.far);
     if (source.reading.depth_range.reversed) command.add("--reversed-z");
   }
+  if (source.reading.depth_kind == DepthKind::disparity) add_disparity(command, source.reading, settings.depth_range);
   if (source.reading.depth_kind == DepthKind::position)
     command.add("--set position-space", word_of(source.reading.position_space));
   const InputSettings defaults;
@@ -125,7 +135,12 @@ std::string command_of(const FrameSource& source, const CommandNames& names, boo
   for (const auto& [option, words] : names.typed)
     if (!command.has(option)) command.add(words);
   if (command.has("--radius")) return command.text();
-  if (const auto radius = proposed_radius(source.reading.camera, source.evidence->median_depth))
+  const DepthRange& said = settings.depth_range;
+  const bool has_scale = said.near || said.far || said.disparity_scale;
+  const auto radius = proposed_radius(source.reading.camera, source.evidence->median_depth);
+  if (radius && source.reading.depth_kind == DepthKind::disparity && !has_scale)
+    command.add("--radius", fmt::format("{:.2g}%", 100 * *radius / *source.evidence->median_depth));
+  else if (radius)
     command.add("--radius", radius);
   else
     command.add("--radius RADIUS");

@@ -352,6 +352,12 @@ struct Inspector {
       found.suspicious.push_back({NoteCode::light_passes, missing_light_text(*found.light)});
   }
 
+  /// Says what is ambient in a composite of a beauty of which no part tells it, since a run warns of that.
+  void answer_ambient(const FrameSource& beauty) {
+    const bool is_whole = beauty.channels[RawPlane::indirect].empty() && settings.ambient.empty();
+    if (is_whole && found.command.find(" --composite ") != found.command.npos) found.command += " --set ambient=beauty";
+  }
+
   /// Neither camera nor normals matter for it, so that no camera is solved again.
   void find_beauty() {
     InputSettings alone = names_a_camera(reading) ? reading : with_some_camera(reading);
@@ -361,6 +367,7 @@ struct Inspector {
       add_aov(found, "beauty", beauty, beauty.channels[RawPlane::beauty], !settings.beauty_channels.empty());
       add_aov(found, "indirect", beauty, beauty.channels[RawPlane::indirect], false);
       add_aov(found, "diffuse_color", beauty, beauty.channels[RawPlane::diffuse_color], false);
+      answer_ambient(beauty);
       look_at_light(beauty);
     } catch (const Error&) {
       found.missing.push_back("beauty: only --composite needs one; --beauty or --set beauty-channels names it");

@@ -224,7 +224,7 @@ std::string inspection_text(const Inspection& inspection, bool has_evidence) {
   for (const auto& guess : inspection.hidden)
     lines.add("perhaps hidden surfaces: {} of {}; a run takes what --behind names", guess.channel, guess.file);
   if (!inspection.hidden_options.empty()) lines.add("  {}", inspection.hidden_options);
-  for (const auto& note : inspection.notes) lines.add("note: {}", note.text);
+  for (const auto& note : inspection.notes) lines.add("{}: {}", level_of(note), line_of(note, ""));
   for (const auto& finding : inspection.suspicious) lines.add("suspicious: {}", finding.text);
   for (const auto& missing : inspection.missing) lines.add("missing: {}", missing);
   for (const auto& refused : inspection.refused) lines.add("refused: {}", refused);

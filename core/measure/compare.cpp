@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -52,25 +53,30 @@ CompareSettings settings_of_frame(CompareSettings settings, int frame) {
   return settings;
 }
 
-/// Gives the frames of the comparison. Fails if a file of one is missing.
+/// Gives the frames of the comparison, whether their files are there or not.
 std::vector<int> frames_of(const CompareSettings& settings) {
   const auto result = pattern_of(settings.result);
   if (!result)
     fail(ErrorKind::usage,
          "{}: it has no place for a frame number, such as %04d or ####; the other files or --frames ask for a sequence",
          settings.result);
-  std::vector<int> frames = settings.frames.empty() ? frames_on_disk(*result, "RESULT") : parse_frames(settings.frames);
+  return settings.frames.empty() ? frames_on_disk(*result, "RESULT") : parse_frames(settings.frames);
+}
+
+/// Says of each frame with a missing file which frames of that file are missing.
+std::map<int, std::string> missing_frames(const CompareSettings& settings, const std::vector<int>& frames) {
+  std::map<int, std::string> sentences;
   for (const std::string* path : files_of(settings)) {
     const auto pattern = pattern_of(*path);
     std::vector<int> missing;
     if (pattern)
       std::ranges::copy_if(frames, std::back_inserter(missing),
                            [&](int frame) { return !is_there(pattern->path(frame)); });
-    if (!missing.empty())
-      fail(ErrorKind::input, "{}: frames are missing: {}{}", *path, frames_text(missing),
-           missing.size() == frames.size() ? why_no_frames(*pattern) : "");
+    for (const int frame : missing)
+      sentences.try_emplace(frame, fmt::format("{}: frames are missing: {}{}", *path, frames_text(missing),
+                                               missing.size() == frames.size() ? why_no_frames(*pattern) : ""));
   }
-  return frames;
+  return sentences;
 }
 
 bool is_sequence(const CompareSettings& settings) {
@@ -427,17 +433,39 @@ void limit_pictures(std::vector<FrameComparison>& frames, bool keeps_failures) {
   if (!keeps_failures || !is_broken(least)) least.error_png.clear();
 }
 
+void add_failed(CompareReport& report, const CompareSettings& here, const std::string& error) {
+  report.failed.push_back({name_of(here), here.result, here.reference, error});
+}
+
+/// The planes of a frame; none where they cannot be compared, which the report then says.
+std::optional<Planes> planes_or_failure(CompareReport& report, const CompareSettings& here) {
+  try {
+    return read_planes_of(here);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::input) throw;
+    add_failed(report, here, error.what());
+    return std::nullopt;
+  }
+}
+
 CompareReport compare_sequence(const CompareSettings& settings) {
   CompareReport report{.result = settings.result, .reference = settings.reference, .is_sequence = true};
   Flicker flicker;
   std::optional<ErrorFrame> previous;
-  for (const int frame : frames_of(settings)) {
+  const auto frames = frames_of(settings);
+  const auto missing = missing_frames(settings, frames);
+  for (const int frame : frames) {
     const CompareSettings here = settings_of_frame(settings, frame);
-    Planes planes = read_planes_of(here);
+    if (const auto sentence = missing.find(frame); sentence != missing.end()) {
+      add_failed(report, here, sentence->second);
+      continue;
+    }
+    auto planes = planes_or_failure(report, here);
+    if (!planes) continue;
     const bool follows = previous && report.frames.back().frame == frame - 1;
-    report.frames.push_back(measure(here, planes, frame));
+    report.frames.push_back(measure(here, *planes, frame));
     limit_pictures(report.frames, settings.failures);
-    ErrorFrame errors = error_frame(std::move(planes));
+    ErrorFrame errors = error_frame(std::move(*planes));
     if (follows && previous->error.size() == errors.error.size() && previous->width == errors.width)
       flicker.add(*previous, errors);
     previous = std::move(errors);
@@ -473,7 +501,9 @@ std::vector<CompareSettings> settings_of_list(const CompareSettings& settings) {
 CompareReport compare_list(const CompareSettings& settings) {
   CompareReport report{.result = settings.result, .reference = settings.reference, .is_list = true};
   for (const auto& here : settings_of_list(settings)) {
-    report.frames.push_back(measure(here, read_planes_of(here), 0));
+    const auto planes = planes_or_failure(report, here);
+    if (!planes) continue;
+    report.frames.push_back(measure(here, *planes, 0));
     limit_pictures(report.frames, settings.failures);
   }
   return report;
@@ -499,9 +529,9 @@ CompareReport compare_pictures(const CompareSettings& settings) {
   if (!settings.motion.empty())
     fail(ErrorKind::usage, "--motion {}: it is for the flicker of a sequence, and RESULT is one picture",
          settings.motion);
-  return {.result = settings.result,
-          .reference = settings.reference,
-          .frames = {measure(settings, read_planes_of(settings), 0)}};
+  CompareReport report{.result = settings.result, .reference = settings.reference};
+  if (const auto planes = planes_or_failure(report, settings)) report.frames.push_back(measure(settings, *planes, 0));
+  return report;
 }
 
 namespace {
@@ -537,6 +567,8 @@ Notes warnings_on_sky(const CompareReport& report, const CompareSettings& settin
 std::vector<int> frames_left_out(const CompareReport& report, const CompareSettings& settings) {
   std::vector<int> compared;
   std::ranges::transform(report.frames, std::back_inserter(compared), &FrameComparison::frame);
+  for (const auto& failed : report.failed) compared.push_back(std::stoi(failed.name));
+  std::ranges::sort(compared);
   std::set<int> all(compared.begin(), compared.end());
   for (const int frame : holes_in(compared)) all.insert(frame);
   if (const auto pattern = pattern_of(settings.reference))

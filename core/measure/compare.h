@@ -3,27 +3,17 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/compare_limits.h"
 #include "core/base/error.h"
 #include "core/base/image.h"
 #include "core/base/note.h"
 #include "core/measure/metrics.h"
 
 namespace alcove {
-
-/// Limits of a frame.
-struct CompareLimits {
-  std::optional<double> max_rmse, max_p99, min_ssim, max_flip;
-  std::optional<double> max_bias;   // of its size
-  std::optional<double> max_grain;  // needs CompareSettings::depth
-  // share of the pixels within the mask that are finite in one file only, 0 to 1; else none may be
-  std::optional<double> max_excluded;
-  bool operator==(const CompareLimits&) const = default;
-};
 
 /// Files and options of a comparison. Every file may have any format that open_image() reads, and may be a pattern of
 /// core/formats/sequence.h. A file without a pattern serves all frames. With a list of core/base/frame_list.h as
@@ -90,11 +80,18 @@ struct FrameComparison {
   float error_scale = 0;  // the error that has full colour
 };
 
+/// A frame that could not be compared.
+struct FailedFrame {
+  std::string name, result, reference;
+  std::string error;  // a sentence
+};
+
 struct CompareReport {
   std::string result, reference;             // as given
   bool is_sequence = false;                  // frames of one shot
   bool is_list = false;                      // unlike frames, which have names
   std::vector<FrameComparison> frames = {};  // a single one unless it is one of those
+  std::vector<FailedFrame> failed = {};      // others, for want of a file or of what can be compared
 
   bool has_several() const { return is_sequence || is_list; }
   std::optional<double> flicker = {};  // none unless two frames follow each other
@@ -106,18 +103,19 @@ inline constexpr std::size_t kMostPicturedFrames = 12;
 /// Whether a frame has a limit.
 bool has_limits(const CompareReport& report);
 
-/// These limits, and those by the names of their options, "max-rmse", which win.
-CompareLimits with_limits(CompareLimits limits, const std::map<std::string, double>& more);
+/// These limits, and more, which win.
+CompareLimits with_limits(CompareLimits limits, const CompareLimits& more);
 
-/// The settings with the files of each frame. Fails as compare_pictures() does on frames that are missing.
+/// The settings with the files of each frame, whether they are there or not.
 std::vector<CompareSettings> settings_of_frames(const CompareSettings& settings);
 
 /// The name of a frame with these files.
 std::string name_of(const CompareSettings& of_frame);
 
-/// Reads and measures the frames. Fails with ErrorKind::usage on settings that contradict each other. Fails with
-/// ErrorKind::input on missing and unreadable files, on pictures that share no pixel or no channel, on pictures of
-/// different data windows with different display windows, and if no pixel is left to compare.
+/// Reads and measures the frames. Frames fail by missing and unreadable files, by pictures that share no pixel or no
+/// channel, by pictures of different data windows with different display windows, and if no pixel is left to compare.
+/// Fails with ErrorKind::usage on settings that contradict each other, and with ErrorKind::input where RESULT has no
+/// frames.
 CompareReport compare_pictures(const CompareSettings& settings);
 
 /// The frame with the largest rmse.
@@ -141,8 +139,14 @@ struct CheckedLimit {
 /// Checks the limits of all frames. Holes break a limit of 0 where none is given, too.
 std::vector<CheckedLimit> checked_limits(const CompareReport& report);
 
-/// Whether a frame breaks one of its limits.
+/// Whether a frame breaks one of its limits, or has holes.
 bool is_broken(const FrameComparison& frame);
+
+/// The errors of frames that could not be compared: each sentence once.
+std::vector<std::string> errors_in(const CompareReport& report);
+
+/// Whether a frame is among the causes of the exit code: without any limit no hole is.
+bool fails(const FrameComparison& frame, const CompareReport& report);
 
 /// The sentences of the limits that are broken.
 std::vector<std::string> broken_limits(const std::vector<CheckedLimit>& limits);
@@ -156,8 +160,8 @@ std::string compare_json(const CompareReport& report, const std::vector<CheckedL
 /// The page of a comparison, as core/measure/report.h makes it.
 std::string compare_page(const CompareReport& report, const std::vector<CheckedLimit>& limits);
 
-/// The comparison as JUnit's XML: a test case for each frame, which fails with a sentence for each broken limit. `file`
-/// is its own path, for the pictures beside it.
+/// The comparison as JUnit's XML: a test case for each frame, which fails with a sentence for each broken limit, and
+/// has an error if it could not be compared. `file` is its own path, for the pictures beside it.
 std::string compare_junit(const CompareReport& report, const std::string& file);
 
 /// The picture of a failed frame's error, beside the XML of that path.

@@ -143,9 +143,12 @@ Json mean_json(const CompareReport& report) {
   return json;
 }
 
-/// The names of both files without their folders; with them if the names are equal.
+/// The names of both files without their folders; with them if the names are equal. Of a list, the names of the results
+/// are only a place for those of the frames.
 std::pair<std::string, std::string> names_of(const CompareReport& report) {
   const auto file = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
+  const std::size_t count = report.frames.size() + report.failed.size();
+  if (report.is_list) return {fmt::format("{} frame{}", count, count == 1 ? "" : "s"), file(report.reference)};
   if (file(report.result) == file(report.reference)) return {report.result, report.reference};
   return {file(report.result), file(report.reference)};
 }
@@ -161,21 +164,15 @@ Json limits_json(const std::vector<CheckedLimit>& limits) {
   return list;
 }
 
+Json failed_json(const CompareReport& report) {
+  Json list = Json::array();
+  for (const auto& failed : report.failed) list.push_back({{"frame", failed.name}, {"error", failed.error}});
+  return list;
+}
+
 double share_of_holes(const FrameComparison& frame) {
   return double(frame.holes) / double(frame.count + frame.excluded);
 }
-
-struct LimitOption {
-  const char* measure;
-  const char* option;
-  std::optional<double> CompareLimits::*value;
-};
-constexpr std::array kLimits = {LimitOption{"rmse", "--max-rmse", &CompareLimits::max_rmse},
-                                LimitOption{"p99", "--max-p99", &CompareLimits::max_p99},
-                                LimitOption{"ssim", "--min-ssim", &CompareLimits::min_ssim},
-                                LimitOption{"flip", "--max-flip", &CompareLimits::max_flip},
-                                LimitOption{"bias", "--max-bias", &CompareLimits::max_bias},
-                                LimitOption{"grain", "--max-grain", &CompareLimits::max_grain}};
 
 std::string place_of(const FrameComparison& frame, bool is_one_of_many) {
   return is_one_of_many ? fmt::format("frame {}: ", frame.name) : "";
@@ -199,7 +196,7 @@ CheckedLimit checked_holes(const FrameComparison& frame, bool is_one_of_many) {
 }
 
 /// The limit of a frame that has it.
-CheckedLimit checked(const FrameComparison& frame, const LimitOption& option, bool is_one_of_many) {
+CheckedLimit checked(const FrameComparison& frame, const LimitRow& option, bool is_one_of_many) {
   const Measure& measure = measure_of(option.measure);
   const double limit = *(frame.limits.*option.value), value = measure.of(frame);
   CheckedLimit check{option.option, limit, value, frame.name, ""};
@@ -223,7 +220,8 @@ std::vector<CheckedLimit> checked_limits(std::span<const FrameComparison> frames
   };
   const FrameComparison& holes = *std::ranges::max_element(frames, {}, excess);
   if (excess(holes) > kNone) checks.push_back(checked_holes(holes, is_many));
-  for (const auto& option : kLimits) {
+  for (const auto& option : kLimitTable) {
+    if (option.value == &CompareLimits::max_excluded) continue;
     const Measure& measure = measure_of(option.measure);
     const auto badness = [&](const FrameComparison& frame) {
       const auto limit = frame.limits.*option.value;
@@ -245,14 +243,20 @@ bool has_limits(const CompareReport& report) {
   return std::ranges::any_of(report.frames, [](const auto& frame) { return frame.limits != CompareLimits{}; });
 }
 
-CompareLimits with_limits(CompareLimits limits, const std::map<std::string, double>& more) {
-  for (const auto& [name, value] : more) {
-    if (name == "max-excluded") limits.max_excluded = value;
-    for (const auto& option : kLimits)
-      if ("--" + name == option.option) limits.*option.value = value;
-  }
+CompareLimits with_limits(CompareLimits limits, const CompareLimits& more) {
+  for (const auto& row : kLimitTable)
+    if (more.*row.value) limits.*row.value = more.*row.value;
   return limits;
 }
+
+std::vector<std::string> errors_in(const CompareReport& report) {
+  std::vector<std::string> errors;
+  for (const auto& failed : report.failed)
+    if (std::ranges::find(errors, failed.error) == errors.end()) errors.push_back(failed.error);
+  return errors;
+}
+
+bool fails(const FrameComparison& frame, const CompareReport& report) { return has_limits(report) && is_broken(frame); }
 
 std::vector<CheckedLimit> checked_limits(const CompareReport& report) {
   return checked_limits(report.frames, report.has_several());
@@ -280,8 +284,9 @@ std::string compare_json(const CompareReport& report, const std::vector<CheckedL
     add_parts(json, report.frames[0]);
   }
   const auto broken = broken_limits(limits);
-  json["pass"] = broken.empty();
+  json["pass"] = broken.empty() && report.failed.empty();
   json["broken"] = broken;
+  json["failed"] = failed_json(report);
   json["limits"] = limits_json(limits);
   if (report.has_several())
     for (const auto& frame : report.frames) json["frames"].push_back(frame_json(frame, report));
@@ -290,8 +295,9 @@ std::string compare_json(const CompareReport& report, const std::vector<CheckedL
 
 namespace {
 
-Json row_json(const FrameComparison& frame, const std::string& candidate) {
-  Json row = {{"frame", frame.name}, {"candidate", candidate}};
+Json row_json(const FrameComparison& frame, const CompareReport& report, const std::string& candidate) {
+  Json row = {{"frame", frame.name}, {"candidate", candidate}, {"fails", fails(frame, report)}};
+  if (frame.holes) row["holes"] = frame.holes;
   for (const auto& measure : kMeasures) row[measure.name] = number(measure.of(frame));
   return row;
 }
@@ -316,9 +322,11 @@ Json sequence_json(const CompareReport& report) {
   return json;
 }
 
-Json verdict_json(const std::vector<CheckedLimit>& limits) {
-  if (limits.empty()) return nullptr;
-  return {{"pass", broken_limits(limits).empty()}, {"limits", limits_json(limits)}};
+Json verdict_json(const CompareReport& report, const std::vector<CheckedLimit>& limits) {
+  if (limits.empty() && report.failed.empty()) return nullptr;
+  return {{"pass", broken_limits(limits).empty() && report.failed.empty()},
+          {"limits", limits_json(limits)},
+          {"failed", failed_json(report)}};
 }
 
 }  // namespace
@@ -329,14 +337,14 @@ std::string compare_page(const CompareReport& report, const std::vector<CheckedL
   candidate.update(mean_json(report));
   Json rows = Json::array(), images = Json::array();
   for (const auto& frame : report.frames) {
-    rows.push_back(row_json(frame, name));
+    rows.push_back(row_json(frame, report, name));
     if (frame.pictures) images.push_back(image_json(frame, name));
   }
   return report_page(json_text({{"title", name + " against " + reference},
                                 {"kind", "compare"},
                                 {"device", nullptr},
                                 {"yardstick_ms", nullptr},
-                                {"verdict", verdict_json(limits)},
+                                {"verdict", verdict_json(report, limits)},
                                 {"candidates", Json::array({candidate})},
                                 {"rows", rows},
                                 {"sequence", sequence_json(report)},
@@ -348,8 +356,28 @@ std::string compare_page(const CompareReport& report, const std::vector<CheckedL
 
 namespace {
 
-/// Text within XML, which has no control characters.
-std::string xml_text(const std::string& text) { return markup_text(printable(text)); }
+/// Text within XML, which has no control characters, and neither U+FFFE nor U+FFFF.
+std::string xml_text(const std::string& text) {
+  std::string valid = printable(text);
+  for (const char* none : {"\xef\xbf\xbe", "\xef\xbf\xbf"})
+    for (std::size_t at = 0; (at = valid.find(none, at)) != valid.npos;) valid.replace(at, 3, "\xef\xbf\xbd");
+  return markup_text(valid);
+}
+
+std::string case_text(const std::string& name, const std::string& inside) {
+  return fmt::format("  <testcase classname=\"alcove compare\" name=\"{}\">{}</testcase>\n", xml_text(name),
+                     inside.empty() ? "" : "\n" + inside + "  ");
+}
+
+/// Why a frame fails, and the picture of its error.
+std::string failure_text(const FrameComparison& frame, const std::string& file) {
+  return fmt::format(
+      "    <failure message=\"{}\"/>\n    <system-out>[[ATTACHMENT|{}]] red where the result is larger than the "
+      "reference, "
+      "blue where it is smaller, in full colour from an error of {:.3g}</system-out>\n",
+      xml_text(fmt::format("{}", fmt::join(broken_limits(checked_limits({&frame, 1}, false)), "; "))),
+      xml_text(failure_path(file, frame.name)), frame.error_scale);
+}
 
 }  // namespace
 
@@ -364,19 +392,17 @@ std::string compare_junit(const CompareReport& report, const std::string& file) 
   std::string cases;
   int failures = 0;
   for (const auto& frame : report.frames) {
-    cases += fmt::format("  <testcase classname=\"alcove compare\" name=\"{}\">", xml_text(frame.name));
-    if (const auto broken = broken_limits(checked_limits({&frame, 1}, false)); !broken.empty()) {
-      failures++;
-      cases +=
-          fmt::format("\n    <failure message=\"{}\"/>\n    <system-out>[[ATTACHMENT|{}]]</system-out>\n  ",
-                      xml_text(fmt::format("{}", fmt::join(broken, "; "))), xml_text(failure_path(file, frame.name)));
-    }
-    cases += "</testcase>\n";
+    const bool is_failure = fails(frame, report);
+    failures += is_failure;
+    cases += case_text(frame.name, is_failure ? failure_text(frame, file) : "");
   }
+  for (const auto& failed : report.failed)
+    cases += case_text(failed.name, fmt::format("    <error message=\"{}\"/>\n", xml_text(failed.error)));
   return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"{} against {}\" tests=\"{}\" failures=\"{}\">\n{}"
-      "</testsuite>\n",
-      xml_text(report.result), xml_text(report.reference), report.frames.size(), failures, cases);
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<testsuite name=\"{} against {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n{}</testsuite>\n",
+      xml_text(report.result), xml_text(report.reference), report.frames.size() + report.failed.size(), failures,
+      report.failed.size(), cases);
 }
 
 }  // namespace alcove

@@ -23,7 +23,8 @@ namespace alcove {
 ///                   the page has no chart. Of a wedge, "settings" is the command, without "rmse"; it adds "radius", in
 ///                   scene units, and "notes", a list of strings.
 ///   "rows"          list of {"frame": string, "candidate": a candidate's name, and numbers or nulls: "ms", "ms_min",
-///                   "rmse", "p99", "bias", "estimator_rmse", "geometry_rmse", "samples_per_pixel", ...}: the table. A
+///                   "rmse", "p99", "bias", "estimator_rmse", "geometry_rmse", "samples_per_pixel", ..., and optional
+///                   "fails": bool, of a frame that breaks a limit}: the table. A
 ///                   column is shown when any row has a number for it; columns that the page does not know come last
 ///                   and are headed by their key.
 ///   "images"        list, may be empty, of {"frame": string, "candidate": string, "width": pixels, "height": pixels,
@@ -34,7 +35,8 @@ namespace alcove {
 ///                   error of "full" in the strongest, else of kFullColorError. "composite" is optional: a PICTURE or
 ///                   null.
 ///   "verdict"       optional, or null: {"pass": bool, "limits": list of {"option": string, "limit": number, "value":
-///                   number or null, "frame": string, "holds": bool}}: shown above all
+///                   number or null, "frame": string, "holds": bool}, and optional "failed": list of {"frame": string,
+///                   "error": string}, of frames that were not compared}: shown above all
 ///   "sequence"      optional, or null: {"worst_frame": string, "worst_rmse": number, "mean_rmse": number, and of
 ///                   frames that follow each other "flicker": number or null}: measures as a whole, above the table
 ///   "frames"        optional list of {"name": string, "yardstick_ms": number or null}: a frame's own yardstick, where

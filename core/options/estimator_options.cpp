@@ -16,23 +16,39 @@ namespace {
 /// The range of a radius.
 Range reach() { return above_to(0, 1e18); }
 
+/// The part that a text such as "5%" says.
+double percent_in(const Range& range, const std::string& text) {
+  return number_in(range, text.substr(0, text.size() - 1)) / 100;
+}
+
 void read_radii(const Words& words, EstimatorSettings& settings) {
   settings.radius_auto = words.size() == 1 && lower_case(words.front()) == "auto";
+  settings.radius_in_medians = false;
   settings.radius.reset();
   settings.further_radii.clear();
   if (settings.radius_auto) return;
   std::vector<double> radii;
+  std::size_t percents = 0;
   for (const auto& word : words)
-    for (const auto& text : split(word)) radii.push_back(number_in(reach(), text));
+    for (const auto& text : split(word)) {
+      percents += text.ends_with('%');
+      radii.push_back(text.ends_with('%') ? percent_in(reach(), text) : number_in(reach(), text));
+    }
+  if (percents > 0 && percents < radii.size())
+    fail(ErrorKind::usage, "some radii are in percent of the median depth and others in scene units: give one kind");
+  settings.radius_in_medians = percents > 0;
   settings.radius = radii.front();
   settings.further_radii.assign(radii.begin() + 1, radii.end());
 }
 
 Words words_of_radii(const EstimatorSettings& settings) {
   if (settings.radius_auto) return {"auto"};
+  const auto word = [&](double radius) {
+    return settings.radius_in_medians ? fmt::format("{:.12g}%", 100 * radius) : fmt::format("{}", radius);
+  };
   Words words;
-  if (settings.radius) words.push_back(fmt::format("{}", *settings.radius));
-  for (const double radius : settings.further_radii) words.push_back(fmt::format("{}", radius));
+  if (settings.radius) words.push_back(word(*settings.radius));
+  for (const double radius : settings.further_radii) words.push_back(word(radius));
   return words;
 }
 
@@ -83,8 +99,8 @@ void add_radius_rows(std::vector<SettingRow>& rows) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
   pixels.choice("--estimator", &S::estimator, "gtao, bitmask: horizons, or sectors; hbao, crytek: as older renderers");
   SettingRow& radius = pixels.add(
-      {"--radius", "auto|NUMBER[,NUMBER...]", "scene units", reach().text,
-       "how far occluders reach; auto: what inspect proposes; of several the AO is the mean"},
+      {"--radius", "auto|NUMBER[%][,NUMBER[%]...]", "scene units", reach().text,
+       "how far occluders reach; auto: what inspect proposes; 5%: of the median depth; of several the AO is the mean"},
       [](const S& s) { return words_of_radii(s); }, [](S& s, const Words& words) { read_radii(words, s); });
   radius.repeats = radius.is_common = true;
   pixels.choice("--falloff", &S::falloff, "how a hit's weight fades towards the radius").others_idle(unless_fading);

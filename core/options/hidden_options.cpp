@@ -137,7 +137,7 @@ void add_view_rows(InputGroup& pixels) {
           [](S& s, const std::string& text) { return read_around(text, s); },
           fmt::format("is neither all nor a whole number from 0 to {}", kMostAround))
       .others_idle(unless_ranges);
-  pixels.text("--motion", &S::motion, "FILE", "an EXR of motion vectors, in pixels, which tell what moves")
+  pixels.text("--motion", &S::motion, "FILE", "a picture of motion vectors, in pixels, which tell what moves")
       .names(FileRole::input)
       .idle([](const Settings& all) {
         const InputSettings& input = all.input;

@@ -121,7 +121,7 @@ void add_occluder_rows(std::vector<SettingRow>& rows) {
   file_or_objects(rows, "ignore", &S::ignore, &S::ignored_objects,
                   "these do not block, but what --behind or --deep show behind them; as occluders");
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
-      .text("objects", &S::objects, "FILE", "an EXR that tells the objects of occluders and ignore; else INPUT")
+      .text("objects", &S::objects, "FILE", "a picture that tells the objects of occluders and ignore; else INPUT")
       .names(FileRole::input)
       .idle(unless_objects);
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
@@ -136,20 +136,20 @@ void add_file_rows(std::vector<SettingRow>& rows) {
     return inputs.text(name, path, "FILE", sentence).names(FileRole::input);
   };
   file("--depth", &S::depth, "of the depth alone: EXR, DDS, PNG of 16 bits, TIFF").is_common = true;
-  file("--position", &S::position, "an EXR of the positions, instead of a depth");
+  file("--position", &S::position, "a picture of the positions, instead of a depth");
   inputs.text("--normal", &S::normal, "FILE|none", "of the normals alone: EXR, DDS, TIFF or PNG; none: made from depth")
       .names(FileRole::input, [](const std::string& text) { return lower_case(text) != "none"; })
       .is_common = true;
-  SettingRow& beauty = file("--beauty", &S::beauty, "an EXR of the beauty, and of its parts of light");
+  SettingRow& beauty = file("--beauty", &S::beauty, "a picture of the beauty, and of its parts of light");
   beauty.is_common = true;
   beauty.idle(unless_beauty_serves);
-  file("material-ao", &S::material_ao, "an EXR of the materials' own AO, multiplied in");
+  file("material-ao", &S::material_ao, "a picture of the materials' own AO, multiplied in");
   file("--matte", &S::matte, "where AO is wanted, as coverage from 0 to 1");
   add_occluder_rows(rows);
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input, true)
       .own(
           {"albedo", "FILE|NUMBER", "", "0 to 1",
-           "the diffuse colour, of all surfaces or in an EXR; else the beauty's"},
+           "the diffuse colour, of all surfaces or in a picture; else the beauty's"},
           [](const S& s) { return s.albedo_value ? fmt::format("{}", *s.albedo_value) : s.albedo; },
           [](S& s, const std::string& text) { return read_albedo(text, s); },
           "is neither a file nor a number from 0 to 1")
@@ -163,7 +163,7 @@ void add_channel_rows(std::vector<SettingRow>& rows) {
   pixels.text("--depth-channel", &S::depth_channel, "NAME", "of the depth; else found by its usual names")
       .idle([](const Settings& all) {
         return unless_depth(all, {DepthKind::planar, DepthKind::ray, DepthKind::inverse, DepthKind::device,
-                                  DepthKind::normalized, DepthKind::log});
+                                  DepthKind::normalized, DepthKind::log, DepthKind::disparity});
       });
   pixels.text("--normal-channels", &S::normal_channels, "LAYER|X,Y[,Z]", "of the normals; of two, z is rebuilt")
       .idle(if_without_normals);
@@ -207,7 +207,7 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
   };
   pixels
       .choice("--depth-kind", &S::depth_kind,
-              "planar: along the axis; ray: to the eye; inverse: 1/planar; auto: by facts")
+              "planar: along the axis; ray: to the eye; inverse: 1/planar; disparity: a/planar + b; auto: by facts")
       .idle([](const Settings& all) -> std::string {
         const InputSettings& input = all.input;
         if (input.depth_kind == DepthKind::automatic || input.depth_kind == DepthKind::position) return "";
@@ -218,7 +218,7 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
       .number("--near", within(&S::depth_range, &DepthRange::near), "file units", at_least(0),
               "the near plane; else the camera's")
       .idle([](const Settings& all) {
-        return unless_depth(all, {DepthKind::device, DepthKind::normalized});
+        return unless_depth(all, {DepthKind::device, DepthKind::normalized, DepthKind::disparity});
       });
   pixels
       .own(
@@ -226,7 +226,9 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
           [](const S& s) { return s.depth_range.far ? fmt::format("{}", *s.depth_range.far) : std::string(); },
           [](S& s, const std::string& text) { return read_far(text, s.depth_range.far); },
           "is neither a distance above 0 nor inf")
-      .idle(unless_between_planes);
+      .idle([](const Settings& all) {
+        return unless_depth(all, {DepthKind::device, DepthKind::normalized, DepthKind::log, DepthKind::disparity});
+      });
   pixels.flag("--reversed-z", within(&S::depth_range, &DepthRange::reversed), "depth is largest at the near plane")
       .idle(unless_between_planes);
   pixels
@@ -237,6 +239,15 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
       .number("log-constant", within(&S::depth_range, &DepthRange::log_constant), "1 / file units", above(0),
               "C of z = ((1 + C far)^d - 1) / C")
       .idle([](const Settings& all) { return unless_depth(all, {DepthKind::log}); });
+  const auto unless_disparity = [](const Settings& all) { return unless_depth(all, {DepthKind::disparity}); };
+  pixels
+      .number("disparity-scale", within(&S::depth_range, &DepthRange::disparity_scale), "", above(0),
+              "a of disparity = a / z + b; else there are no scene units, and --radius is in percent")
+      .idle(unless_disparity);
+  pixels
+      .number("disparity-shift", within(&S::depth_range, &DepthRange::disparity_shift), "", between(-1e18, 1e18),
+              "b of disparity = a / z + b, the value of what is infinitely far; else found by the normals")
+      .idle(unless_disparity);
   pixels.number("--depth-scale", &S::depth_scale, "", above(0), "scene units per unit of the depth channel");
   pixels.number("--sky", &S::sky, "file units", above(0), "from this depth on it is sky, as are 0, infinity and NaN");
 }

@@ -12,6 +12,7 @@
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
 #include "core/frame/raw_plane.h"
+#include "core/frame/reading.h"
 #include "core/options/options.h"
 
 namespace alcove {
@@ -115,8 +116,8 @@ struct Trial {
   }
 };
 
-/// Fails where two values of a preset have an effect each, but none beside the other.
-void refuse_contradictions(const Trial& trial, const std::string& preset) {
+/// Says which of two values of a preset take each other's effect; "" where none do.
+std::string contradiction(const Trial& trial, const std::string& preset) {
   std::vector<bool> counts;
   for (const auto& value : trial.values) counts.push_back(value.preset == preset);
   const Words objections = trial.objections(counts);
@@ -125,9 +126,9 @@ void refuse_contradictions(const Trial& trial, const std::string& preset) {
       if (objections[i].empty() || objections[j].empty()) continue;
       const Words of_both = trial.objections(i, j);
       const bool have_none = !of_both[i].empty() && !of_both[j].empty();
-      if (have_none && trial.objections(i, i)[i].empty() && trial.objections(j, j)[j].empty())
-        fail(ErrorKind::usage, "{} (--preset): {}", preset, of_both[i]);
+      if (have_none && trial.objections(i, i)[i].empty() && trial.objections(j, j)[j].empty()) return of_both[i];
     }
+  return "";
 }
 
 /// Leaves out values of presets without effect, one after the other. A value that is left out may be the one beside
@@ -159,7 +160,9 @@ Settings with_values(const Settings& initial, std::vector<OptionValue> values, R
   std::set<std::string> presets;
   for (const auto& value : values)
     if (!value.is_typed()) presets.insert(value.preset);
-  for (const auto& preset : presets) refuse_contradictions(trial, preset);
+  for (const auto& preset : presets)
+    if (const std::string why = contradiction(trial, preset); !why.empty())
+      fail(ErrorKind::usage, "{} (--preset): {}", preset, why);
   const std::vector<bool> counts = with_effects(trial);
   const Words objections = trial.objections(counts);
   std::set<const SettingRow*> typed;
@@ -171,8 +174,47 @@ Settings with_values(const Settings& initial, std::vector<OptionValue> values, R
   Settings settings = with_some(initial, values, counts);
   settings.input.from_presets.clear();
   for (std::size_t i = 0; i < values.size(); i++)
-    if (counts[i] && !typed.contains(values[i].row)) settings.input.from_presets.push_back(values[i].row->long_name());
+    if (counts[i] && !typed.contains(values[i].row))
+      settings.input.from_presets[values[i].row->long_name()] = values[i].preset;
   return settings;
+}
+
+namespace {
+
+/// The settings that are no defaults.
+Values given_values(const Settings& settings) {
+  Values values;
+  for (const auto& row : option_table())
+    if (row.is_key() && row.is_given(settings)) values.push_back({&row, row.words(settings)});
+  return values;
+}
+
+/// Whether one preset may have all that is set, with no effect lost but those of `idle` values.
+bool is_one_preset(const Settings& settings, std::size_t idle) {
+  const Settings initial;
+  const Values values = given_values(settings);
+  const Trial trial{initial, values, Reader::run};
+  const Words objections = trial.objections(std::vector<bool>(values.size(), true));
+  const std::size_t without_effect = values.size() - std::size_t(std::ranges::count(objections, ""));
+  return without_effect <= idle && contradiction(trial, "").empty();
+}
+
+}  // namespace
+
+Settings with_idle_values(const Settings& settings, const std::vector<OptionValue>& values) {
+  Settings whole = settings;
+  std::set<const SettingRow*> known;
+  std::size_t idle = 0;
+  for (auto at = values.rbegin(); at != values.rend(); at++) {
+    const OptionValue& value = *at;
+    if (!known.insert(value.row).second || value.row->is_given(whole)) continue;
+    Settings more = whole;
+    value.row->read(more, value.words);
+    if (!value.row->is_given(more) || !is_one_preset(more, idle + 1)) continue;
+    whole = more;
+    idle++;
+  }
+  return whole;
 }
 
 // Contradictions.
@@ -273,6 +315,35 @@ void check_numbers(const EstimatorSettings& e) {
     fail(ErrorKind::usage, "--set falloff-end={} is not above --set falloff-start={}", e.falloff_end, e.falloff_start);
 }
 
+/// Two numbers say all of a disparity. Without its scale there are neither scene units nor the file's.
+void check_disparity(const Settings& settings) {
+  const InputSettings& input = settings.input;
+  const DepthRange& range = input.depth_range;
+  if (input.depth_kind != DepthKind::disparity) return;
+  if (int(range.near.has_value()) + int(range.far.has_value()) + int(range.disparity_scale.has_value()) +
+          int(range.disparity_shift.has_value()) >
+      2)
+    fail(ErrorKind::usage,
+         "--near, --far, --set disparity-scale and --set disparity-shift: two of them say how disparity becomes depth; "
+         "leave the others out");
+  const Disparity said = disparity_of(range);
+  if ((input.around > 0 || input.around_all || input.accumulate > 0) && !(said.scale && said.shift))
+    fail(ErrorKind::usage,
+         "{}: disparities of several frames do not fit together by themselves: give the scale and the shift of all, by "
+         "--near and --far, or --set disparity-scale and --set disparity-shift",
+         input.accumulate > 0 ? "--accumulate" : "--around");
+  if (range.disparity_scale || range.near || range.far) return;
+  for (const auto& row : option_table()) {
+    const bool is_length = row.unit.ends_with("scene units") || row.key() == "sky" || row.key() == "depth-scale";
+    if (!is_length || !row.is_key() || !row.is_given(settings) || !number_of(row.words(settings).front())) continue;
+    fail(
+        ErrorKind::usage,
+        "{}: this disparity has no scene units, since nothing tells its scale: give {}--set disparity-scale, or --near "
+        "or --far, the distance of the value 1 or 0",
+        row.long_name(), row.key() == "radius" ? "--radius in percent of the median depth, as 5%, or " : "");
+  }
+}
+
 }  // namespace
 
 void check_settings(const Settings& settings) {
@@ -288,6 +359,7 @@ void check_settings(const Settings& settings) {
   check_hidden(settings);
   check_scales(settings);
   check_numbers(settings.estimator);
+  check_disparity(settings);
   if (settings.frames.chunk > settings.frames.chunks)
     fail(ErrorKind::usage, "--chunk {}/{}: there is no such chunk", settings.frames.chunk, settings.frames.chunks);
 }

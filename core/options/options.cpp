@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -112,7 +113,8 @@ void add_report_rows(std::vector<SettingRow>& rows) {
     return if_given(shows_lines(all), "--progress", kWhy);
   });
   progress.show({"--print-config", "", "", "", "print the settings as a preset and stop"});
-  progress.show({"--shareable", "", "", "", "of --print-config: without files, frames, camera and device"});
+  progress.show({"--shareable", "", "", "",
+                 "of --print-config: what differs from the defaults, without files, frames, camera and device"});
 }
 
 /// Text as a cell of a table in Markdown, where a bar would end it.
@@ -248,16 +250,35 @@ bool is_shareable(const SettingRow& row) {
 
 }  // namespace
 
-std::string preset_text(const Settings& settings, bool only_shareable) {
+namespace {
+
+/// The value of a row as a line of a preset. Files have whole paths, since a preset may lie anywhere.
+std::string preset_line(const SettingRow& row, const Settings& settings) {
+  Words words = row.words(settings);
+  for (auto& word : words)
+    word = toml_of(row.names_file(word) ? std::filesystem::absolute(word).lexically_normal().string() : word);
+  const std::string list = fmt::format("{}", fmt::join(words, ", "));
+  return fmt::format("{}={}\n", row.key(), words.size() > 1 ? "[" + list + "]" : list);
+}
+
+bool has_effect(const SettingRow& row, const Settings& settings) {
+  return std::ranges::all_of(row.idle_reasons, [&](const auto& reason) { return reason(settings).empty(); });
+}
+
+}  // namespace
+
+std::string preset_text(const Settings& settings) {
   std::string text;
-  for (const auto& row : option_table()) {
-    if (!row.is_key() || (only_shareable && !is_shareable(row))) continue;
-    Words words = row.words(settings);
-    if (words.empty() || !objection(row, settings).empty()) continue;
-    for (auto& word : words) word = toml_of(word);
-    const std::string list = fmt::format("{}", fmt::join(words, ", "));
-    text += fmt::format("{}={}\n", row.key(), words.size() > 1 ? "[" + list + "]" : list);
-  }
+  for (const auto& row : option_table())
+    if (row.is_key() && !row.words(settings).empty() && (row.is_given(settings) || has_effect(row, settings)))
+      text += preset_line(row, settings);
+  return text;
+}
+
+std::string shareable_text(const Settings& settings) {
+  std::string text;
+  for (const auto& row : option_table())
+    if (row.is_key() && is_shareable(row) && row.is_given(settings)) text += preset_line(row, settings);
   return text;
 }
 

@@ -35,9 +35,11 @@ std::string range_text(const OptionRow& row);
 /// Gives the table as docs/options.md shows it.
 std::string option_table_markdown();
 
-/// Gives the settings as a preset in TOML, one line for each that has an effect; `only_shareable` leaves out files,
-/// frames, camera and device.
-std::string preset_text(const Settings& settings, bool only_shareable = false);
+/// Gives the settings as a preset in TOML, one line for each that has an effect or is no default; files have whole
+/// paths.
+std::string preset_text(const Settings& settings);
+/// Gives those that are no defaults, without files, frames, camera and device.
+std::string shareable_text(const Settings& settings);
 
 // The groups of the table, each in its own file.
 void add_input_rows(std::vector<SettingRow>& rows);
@@ -65,6 +67,11 @@ enum class Reader { run, inspect };
 /// on a text that is no value, on a typed value without effect, and on values of one preset that take each other's
 /// effect.
 Settings with_values(const Settings& settings, std::vector<OptionValue> values, Reader reader = Reader::run);
+
+/// Gives the settings with the values of presets too that have no effect beside the others, so that one preset says all
+/// that the values say: a factor of the composite stays where there is none. Left out are values that take the effect
+/// of others.
+Settings with_idle_values(const Settings& settings, const std::vector<OptionValue>& values);
 
 /// Gives the values in the text of a preset, in its order; `preset` is for messages. Fails with ErrorKind::usage,
 /// naming preset and key, on keys that are no options. The key `preset` is one of those unless others are built on.

@@ -128,7 +128,7 @@ void add_output_rows(std::vector<SettingRow>& rows) {
   word_list(results, "--aov", &S::aovs, fmt::format("what OUTPUT holds: {}", fmt::join(aov_names(), ", "))).is_common =
       true;
   pixels
-      .text("--environment", &S::environment, "SKY.exr",
+      .text("--environment", &S::environment, "SKY.exr|.hdr",
             "lat-long light: OUTPUT holds relight, what white surfaces reflect of it with occlusion")
       .names(FileRole::input);
   results.choice("ao-channels", &S::ao_channels, "mono: Y; rgb: R, G, B").others_idle([](const Settings& all) {

@@ -100,12 +100,16 @@ struct RowOf : OptionRow {
     derived_files = std::move(files);
     return *this;
   }
+  /// Whether a word of it is the name of a file.
+  bool names_file(const std::string& word) const {
+    return role != FileRole::none && !derived_files && !word.empty() && (!is_file || is_file(word));
+  }
   /// The files that it names, if it has this role.
   std::vector<NamedFile> files(const Options& options, FileRole wanted) const {
     std::vector<NamedFile> found;
     if (role != wanted) return found;
     for (const auto& word : derived_files ? derived_files(options) : words(options))
-      if (!word.empty() && (!is_file || is_file(word))) found.push_back({long_name(), word});
+      if (derived_files ? !word.empty() : names_file(word)) found.push_back({long_name(), word});
     return found;
   }
 

@@ -235,6 +235,7 @@ RunReport run_frames(FirstLook& look, const RunWatch& watch) {
   report.is_sequence = plan.is_sequence();
   report.input = main_input(settings.input);
   report.missing = plan.missing();
+  report.presets = settings.preset_files;
   const NewFolders new_folders(plan);
   refuse_overwriting(plan);
   prepare_outputs(plan);  // of a chunk without frames its reports

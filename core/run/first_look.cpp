@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/chain/results/outputs.h"
+#include "core/formats/color.h"
 #include "core/formats/sequence.h"
 #include "core/frame/pixels/radius.h"
 #include "core/frame/settle/settle.h"
@@ -148,13 +150,13 @@ bool FirstLook::has_camera(std::string& why_not) {
   }
 }
 
-/// The radius that is proposed for a frame; none where all is sky. Depth and camera alone decide: a fault of the beauty
-/// or of an output is found when the frame is computed.
-std::optional<double> FirstLook::radius_of(int frame) {
+/// The radii that a frame tells, of those settings; none where all is sky. Depth and camera alone decide: a fault of
+/// the beauty or of an output is found when the frame is computed.
+std::vector<double> FirstLook::radii_of(int frame, const EstimatorSettings& estimator) {
   const InputSettings input = input_of(frame);
   const auto proposed = [&](FrameSource& source) {
     if (!source.evidence) settle_by_rows(source, input);
-    return proposed_radius(source.reading.camera, source.evidence->median_depth);
+    return radii_by_depth(estimator, source.reading.camera, source.evidence->median_depth);
   };
   try {
     return proposed(opened(frame));
@@ -166,11 +168,11 @@ std::optional<double> FirstLook::radius_of(int frame) {
   }
 }
 
-/// The radius that is proposed for the first frame that shows a surface, and why others could not be looked at.
-std::optional<double> FirstLook::radius_of_first(std::optional<Error>& error) {
+/// The radii that the first frame tells that shows a surface, and why others could not be looked at.
+std::vector<double> FirstLook::radii_of_first(std::optional<Error>& error, const EstimatorSettings& estimator) {
   for (const int frame : plan().evidence()) {
     try {
-      if (const auto radius = radius_of(frame)) return radius;
+      if (auto radii = radii_of(frame, estimator); !radii.empty()) return radii;
     } catch (const NoWorldToCamera& failure) {
       lacks_matrix_ = true;
       if (!error) error = failure;
@@ -178,7 +180,15 @@ std::optional<double> FirstLook::radius_of_first(std::optional<Error>& error) {
       if (!error) error = failure;
     }
   }
-  return std::nullopt;
+  return {};
+}
+
+/// The radius that is proposed where none is given.
+std::optional<double> FirstLook::proposed_radius(std::optional<Error>& error) {
+  EstimatorSettings automatic;
+  automatic.radius_auto = true;
+  const auto radii = radii_of_first(error, automatic);
+  return radii.empty() ? std::nullopt : std::optional(radii.front());
 }
 
 /// Opens the first frame for what its channels need of a camera.
@@ -208,12 +218,12 @@ MissingOptions FirstLook::missing_options() {
     notes_on_number(plan());  // or the command that is proposed would be refused
     missing.camera = lacks_camera_ = !has_camera(missing.no_camera);
     look_at_first(missing);
-    if (missing.radius) missing.proposed_radius = radius_of_first(missing.unreadable);
+    if (missing.radius) missing.proposed_radius = proposed_radius(missing.unreadable);
     if (lacks_matrix_) {
       missing.lacks_matrix = leaves_normals_ = true;
       missing.unreadable.reset();
       opened_.clear();
-      missing.proposed_radius = radius_of_first(missing.unreadable);
+      missing.proposed_radius = proposed_radius(missing.unreadable);
     }
   } catch (const Error& error) {
     // A name that no command could have comes first, since it would be a part of the one that is proposed.
@@ -247,24 +257,26 @@ std::vector<std::string> MissingOptions::sentences() const {
   return sentences;
 }
 
-void FirstLook::take_proposed_radius(Notes& notes) {
+void FirstLook::take_radii_of_depth(Notes& notes) {
   const FramePlan& frames = plan();
   notes_on_number(frames);  // which fails before a camera is taken of which nothing tells
   std::optional<Error> error;
-  const auto radius = radius_of_first(error);
-  if (!radius && error) throw *error;
-  if (!radius)
-    fail(ErrorKind::input, "{}: --radius auto finds no surface in {}: give --radius NUMBER, in scene units",
-         main_input(settings_.input), frames.is_sequence() ? "frames " + frames_text(frames.evidence()) : "the frame");
-  plan_->set_radius(*radius);
-  notes.push_back({NoteCode::automatic_radius,
-                   fmt::format("--radius auto takes {}{}", *radius, frames.is_sequence() ? " for all frames" : "")});
+  const auto radii = radii_of_first(error, settings_.estimator);
+  if (radii.empty() && error) throw *error;
+  const char* const option = settings_.estimator.radius_auto ? "--radius auto" : "--radius in percent";
+  if (radii.empty())
+    fail(ErrorKind::input, "{}: {} finds no surface in {}: give --radius NUMBER, in scene units",
+         main_input(settings_.input), option,
+         frames.is_sequence() ? "frames " + frames_text(frames.evidence()) : "the frame");
+  plan_->set_radii(radii);
+  notes.push_back({NoteCode::automatic_radius, fmt::format("{} takes {}{}", option, fmt::join(radii, " "),
+                                                           frames.is_sequence() ? " for all frames" : "")});
 }
 
 Notes FirstLook::prepare() {
   check_settings(settings_);
   Notes notes;
-  if (settings_.estimator.radius_auto) take_proposed_radius(notes);
+  if (depends_on_depth(settings_.estimator)) take_radii_of_depth(notes);
   add_new(notes, notes_on_names(plan()));
   return notes;
 }
@@ -369,10 +381,13 @@ std::string plan_text(FirstLook& look, bool is_wedge) {
   if (!plan.missing().empty())
     line("missing", fmt::format("{}: {}, left out", plan.missing().size(), frames_text(plan.missing())));
   for (const auto& note : notes) line(level_of(note), line_of(note, ""));
+  for (const auto& file : plan.settings().preset_files) line("--preset", file);
   if (!is_wedge) refuse_overwriting(plan);
   if (plan.frames().empty()) return text;
   Settings first = plan.at(plan.frames().front()), last = plan.at(plan.frames().back());
   require_endings(first.output);
+  if (shows_composite(first.output))
+    DisplayTransform(first.output.ocio, first.output.display, first.output.view_transform);
   for (const auto& row : file_rows()) {
     if (!row.is_of_frame || (is_wedge && row.role != FileRole::input)) continue;
     const auto of_first = row.files(first, row.role), of_last = row.files(last, row.role);

@@ -43,10 +43,10 @@ class FirstLook {
   /// make no sense.
   MissingOptions missing_options();
 
-  /// Checks the settings, and puts the radius that --radius auto takes into those of the plan: the same for every chunk
-  /// of a sequence. Gives the notes on all frames. Fails on settings that contradict each other, as notes_on_number()
-  /// does, and with ErrorKind::input where no frame that is looked at shows a surface for the radius, or a warning
-  /// counts as an error.
+  /// Checks the settings, and puts the radii that a frame's depth tells (--radius auto, 5%) into those of the plan: the
+  /// same for every chunk of a sequence. Gives the notes on all frames. Fails on settings that contradict each other,
+  /// as notes_on_number() does, and with ErrorKind::input where no frame that is looked at shows a surface for the
+  /// radius, or a warning counts as an error.
   Notes prepare();
 
   /// Settles one frame, and all others are read in the same way. It is the first one that shows what files and options
@@ -63,9 +63,10 @@ class FirstLook {
   InputSettings input_of(int frame);
   bool has_camera(std::string& why_not);
   void look_at_first(MissingOptions& missing);
-  std::optional<double> radius_of(int frame);
-  std::optional<double> radius_of_first(std::optional<Error>& error);
-  void take_proposed_radius(Notes& notes);
+  std::vector<double> radii_of(int frame, const EstimatorSettings& estimator);
+  std::vector<double> radii_of_first(std::optional<Error>& error, const EstimatorSettings& estimator);
+  std::optional<double> proposed_radius(std::optional<Error>& error);
+  void take_radii_of_depth(Notes& notes);
 
   const Settings settings_;
   std::optional<FramePlan> plan_;

@@ -32,6 +32,11 @@ void FrameTally::add_inputs(const FrameSource& source, const Window& computed, c
   sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, depth, computed, written);
   if (inputs[RawPlane::behind])
     behind_.add(source.reading, depth, inputs[RawPlane::behind]->as<float>(), computed, written);
+  if (const auto* beauty = inputs[RawPlane::beauty]; beauty && planes_in(*beauty, inputs.view) == 4) {
+    has_alpha_ = true;
+    has_coverage_ = has_coverage_ || std::ranges::any_of(beauty->as<float>().subspan(3 * computed.pixels()),
+                                                         [](float alpha) { return alpha > 0; });
+  }
 }
 
 void FrameTally::add_others(const PreparationCost& cost) {
@@ -203,6 +208,10 @@ void FrameTally::note_repairs(const FrameSource& source) {
     notes.push_back({NoteCode::repaired_beauty,
                      fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
                                  counts_.repaired_beauty)});
+  if (has_alpha_ && !has_coverage_ && counts_.sky < report_.pixels)
+    notes.push_back({NoteCode::transparent_beauty,
+                     "the beauty's alpha is 0 in all pixels, so no pixel is covered by a surface, and the composite is "
+                     "the beauty as it was: give --beauty a picture without alpha, or with that of the surfaces"});
 }
 
 Notes FrameTally::notes_on(const FrameSource& source, const InputSettings& settings) {
@@ -273,7 +282,8 @@ class FrameRun {
   FrameSource open() {
     const Stopwatch reading;
     FrameSource source = run_.look.open(settings_, frame_);
-    if (run_.settled && settle_like(source, *run_.settled)) take_over_notes(source, *run_.settled);
+    if (run_.settled && settle_like_or_alone(source, *run_.settled, settings_.input, room_.bytes))
+      take_over_notes(source, *run_.settled);
     report_.read_ms += reading.ms();
     refuse_by_notes(source);
     return source;

@@ -59,6 +59,7 @@ class FrameTally {
   std::uint64_t rows_of_others_ = 0;
   std::size_t before_ = 0;  // passes that prepared others
   bool has_ao_ = false, is_quick_ = false;
+  bool has_alpha_ = false, has_coverage_ = false;  // of the beauty; coverage: an alpha above 0
 };
 
 // The frame.

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/formats/absent_frames.h"
 #include "core/formats/sequence.h"
 #include "core/frame/raw_plane.h"
@@ -299,10 +300,7 @@ Settings FramePlan::at(int frame) const {
   return settings;
 }
 
-void FramePlan::set_radius(double radius) {
-  settings_.estimator.radius = radius;
-  settings_.estimator.radius_auto = false;
-}
+void FramePlan::set_radii(const std::vector<double>& radii) { take_radii(settings_.estimator, radii); }
 
 std::string pattern_for(const std::string& path) {
   const FrameNumber found = frame_number_in(path);

@@ -75,8 +75,8 @@ class FramePlan {
   Settings at(int frame) const;
   /// Whether the frames of a sequence share one --preview, the contact sheet.
   bool has_contact_sheet() const { return has_contact_sheet_; }
-  /// Gives all frames this radius, in scene units, instead of an automatic one.
-  void set_radius(double radius);
+  /// Gives all frames these radii, in scene units, instead of those that a frame was to tell.
+  void set_radii(const std::vector<double>& radii);
 
  private:
   struct Span {

@@ -61,19 +61,22 @@ std::vector<NamedFile> inputs_of(const Settings& frame) {
   return files;
 }
 
-FileUses inputs_of(const FramePlan& plan) {
-  FileUses uses;
+void add_inputs(FileUses& uses, const FramePlan& plan) {
   for (const auto* frames : {&plan.all(), &plan.shot()})
     for (const int frame : *frames)
       for (const auto& file : inputs_of(plan.at(frame))) uses.add_input(file);
   for (const int frame : plan.on_disk())
     for (const auto& file : files_of(plan.at(frame), FileRole::input)) uses.add_input(file);
-  return uses;
+}
+
+void add_outputs(FileUses& uses, const FramePlan& plan, const std::string& run) {
+  for (const auto& [file, whose] : outputs_of(plan, plan.all())) uses.add_output(file, whose + run);
 }
 
 void refuse_overwriting(const FramePlan& plan) {
-  FileUses uses = inputs_of(plan);
-  for (const auto& [file, whose] : outputs_of(plan, plan.all())) uses.add_output(file, whose);
+  FileUses uses;
+  add_inputs(uses, plan);
+  add_outputs(uses, plan);
 }
 
 void require_endings(const OutputSettings& output) {

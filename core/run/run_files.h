@@ -19,9 +19,12 @@ bool shows_composite(const OutputSettings& output);
 /// Cryptomattes; one that cannot be read has no manifest.
 std::vector<NamedFile> inputs_of(const Settings& frame);
 
-/// The inputs of the frames of all chunks, of the frames around them, and of all that are on the disk: each may be
+/// Adds the inputs of the frames of all chunks, of the frames around them, and of all that are on the disk: each may be
 /// computed by a run of its own.
-FileUses inputs_of(const FramePlan& plan);
+void add_inputs(FileUses& uses, const FramePlan& plan);
+
+/// Adds all that the run writes. `run` names it in messages where there are several.
+void add_outputs(FileUses& uses, const FramePlan& plan, const std::string& run = "");
 
 /// Fails with ErrorKind::usage where the run would write a file that it reads, or one file twice.
 void refuse_overwriting(const FramePlan& plan);

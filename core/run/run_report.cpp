@@ -95,11 +95,8 @@ std::string stats_json(const RunReport& report) {
                        {"wall_s", report.wall_s},
                        {"cpu_s", cpu_seconds()},
                        {"peak_rss_mb", peak_memory_mib()}};
-  const Json json = {{"device", report.device},
-                     {"options", report.options},
-                     {"notes", json_of(report.notes)},
-                     {"frames", frames},
-                     {"totals", totals}};
+  const Json json = {{"device", report.device},        {"options", report.options}, {"presets", report.presets},
+                     {"notes", json_of(report.notes)}, {"frames", frames},          {"totals", totals}};
   return json_text(json, 1) + "\n";
 }
 

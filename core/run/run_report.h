@@ -87,13 +87,14 @@ struct FrameProgress {
 
 struct RunReport {
   bool is_sequence = false;
-  std::string input;                // of a sequence with the place for the frame number
-  Notes notes;                      // on all frames and on how they are computed, as they become known
-  std::string device, options;      // options: the digest that the outputs carry
-  bool on_cpu_by_default = false;   // nobody asked for the CPU, and there is no GPU
-  int at_once = 0;                  // the frames in flight, at the end of the run
-  std::vector<FrameReport> frames;  // in order, without the dropped ones; kept for --stats only
-  std::vector<int> missing;         // frames that were left out, since an input is missing
+  std::string input;                 // of a sequence with the place for the frame number
+  Notes notes;                       // on all frames and on how they are computed, as they become known
+  std::vector<std::string> presets;  // files that settings are from, the project's and those that presets build on too
+  std::string device, options;       // options: the digest that the outputs carry
+  bool on_cpu_by_default = false;    // nobody asked for the CPU, and there is no GPU
+  int at_once = 0;                   // the frames in flight, at the end of the run
+  std::vector<FrameReport> frames;   // in order, without the dropped ones; kept for --stats only
+  std::vector<int> missing;          // frames that were left out, since an input is missing
   int done = 0, failed = 0, kept = 0, dropped = 0;
   int warned = 0;  // of the frames that are done, those with a warning
   std::vector<int> failed_frames;

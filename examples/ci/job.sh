@@ -7,9 +7,12 @@
 set -euo pipefail
 list=$(dirname "$0")/frames.toml out=$1 alcove=${ALCOVE:-alcove}
 
+approved=$(dirname "$0")/approved
+[ -d "$approved" ] || [ "${2:-}" = --approve ] ||
+  echo "$approved: there are no approved pictures yet: look at $out, then call $0 $out --approve" >&2
 "$alcove" run "$list" -o "$out/{name}.exr" --device cpu
 if [ "${2:-}" = --approve ]; then
-  mkdir -p "$(dirname "$0")/approved"
-  cp "$out"/*.exr "$(dirname "$0")/approved"
+  mkdir -p "$approved"
+  cp "$out"/*.exr "$approved"
 fi
 "$alcove" compare "$out/{name}.exr" "$list" --max-rmse 1e-4 --report "$out/report.html" --junit "$out/junit.xml"

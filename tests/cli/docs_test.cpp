@@ -52,6 +52,8 @@ class Documents : public Sources {
     fs::create_directory_symlink(kProject + "examples", folder / "examples");
     write_hidden(z);
     write_capture(z);
+    for (float& distance : planes["Z"]) distance = 3 / distance + 0.7F;
+    write(folder / "disparity.exr");
     planes.clear();
     for (const char* layer : {"Combined.", "DiffInd.", "DiffCol."})
       for (const char* color : {"R", "G", "B"}) {

@@ -241,15 +241,15 @@ TEST_F(Options, that_are_zero_or_given_twice_or_run_into_each_other_have_digests
 
 TEST_F(Options, as_a_preset_are_what_they_are) {
   const auto preset_of = [&](const std::string& text) {
-    settings.input.camera = text;
+    settings.input.layer = text;
     return preset_text(settings);
   };
   for (const std::string text :
        {"a b", "a \"b\"", "it's", "c:\\d", "'\"\\\t\x7f'", "\n", "007", "1001", "inf", "true", "ü#"}) {
     const auto entries = parse_flat_toml(preset_of(text));
-    const auto camera = std::ranges::find(entries, "camera", &FlatEntry::key);
-    ASSERT_NE(camera, entries.end());
-    EXPECT_THAT(camera->values, ElementsAre(text));
+    const auto layer = std::ranges::find(entries, "layer", &FlatEntry::key);
+    ASSERT_NE(layer, entries.end());
+    EXPECT_THAT(layer->values, ElementsAre(text));
   }
 }
 

@@ -1,5 +1,7 @@
 // What a good run leaves behind: the AO file, the composite, the preview and the statistics.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/formats/png.h"
+#include "core/options/options.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
 
@@ -157,6 +159,50 @@ TEST_F(Composites, the_whole_beauty_that_is_asked_for_is_no_warning) {
               AllOf(HasSubstr("--set ambient takes a layer"), Not(HasSubstr("channel names"))));
 }
 
+TEST_F(Composites, a_beauty_whose_alpha_is_0_everywhere_is_a_warning) {
+  compute();
+  EXPECT_THAT(done({"--composite", composite}).err, Not(HasSubstr("[transparent-beauty]")));
+  input.change("Combined.A", [](float) { return 0.f; });
+  compute();
+  EXPECT_THAT(done({"--composite", composite}).err, AllOf(HasSubstr("alpha is 0"), HasSubstr("[transparent-beauty]")));
+}
+
+TEST_F(Composites, the_help_of_an_option_says_exr_where_it_reads_no_other_picture) {
+  compute();
+  const std::string png = folder / "x.png";
+  const std::size_t pixels = kWallWindow.pixels();
+  const std::vector<float> colors(3 * pixels, 0.5f);
+  const auto bytes = encode_png("x", kWallWindow.width, kWallWindow.height, 3, colors);
+  write_bytes(png, {bytes.begin(), bytes.end()});
+  const auto says_exr = [](const char* key) {
+    const SettingRow& row = row_of_key(key);
+    return (row.value + row.sentence).find("EXR") != std::string::npos || row.value.find(".exr") != std::string::npos;
+  };
+  for (const char* key : {"beauty", "matte", "material-ao", "normal", "position", "albedo", "objects", "motion",
+                          "behind", "depth", "deep", "environment"}) {
+    const SettingRow& row = row_of_key(key);
+    const bool names_png = row.sentence.find("PNG") != row.sentence.npos;
+    const Options words =
+        row.is_only_key() ? Options{"--set", fmt::format("{}={}", key, png)} : Options{row.long_name(), png};
+    const std::string said = run(joined(words, {"--set", "composite-layers=rgba", "--composite", composite})).err;
+    const bool is_refused_as_png = said.find("deep data") != said.npos || said.find("takes an .exr") != said.npos ||
+                                   said.find("not an EXR") != said.npos;
+    EXPECT_EQ(is_refused_as_png, says_exr(key) && !names_png) << key << ": " << said;
+  }
+}
+
+TEST_F(Composites, what_inspect_proposes_for_a_beauty_without_parts_is_taken_by_strict) {
+  input.erase(".Diff");
+  compute();
+  const Options words{"inspect", frame, "--camera", camera, "--beauty", frame, "--json"};
+  const std::string command = json::parse(run_well(words).out)["command"];
+  Options proposed = typed(command);
+  proposed.erase(proposed.begin());
+  const Finished finished = run_program(joined(proposed, {"--strict"}), {.folder = folder.path()});
+  EXPECT_EQ(finished.code, 0) << command << finished;
+  EXPECT_TRUE(fs::exists(folder / "composite.exr"));
+}
+
 TEST_F(Composites, frames_of_a_list_are_computed_by_their_own_camera_and_radius) {
   compute();
   const std::string list = folder / "list.toml", named = folder / "{name}.exr";
@@ -193,6 +239,47 @@ TEST_F(Composites, no_frame_of_a_list_writes_over_what_another_one_reads) {
   test::expect_refused(run_program(mattes), 2, {"--output of frame old-d", "--matte"});
   write_bytes(list, entry("b", list));
   test::expect_refused(run_program({"run", list}), 3, {"frame b", "is a list itself"});
+}
+
+TEST_F(Composites, a_list_with_a_bad_frame_ends_before_any_work_or_goes_on_where_it_is_told_to) {
+  compute();
+  const std::string list = folder / "list.toml", good = folder / "good.exr", bad = folder / "bad.0001.exr";
+  const auto entry = [&](const std::string& name, const std::string& file) {
+    return "[[frame]]\nname = '" + name + "'\ninput = '" + file + "'\ncamera = '" + folder / "camera.json" +
+           "'\nradius = 1\n";
+  };
+  const auto run_list = [&](const Options& more) {
+    fs::remove(good);
+    return run_program(joined({"run", list, "-o", folder / "{name}.exr"}, more));
+  };
+  for (const std::string& lost : {folder / "in.lost.exr", folder / "in.lost.####.exr"}) {
+    write_bytes(list, entry("lost", lost) + entry("good", frame));
+    test::expect_refused(run_list({}), 3, {"lost"});
+    EXPECT_FALSE(fs::exists(good));
+    EXPECT_EQ(run_list({"--keep-going"}).code, 1) << lost;
+    EXPECT_TRUE(fs::exists(good));
+    EXPECT_EQ(run_list({"--set", "missing=skip"}).code, 0) << lost;
+    EXPECT_TRUE(fs::exists(good));
+  }
+  write_bytes(list, entry("good", frame) + entry("lost", folder / "in.lost.exr"));
+  EXPECT_EQ(run_list({}).code, 3);
+  EXPECT_FALSE(fs::exists(good)) << "a missing input is known before any work";
+  write_bytes(bad, "no EXR");
+  write_bytes(list, entry("bad", bad) + entry("good", frame));
+  EXPECT_EQ(run_list({}).code, 3);
+  EXPECT_FALSE(fs::exists(good));
+  const Finished finished = run_list({"--keep-going"});
+  EXPECT_EQ(finished.code, 1);
+  EXPECT_THAT(finished.err, HasSubstr("bad.0001.exr"));
+  EXPECT_TRUE(fs::exists(good));
+  write_bytes(list, entry("shot", folder / "bad.####.exr") + entry("bad.0001", frame));
+  test::expect_refused(run_list({}), 2, {"--output of frame bad.0001", "bad.0001.exr"});
+}
+
+TEST_F(Composites, a_dry_run_refuses_a_display_configuration_that_is_not_there) {
+  compute();
+  const Options words{"--composite", composite, "--preview", folder / "p.png", "--set", "ocio=/none/show.ocio"};
+  test::expect_refused(run(joined(words, {"--dry-run"})), 3, {"/none/show.ocio", "--set ocio"});
 }
 
 TEST_F(Composites, beauty_of_its_own_file_keeps_that_files_attributes) {

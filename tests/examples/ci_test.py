@@ -48,9 +48,11 @@ def check_job(folder):
         return done.returncode, done.stdout + done.stderr
 
     code, said = job()
-    assert code == 3 and "approved/interior.exr" in said, said
+    assert code == 3 and "approved/interior.exr" in said and "job.sh" in said and "out --approve" in said, said
+    results = xml.etree.ElementTree.parse(folder / "out/junit.xml").getroot()
+    assert [case.find("error") is not None for case in results] == [True, True] and results.get("errors") == "2"
     code, said = job("--approve")
-    assert code == 0, said
+    assert code == 0 and "no approved pictures" not in said, said
     code, said = job()
     assert code == 0, said
     results = xml.etree.ElementTree.parse(folder / "out/junit.xml").getroot()

@@ -69,7 +69,7 @@ TEST_F(CameraFiles, clip_planes_and_the_conventions_of_games_are_read) {
   fields["far"] = "inf";
   fields["reversed_z"] = true;
   fields["normal_encoding"] = "spheremap (two channels)";
-  fields["projection"] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 0.25}, {0, 0, 1, 0}};
+  fields["projection"] = {{1.875, 0, 0, 0}, {0, 60 / 18., 0, 0}, {0, 0, 0, 0.25}, {0, 0, 1, 0}};
   const Camera camera = read(fields);
   EXPECT_EQ(camera.depth_kind, DepthKind::device);
   EXPECT_EQ(camera.near, 0.25);
@@ -113,8 +113,45 @@ TEST_F(CameraFiles, what_the_file_says_wins_over_the_matrix_of_a_game) {
   EXPECT_FALSE(read(fields).left_handed);
   fields["fx"] = fields["fy"] = 60, fields["cx"] = 32;
   expect_refused(fields.dump(), "\"cy\" is missing");
-  fields["cy"] = 18;
-  expect_near(read(fields), 60, 60, 32, 18);
+}
+
+TEST_F(CameraFiles, a_lens_beside_a_matrix_is_that_of_the_matrix) {
+  json fields = game_camera({{2, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 1, -0.2}, {0, 0, 1, 0}});
+  const json lens{{"fx", 64}, {"fy", 54.2}, {"cx", 32.4}, {"cy", 18}};
+  fields.update(lens);
+  expect_near(read(fields), 64, 54.2, 32.4, 18);
+  for (const auto& [field, value] : {std::pair("fx", 60.), {"fy", 60.}, {"cx", 30.}, {"cy", 20.}}) {
+    json other = fields;
+    other[field] = value;
+    expect_refused(other.dump(), fmt::format("\"{}\" is {}, but the \"projection\" shows", field, value));
+  }
+}
+
+TEST_F(CameraFiles, planes_of_a_matrix_are_those_of_the_depth_where_only_one_range_has_such_a_matrix) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto expect_planes = [&](const json& third, int side, int up, double near, double far, bool reversed) {
+    const Camera camera = read(game_camera({{2, 0, 0, 0}, {0, 3 * up, 0, 0}, third, {0, 0, side, 0}}));
+    ASSERT_TRUE(camera.near && camera.far) << third;
+    EXPECT_NEAR(*camera.near, near, 1e-9);
+    if (std::isinf(far))
+      EXPECT_EQ(*camera.far, far);
+    else
+      EXPECT_NEAR(*camera.far, far, 1e-6);
+    EXPECT_EQ(camera.reversed_z, reversed);
+  };
+  const double near = 0.5, far = 200, scale = far / (far - near);
+  expect_planes({0, 0, scale, -near * scale}, 1, 1, near, far, false);      // Direct3D
+  expect_planes({0, 0, -scale, -near * scale}, -1, -1, near, far, false);   // Vulkan
+  expect_planes({0, 0, 1, -near}, 1, 1, near, infinity, false);             // without a far plane
+  expect_planes({0, 0, 0, near}, 1, 1, near, infinity, true);               // Unreal
+  expect_planes({0, 0, 0, near}, -1, 1, near, infinity, true);              // the same along -z
+  expect_planes({0, 0, 1 - scale, near * scale}, 1, 1, near, far, true);    // reversed
+  expect_planes({0, 0, scale - 1, near * scale}, -1, -1, near, far, true);  // of Vulkan
+  const json opengl = {{2, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, -1.005, -1.0025}, {0, 0, -1, 0}};
+  EXPECT_FALSE(read(game_camera(opengl)).near) << "may be 0 to 1 or -1 to 1";
+  json said = game_camera({{2, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, 0, 0.5}, {0, 0, 1, 0}});
+  said["near"] = 2;
+  EXPECT_EQ(read(said).near, 2) << "what the file says wins";
 }
 
 TEST_F(CameraFiles, a_matrix_that_is_no_upright_lens_is_refused) {
@@ -123,6 +160,9 @@ TEST_F(CameraFiles, a_matrix_that_is_no_upright_lens_is_refused) {
   for (std::size_t i = 0; i < 4; i++)
     for (std::size_t j = 0; j < 4; j++) transposed[i][j] = good[j][i];
   expect_refused(game_camera(transposed).dump(), "transpose");
+  // With a near plane at 1 its last row is that of column vectors.
+  expect_refused(game_camera({{2, 0, 0, 0}, {0, 3, 0, 0}, {0.25, 0, 0, -1}, {0, 0, -1, 0}}).dump(), "transpose");
+  expect_refused(game_camera({{2, 0, 0, 0.5}, {0, 3, 0, 0}, {0, 0, 0, 1}, {0, 0, 1, 0}}).dump(), "transpose");
   json turned = good, mirrored = good, rows = good, flat = good;
   turned[0][1] = 1, mirrored[0][0] = -2, rows[3] = {0, 0, -1}, flat[0][0] = 1e-30;
   expect_refused(game_camera(turned).dump(), "turns or mirrors");

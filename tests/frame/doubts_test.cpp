@@ -202,9 +202,9 @@ TEST_F(Doubts, options_that_the_kind_of_depth_takes_not_are_refused_and_named_bu
   give();
   write_depth(itself, 1e12f);
   set_range(DepthKind::automatic, 0.1, 100, true);
-  settings.from_presets = {"--near", "--far", "--reversed-z"};
+  settings.from_presets = {{"--near", "far"}, {"--far", "far"}, {"--reversed-z", "far"}};
   expect(Reply::silent);
-  settings.from_presets = {"--near", "--reversed-z"};
+  settings.from_presets = {{"--near", "far"}, {"--reversed-z", "far"}};
   expect(Reply::usage, {"--far has no effect"});
   settings.from_presets.clear();
   settings.depth_range.device = DeviceRange::minus_one_to_one;
@@ -232,7 +232,7 @@ TEST_F(Doubts, planes_of_a_z_buffer_are_doubted_where_they_leave_out_half_of_its
 
 TEST_F(Doubts, the_near_plane_of_a_matrix_is_doubted_until_an_option_says_it) {
   // OpenGL's matrix of a near plane at 1, whose depth is read as 0 to 1.
-  const json matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -2}, {0, 0, -1, 0}};
+  const json matrix = game_matrix(camera_of(shot()), {0, 0, -1, -2}, -1);
   give({{"projection", matrix}, {"near", 1}, {"far", "inf"}, {"depth_kind", "device"}});
   write_depth([](double z) { return 1 - 1 / z; }, 1);
   expect(Reply::noted, {"[near-plane]", "--near", "--set device-range"});
@@ -240,6 +240,12 @@ TEST_F(Doubts, the_near_plane_of_a_matrix_is_doubted_until_an_option_says_it) {
   expect(Reply::silent);
   settings.depth_range = {};
   settings.depth_range.device = DeviceRange::zero_to_one;
+  expect(Reply::silent);
+  give({{"projection", matrix}, {"far", "inf"}, {"depth_kind", "device"}});
+  expect(Reply::usage, {"--near", "at 2 if its z is 0 to 1", "OpenGL"});
+  const json direct3d = game_matrix(camera_of(shot()), {0, 0, 1, -1}, 1);
+  give({{"projection", direct3d}, {"camera_space", "right-handed"}, {"depth_kind", "device"}});
+  settings.depth_range = {};
   expect(Reply::silent);
 }
 

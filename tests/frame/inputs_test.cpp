@@ -302,6 +302,8 @@ TEST_F(CommandLine, the_digest_changes_with_every_setting_of_the_input) {
       {"--reversed-z", digest([](InputSettings& s) { s.depth_range.reversed = true; })},
       {"device-range", digest([](InputSettings& s) { s.depth_range.device = DeviceRange::minus_one_to_one; })},
       {"log-constant", digest([](InputSettings& s) { s.depth_range.log_constant = 2; })},
+      {"disparity-scale", digest([](InputSettings& s) { s.depth_range.disparity_scale = 2; })},
+      {"disparity-shift", digest([](InputSettings& s) { s.depth_range.disparity_shift = 0; })},
       {"--normal-encoding", digest([](InputSettings& s) { s.normal_encoding = NormalEncoding::unorm; })},
       {"--flip-normal", digest([](InputSettings& s) { s.flip_normal.y = true; })},
       {"position-space", digest([](InputSettings& s) { s.position_space = PositionSpace::world; })},

@@ -243,10 +243,15 @@ TEST_F(Sources, reshade_and_renderdoc_by_name) {
   planes.erase("R");
   give_camera();
   expect_refused(Reply::refused, {"--near", "--reversed-z"});
+  const std::string camera = std::exchange(settings.camera, "");
+  settings.vertical_fov = 60;  // which is a lens and no place
+  expect_refused(Reply::refused, {"--near", "--far", "--reversed-z", "world_to_camera"});
+  settings.camera = camera;
+  settings.vertical_fov.reset();
   settings.source = "reshade";
   expect_same("reshade");
   settings.source = "renderdoc";
-  expect_refused(Reply::usage, {"--near"});
+  expect_refused(Reply::usage, {"--near, and --far"});
   settings.depth_range.near = 1;
   settings.depth_range.far = 1000;
   settings.depth_range.reversed = true;
@@ -284,7 +289,7 @@ TEST_F(Sources, a_matrix_for_another_depth_range_is_noted) {
       "Z", [](const test::Hit& hit) { return 1 - 0.5 / hit.distance; }, 1);
   json camera = camera_of(shot());
   camera.update({{"near", 0.5}, {"far", "inf"}, {"depth_kind", "device"}});
-  camera["projection"] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, -1}, {0, 0, 1, 0}};
+  camera["projection"] = game_matrix(camera, {0, 0, 1, -1}, 1);
   give(camera);
   write(settings.input);
   EXPECT_THAT(texts_of(settled().notes), Contains(HasSubstr("2 times as large")));

@@ -1,5 +1,7 @@
 // `alcove inspect`: what it says is what `run` does, and what is missing is named with the option that gives it.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <regex>
+
 #include "tests/support/command_line.h"
 #include "tests/support/dwa_frame.h"
 
@@ -237,6 +239,21 @@ TEST_F(Inspect, the_command_it_gives_has_no_option_that_does_not_apply) {
   fields.update({{"depth", "log"}, {"near", 0.1}, {"far", 100}});
   write_bytes(camera, fields.dump());
   EXPECT_THAT(seen()["command"], AllOf(HasSubstr("--depth-kind log --far 100"), Not(HasSubstr("--near"))));
+}
+
+TEST_F(Inspect, calls_a_warning_of_a_run_what_the_run_calls_it) {
+  changed([](FrameFile& file) { file.change("Depth", [](float z) { return 1 - 0.5f / z; }); }).write(frame);
+  json fields = wall_camera();
+  fields.update({{"depth", "device"}, {"near", 0.5}, {"far", "inf"}});
+  write_bytes(camera, fields.dump());
+  const Options words{frame, "--camera", camera, "--near", "1"};
+  const std::string seen = run_well(joined({"inspect"}, words)).out,
+                    said = run_well(joined({"run", "-o", folder / "ao.exr", "--radius", "1"}, words)).err;
+  const std::regex near_plane("warning: .*(--near is 1.*\\[near-plane\\])\n");
+  std::smatch in_inspect, in_run;
+  ASSERT_TRUE(std::regex_search(seen, in_inspect, near_plane)) << seen;
+  ASSERT_TRUE(std::regex_search(said, in_run, near_plane)) << said;
+  EXPECT_EQ(in_inspect[1], in_run[1]);
 }
 
 TEST_F(Inspect, names_what_is_missing_and_the_option_that_gives_it) {

@@ -456,11 +456,14 @@ TEST_F(CompareSequence, frames_that_result_lacks_are_a_warning) {
   EXPECT_THAT(said({result, reference}), HasSubstr("were not compared: 3"));
 }
 
-TEST_F(CompareSequence, missing_frames_are_listed_before_any_work) {
+TEST_F(CompareSequence, missing_frames_are_listed) {
   exr("ao.0007.exr", {{"Y", ramp}});
   exr("ao.0008.exr", {{"Y", ramp}});
-  expect_error(3, {result, reference}, {"truth.####.exr", "frames are missing: 7-8"});
-  expect_error(3, {result, reference, "--frames", "1-10"}, {"ao.%04d.exr", "5-6, 9-10"});
+  const Finished finished = compare({result, reference});
+  EXPECT_EQ(finished.code, 3);
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("truth.####.exr"), HasSubstr("frames are missing: 7-8")));
+  EXPECT_THAT(compare({result, reference, "--frames", "1-10"}).err,
+              AllOf(HasSubstr("ao.%04d.exr"), HasSubstr("5-6, 9-10")));
   expect_error(3, {folder / "none.%04d.exr", reference}, {"none.0001.exr"});
   const std::string too_long = folder / (std::string(300, 'x') + ".%04d.exr");  // for a name of the file system's
   expect_error(3, {too_long, reference, "--frames", "1"}, {too_long, "frames are missing: 1"});
@@ -602,20 +605,72 @@ TEST_F(CompareSequence, junit_has_a_case_for_each_frame_and_a_picture_for_each_t
   const std::string xml = folder / "new/junit.xml", picture = folder / "new/junit.3.error.png";
   EXPECT_EQ(compare({result, reference, "--junit", xml, "--max-rmse", "0.2"}).code, 6);
   const std::string text = read_bytes(xml);
-  EXPECT_THAT(text, AllOf(HasSubstr("tests=\"4\" failures=\"1\""), HasSubstr("name=\"2\"></testcase>"),
+  EXPECT_THAT(text, AllOf(HasSubstr("tests=\"4\" failures=\"1\" errors=\"0\""), HasSubstr("name=\"2\"></testcase>"),
                           HasSubstr("<failure message=\"rmse is 0.25, and --max-rmse is 0.2\"/>"),
-                          HasSubstr("[[ATTACHMENT|" + picture + "]]")));
+                          HasSubstr("[[ATTACHMENT|" + picture + "]]"), HasSubstr("full colour from an error of 0.25")));
   EXPECT_THAT(names_in(folder / "new"), ElementsAre("junit.3.error.png", "junit.xml"));
   EXPECT_EQ(read_bytes(picture).substr(1, 3), "PNG");
 }
 
-TEST_F(Compare, reports_of_an_earlier_comparison_do_not_stay_where_one_comes_to_no_end) {
+TEST_F(CompareSequence, reports_of_an_earlier_comparison_do_not_stay) {
   const std::string a = exr("a.exr", {{"Y", ramp}}), b = exr("b.exr", {{"Y", ramp}});
   const Options reports{"--junit", folder / "j.xml", "--report", folder / "r.html"};
   ASSERT_EQ(compare(joined({a, b}, reports)).code, 0);
   ASSERT_TRUE(fs::exists(folder / "j.xml") && fs::exists(folder / "r.html"));
   expect_error(3, joined({a, folder / "gone.exr"}, reports), {"gone.exr"});
-  EXPECT_FALSE(fs::exists(folder / "j.xml") || fs::exists(folder / "r.html"));
+  EXPECT_FALSE(fs::exists(folder / "r.html")) << "nothing was compared";
+  EXPECT_THAT(read_bytes(folder / "j.xml"), AllOf(HasSubstr("<error message="), HasSubstr("errors=\"1\"")));
+  ASSERT_EQ(compare(joined({result, reference, "--max-rmse", "0.2"}, reports)).code, 6);
+  ASSERT_TRUE(fs::exists(folder / "j.3.error.png"));
+  ASSERT_EQ(compare(joined({result, reference, "--max-rmse", "0.3"}, reports)).code, 0);
+  EXPECT_FALSE(fs::exists(folder / "j.3.error.png")) << "the frame passes now";
+}
+
+TEST_F(CompareSequence, a_frame_that_cannot_be_compared_ends_with_3_and_the_others_are_compared) {
+  const std::string xml = folder / "j.xml", page = folder / "r.html";
+  const Options words{result, reference, "--max-rmse", "0.2", "--junit", xml, "--report", page};
+  const auto expect_report = [&](const char* error) {
+    const Finished finished = compare(words);
+    EXPECT_EQ(finished.code, 3);
+    EXPECT_THAT(finished.err, AllOf(HasSubstr(error), HasSubstr("frame 3: rmse is 0.25")));
+    EXPECT_THAT(read_bytes(xml), AllOf(HasSubstr("tests=\"4\" failures=\"1\" errors=\"1\""),
+                                       HasSubstr("name=\"2\">\n    <error message="), HasSubstr(error)));
+    const json verdict = shown_in(read_bytes(page))["verdict"];
+    EXPECT_EQ(verdict["pass"], false);
+    EXPECT_EQ(verdict["failed"][0]["frame"], "2");
+    const json told = json::parse(compare(joined(words, {"--json"})).out);
+    EXPECT_EQ(told["pass"], false);
+    EXPECT_EQ(told["frames"].size(), 3);
+    EXPECT_THAT(told["failed"][0]["error"].get<std::string>(), HasSubstr(error));
+  };
+  write_bytes(folder / "truth.0002.exr", "damaged");
+  expect_report("truth.0002.exr");
+  fs::remove(folder / "truth.0002.exr");
+  expect_report("truth.####.exr: frames are missing: 2");
+}
+
+TEST_F(Compare, a_frame_of_a_list_without_its_reference_is_an_error_of_its_own) {
+  const std::string list = folder / "list.toml", page = folder / "r.html";
+  for (const char* name : {"hall.exr", "yard.exr"}) exr(name, {{"Y", ramp}});
+  write_bytes(list,
+              "[[frame]]\nname = 'hall'\ninput = 'x'\nreference = 'gone.exr'\n"
+              "[[frame]]\nname = 'yard'\ninput = 'x'\nreference = 'hall.exr'\n");
+  const Options words{folder / "{name}.exr", list, "--junit", folder / "j.xml", "--report", page};
+  EXPECT_EQ(compare(words).code, 3);
+  EXPECT_THAT(read_bytes(folder / "j.xml"),
+              AllOf(HasSubstr("name=\"yard\"></testcase>"), HasSubstr("<error message=")));
+  EXPECT_EQ(shown_in(read_bytes(page))["title"], "2 frames against list.toml") << "and no place for names";
+}
+
+TEST_F(Compare, junit_says_what_the_exit_code_says_of_holes) {
+  Plane hole = ramp;
+  hole[7] = kNan;
+  const std::string a = exr("a.exr", {{"Y", hole}}), b = exr("b.exr", {{"Y", ramp}}), xml = folder / "j.xml";
+  EXPECT_EQ(compare({a, b, "--junit", xml}).code, 0);
+  EXPECT_THAT(read_bytes(xml), HasSubstr("failures=\"0\""));
+  EXPECT_THAT(names_in(folder.path()), Not(Contains(testing::EndsWith("error.png"))));
+  EXPECT_EQ(compare({a, b, "--junit", xml, "--max-rmse", "1"}).code, 6);
+  EXPECT_THAT(read_bytes(xml), HasSubstr("failures=\"1\""));
 }
 
 TEST_F(Compare, junit_escapes_names_and_writes_over_no_input) {
@@ -623,6 +678,9 @@ TEST_F(Compare, junit_escapes_names_and_writes_over_no_input) {
   ASSERT_EQ(compare({a, b, "--junit", folder / "j.xml"}).code, 0);
   EXPECT_THAT(read_bytes(folder / "j.xml"),
               AllOf(HasSubstr("a&amp;b.exr"), HasSubstr("&lt;b&gt;.exr"), Not(HasSubstr("<b>"))));
+  const auto none = exr("no\xef\xbf\xbe-xml\xef\xbf\xbf.exr", {{"Y", ramp}});
+  ASSERT_EQ(compare({none, b, "--junit", folder / "j.xml"}).code, 0);
+  EXPECT_THAT(read_bytes(folder / "j.xml"), HasSubstr("no\xef\xbf\xbd-xml\xef\xbf\xbd.exr"));
   const std::string taken = folder / "j._b__exr.error.png";
   fs::copy_file(a, taken);
   expect_error(2, {taken, b, "--junit", folder / "j.xml"}, {"--junit"});

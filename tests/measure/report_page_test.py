@@ -91,9 +91,10 @@ def compare_report():
     numbers = {"rmse": 0.0812, "mae": 0.05, "bias": -0.011, "max": 0.61, "p95": 0.14, "p99": 0.26, "psnr": None, "ssim": 0.913, "flip": 0.071, "grain": 0.0042}
     return {"title": f"ao.exr against {HOSTILE}.exr", "kind": "compare", "device": None, "yardstick_ms": None,
             "candidates": [{"name": "ao.exr", "settings": "radius 0.35", "ms": None, "ms_min": None} | numbers],
-            "verdict": {"pass": False, "limits": [{"option": "--max-rmse", "limit": 0.05, "value": 0.0812, "frame": "1002", "holds": False},
-                                                  {"option": "--max-bias", "limit": 0.02, "value": 0.0110004, "frame": "1001", "holds": True}]},
-            "rows": [{"frame": "1001", "candidate": "ao.exr"} | numbers | {"rmse": 0.00004}, {"frame": "1002", "candidate": "ao.exr"} | numbers],
+            "verdict": {"pass": False, "failed": [{"frame": "1003", "error": HOSTILE}],
+                        "limits": [{"option": "--max-rmse", "limit": 0.05, "value": 0.0812, "frame": "1002", "holds": False},
+                                   {"option": "--max-bias", "limit": 0.02, "value": 0.0110004, "frame": "1001", "holds": True}]},
+            "rows": [{"frame": "1001", "candidate": "ao.exr"} | numbers | {"rmse": 0.00004}, {"frame": "1002", "candidate": "ao.exr", "fails": True} | numbers],
             "sequence": {"worst_frame": "1002", "worst_rmse": 0.0812, "mean_rmse": 0.0812, "flicker": 0.0345},
             "images": [{"frame": frame, "candidate": "ao.exr", "width": WIDTH, "height": HEIGHT, "truth": png(lambda x, y: grey(truth(x, y))),
                         "result": png(lambda x, y: grey(truth(x, y) + ao_error(x, y, 0.08, 1))), "full": full,
@@ -384,7 +385,10 @@ def check_verdict(browser):
     """PASS or FAIL with the limits; the worst frame's error is shown first, in a scale of its own."""
     assert browser.text("#verdict") == "FAIL"
     rows = browser.run("return [...document.querySelectorAll('#limits tbody tr')].map((row) => [row.className, ...[...row.cells].map((cell) => cell.innerText)])")
-    assert rows == [["fail", "--max-rmse", "0.05", "0.0812", "1002"], ["pass", "--max-bias", "0.02", "0.0110004", "1001"]], rows
+    assert rows == [["fail", "--max-rmse \u2717", "0.05", "0.0812", "1002"], ["pass", "--max-bias", "0.02", "0.0110004", "1001"]], rows
+    assert "frame 1003 was not compared: " + HOSTILE in browser.text("#failed")
+    marked = browser.run("return [...document.querySelectorAll('#table tbody tr.fail')].map((row) => row.cells[0].innerText)")
+    assert marked == ["1002 \u2717"], marked
     value = "return document.getElementById('viewer-frame').value"
     assert browser.run(value) == "1002" and browser.text("#chip-left") == "ao.exr: result − reference"
     assert browser.text("#legend-most") == "+0.1"

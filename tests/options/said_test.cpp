@@ -41,6 +41,8 @@ const std::vector<Case>& cases_without_effect() {
       {"--reversed-z", {"--depth-kind ray"}, "--depth-kind log"},
       {"--set device-range=-1..1", {"--depth-kind log"}, "--depth-kind device"},
       {"--set log-constant=2", {"--depth-kind device"}, "--depth-kind auto"},
+      {"--set disparity-scale=2", {"--depth-kind inverse"}, "--depth-kind disparity"},
+      {"--set disparity-shift=2", {"--depth-kind ray"}, "--depth-kind disparity"},
       {"--set position-space=view", {"--depth-kind planar"}, "--position p.exr"},
       {"--focal 35", {""}, "--aperture 36"},
       {"--aperture 36", {""}, "--focal 35"},
@@ -150,7 +152,10 @@ const std::vector<std::pair<Value, Value>>& pairs() {
 
 class Said : public testing::Test {
  protected:
-  Said() { ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1); }
+  Said() {
+    ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1);
+    fs::create_directories(folder / "elsewhere");
+  }
 
   static RunOptions read(Words words, Reader reader = Reader::run) {
     words.insert(words.begin(), {"in.exr", "-o", "ao.exr"});
@@ -185,6 +190,34 @@ class Said : public testing::Test {
   static Words value_of(const std::string& key, RunOptions options) { return row_of_key(key).words(options.settings); }
 
   static Words usual_value_of(const std::string& key) { return value_of(key, {}); }
+
+  static Settings whole(const Words& words) {
+    const RunOptions options = read(words);
+    return with_idle_values(options.settings, options.values);
+  }
+  static std::string printed(const Words& words) { return preset_text(whole(words)); }
+  static std::string shared(const Words& words) { return shareable_text(whole(words)); }
+
+  /// The words of all settings.
+  static std::map<std::string, Words> values_in(const Settings& settings) {
+    std::map<std::string, Words> values;
+    for (const auto& row : option_table()) {
+      if (!row.is_key()) continue;
+      for (const auto& word : row.words(settings))
+        values[row.key()].push_back(row.names_file(word) ? fs::absolute(word).string() : word);
+    }
+    return values;
+  }
+
+  /// Expects that the presets of the words, printed as one, are as they are, alone and beside more words.
+  void expect_printed_alike(const Words& presets, const Words& more) const {
+    const std::string text = printed(presets);
+    write_bytes(folder / "elsewhere/printed.toml", text);
+    const Words again{"--preset", folder / "elsewhere/printed.toml"};
+    EXPECT_EQ(printed(again), text) << testing::PrintToString(presets);
+    EXPECT_EQ(values_in(read(joined(again, more)).settings), values_in(read(joined(presets, more)).settings))
+        << testing::PrintToString(joined(presets, more));
+  }
 
   static Words set(const Value& one) { return {"--set", one.key + "=" + one.value}; }
   static std::string refusal(const std::string& words, Reader reader = Reader::run) {
@@ -321,11 +354,51 @@ TEST_F(Said, a_density_is_taken_where_the_other_one_would_share_estimates) {
   }
 }
 
+// What is printed of them.
+
+TEST_F(Said, settings_as_they_are_printed_are_a_preset_that_gives_them) {
+  std::vector<Words> several;
+  const std::vector<std::string> further{"", "draft", "reference", "source/forfun-hbao", "source/source15"};
+  for (const auto& name : preset_names())
+    for (const auto& other : further)
+      several.push_back(other.empty() ? Words{"--preset", name} : Words{"--preset", name, "--preset", other});
+  for (const auto& [one, other] : pairs())
+    several.push_back(joined(preset("one.toml", {one}), preset("other-" + other.key + ".toml", {other})));
+  several.push_back(joined(preset("late.toml", {{"denoise-kernel", "1,0.5"}}),
+                           preset("none.toml", {{"denoise", "none"}, {"denoise-radius", "3"}})));
+  EXPECT_GT(several.size(), 150);
+  for (const auto& words : several) expect_printed_alike(words, {});
+}
+
+TEST_F(Said, settings_without_effect_are_printed_and_have_their_effect_where_they_may) {
+  for (const auto& one : cases_without_effect()) {
+    const std::string key = one.option().substr(one.is_key() ? 6 : 2);
+    const bool is_flag = one.setting == one.option();
+    const std::string value = is_flag ? "true" : one.setting.substr(one.option().size() + 1);
+    expect_printed_alike(preset("one.toml", {{key, value}}), typed(one.taken));
+  }
+  EXPECT_THAT(printed(preset("gain.toml", {{"gain", "1.2"}})), HasSubstr("gain=1.2\n"));
+  EXPECT_THAT(printed({}), Not(HasSubstr("gain="))) << "a default without effect is none of the settings";
+}
+
+TEST_F(Said, settings_that_are_shared_are_those_that_are_no_defaults) {
+  EXPECT_EQ(shared({}), "");
+  EXPECT_EQ(shared({"--preset", "standard"}), "");
+  EXPECT_EQ(shared(joined({"--preset", "production"}, preset("gain.toml", {{"gain", "1.2"}}))),
+            "slices=5\ndenoise-radius=5\ngain=1.2\n");
+  for (const auto& name : preset_names()) {
+    const std::string text = shared({"--preset", name});
+    write_bytes(folder / "shared.toml", text);
+    EXPECT_EQ(shared({"--preset", folder / "shared.toml"}), text) << name;
+  }
+}
+
 // Whether it applies shows only with the frame: then what a preset says is left out, and what is typed is refused.
 TEST_F(Said, options_that_only_presets_say_are_known_as_such) {
   const Words far = preset("far.toml", {{"far", "100"}, {"near", "1"}});
-  EXPECT_THAT(read(far).settings.input.from_presets, UnorderedElementsAre("--near", "--far"));
-  EXPECT_THAT(read(joined(far, {"--far", "9"})).settings.input.from_presets, ElementsAre("--near"));
+  EXPECT_THAT(read(far).settings.input.from_presets,
+              ElementsAre(testing::Key("--far"), testing::Pair("--near", testing::EndsWith("far.toml"))));
+  EXPECT_THAT(read(joined(far, {"--far", "9"})).settings.input.from_presets, ElementsAre(testing::Key("--near")));
 }
 
 TEST_F(Said, settings_are_set_by_key_and_value) {

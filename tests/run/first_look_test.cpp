@@ -307,6 +307,39 @@ TEST_F(Radius, auto_is_one_number_for_a_whole_sequence) {
   EXPECT_THAT(without_beauty.err, HasSubstr("--radius auto takes " + radius));
 }
 
+TEST_F(Radius, in_percent_is_of_the_median_depth_and_one_for_all_frames_and_parts) {
+  for (const int number : {1, 2, 3}) {
+    FrameFile file = wall_frame();
+    file.change("Depth", [&](float z) { return z * float(number); });
+    file.write(input(number));
+  }
+  const auto done_with = [&](const std::string& more) {
+    return done(typed("--normal-space world --depth-kind planar --radius " + more));
+  };
+  const auto radius_of = [&](int number) { return text_in(read_header(output(number)), "alcove/radius"); };
+  done_with("100%");
+  const double median = std::stod(radius_of(1));
+  remove_outputs();
+  done_with("5%,10%");
+  const std::vector<std::string> radii = typed(radius_of(1));
+  ASSERT_EQ(radii.size(), 2);
+  EXPECT_NEAR(std::stod(radii[0]), 0.05 * median, 1e-3 * median);
+  EXPECT_NEAR(std::stod(radii[1]), 0.1 * median, 1e-3 * median);
+  for (const int number : {2, 3}) EXPECT_EQ(radius_of(number), radius_of(1));
+  const auto whole = outputs();
+  for (const std::string& more : {std::string("5%,10%"), radii[0] + "," + radii[1]})
+    EXPECT_THAT(done_with(more + " --resume").err, HasSubstr("3 kept"));
+  remove_outputs();
+  for (const char* chunk : {"2/2", "1/2"}) done_with(std::string("5% --radius 10% --chunk ") + chunk);
+  EXPECT_TRUE(outputs() == whole);
+  const std::string of_whole = radius_of(2);
+  done_with("5%,10% --roi 3,4,8,6");
+  EXPECT_EQ(radius_of(2), of_whole) << "of a region";
+
+  for (const char* wrong : {"5%,0.1", "%", "-5%", "0%", "auto,5%"})
+    EXPECT_EQ(run({"--radius", wrong}).code, 2) << wrong;
+}
+
 TEST_F(Radius, auto_is_the_only_one_and_needs_a_surface) {
   write_frames(1, 1);
   EXPECT_EQ(run({"--radius", "auto", "--radius", "1"}).code, 2);

@@ -29,6 +29,16 @@ inline json camera_of(const Shot& shot) {
   return camera;
 }
 
+/// The matrix that a game has of the lens of a camera file, with its third row; it looks along z times `side`.
+inline json game_matrix(const json& camera, const json& third_row, int side) {
+  const double width = camera["resolution"][0], height = camera["resolution"][1], fx = camera["fx"], fy = camera["fy"],
+               cx = camera["cx"], cy = camera["cy"];
+  return {{2 * fx / width, 0, side * (2 * cx / width - 1), 0},
+          {0, 2 * fy / height, side * (1 - 2 * cy / height), 0},
+          third_row,
+          {0, 0, side, 0}};
+}
+
 /// Z, and where normals are given N.X, N.Y, N.Z, which are 0 in the sky.
 inline FrameFile file_of(const Rendering& rendering, float sky, const std::function<double(const Hit&)>& depth,
                          const std::function<Vec3(const Hit&)>& normal = nullptr) {

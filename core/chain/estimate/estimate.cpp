@@ -98,6 +98,14 @@ double samples_of_a_radius(const EstimatorSettings& settings) {
 
 }  // namespace
 
+bool depends_on_depth(const EstimatorSettings& settings) { return settings.radius_auto || settings.radius_in_medians; }
+
+void take_radii(EstimatorSettings& settings, const std::vector<double>& radii) {
+  settings.radius = radii.front();
+  settings.further_radii.assign(radii.begin() + 1, radii.end());
+  settings.radius_auto = settings.radius_in_medians = false;
+}
+
 std::vector<double> radii_of(const EstimatorSettings& settings) {
   std::vector<double> radii = settings.further_radii;
   radii.push_back(settings.radius.value());

@@ -11,6 +11,10 @@
 
 namespace alcove {
 
+/// Whether the depth of a frame has to tell the radii.
+bool depends_on_depth(const EstimatorSettings& settings);
+/// Puts radii in scene units into the settings.
+void take_radii(EstimatorSettings& settings, const std::vector<double>& radii);
 /// All radii of the settings, from the smallest on; settings.radius must be set.
 std::vector<double> radii_of(const EstimatorSettings& settings);
 

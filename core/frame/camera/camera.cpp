@@ -327,6 +327,27 @@ std::optional<double> matrix_near(const CameraFile& file) {
   return near > 0 && std::isfinite(near) ? std::optional(near) : std::nullopt;
 }
 
+/// The planes of a z-buffer.
+struct ClipPlanes {
+  double near, far;
+  bool reversed;
+};
+
+/// Gives the planes of a matrix that can be of one range of depth only. At the distance d, depth is a + B / d. It falls
+/// with the distance where it is reversed, from 1 to 0. Else it is 0 to 1 of a camera that looks along +z or a picture
+/// whose y points down, as Direct3D and Vulkan have them; OpenGL's is -1 to 1, which its matrix shares with others.
+std::optional<ClipPlanes> planes_of_matrix(const CameraFile& file) {
+  const auto matrix = file.rows("projection");
+  if (!matrix || (*matrix)[3][3] == 1) return std::nullopt;
+  const Rows4& m = *matrix;
+  constexpr double kRounding = 1e-6, kMostReversed = 0.5;
+  const double a = m[2][2] * m[3][2], b = m[2][3], infinity = std::numeric_limits<double>::infinity();
+  if (b > 0 && std::abs(a) < kMostReversed) return ClipPlanes{b / (1 - a), a < -kRounding ? -b / a : infinity, true};
+  const bool is_from_zero = m[3][2] > 0 || m[1][1] < 0;
+  if (!is_from_zero || b >= 0 || a < 1 - kRounding) return std::nullopt;
+  return ClipPlanes{-b / a, a > 1 + kRounding ? b / (1 - a) : infinity, false};
+}
+
 /// Fails unless a projection matrix is for column vectors and neither turns nor mirrors the picture.
 void require_upright(const CameraFile& file, const Rows4& m) {
   constexpr double kRounding = 1e-6;  // a distance stands in this place of a matrix for row vectors
@@ -335,6 +356,11 @@ void require_upright(const CameraFile& file, const Rows4& m) {
     file.refuse("projection",
                 "has none of the last rows 0 0 -1 0, 0 0 1 0 and 0 0 0 1 of those for column vectors: transpose one "
                 "for row vectors");
+  const bool is_affine = m[3][3] == 1;
+  if (m[2][0] != 0 || m[2][1] != 0 || m[0][is_affine ? 2 : 3] != 0 || m[1][is_affine ? 2 : 3] != 0)
+    file.refuse("projection",
+                "has numbers where a matrix for column vectors has zeros: transpose one for row vectors; one with an "
+                "oblique near plane tells no depth");
   if (m[0][1] != 0 || m[1][0] != 0 || m[0][0] <= 0 || m[1][1] == 0)
     file.refuse("projection", "turns or mirrors the picture: give fx, fy, cx and cy instead");
 }
@@ -356,6 +382,22 @@ void read_lens_of_matrix(const CameraFile& file, const Rows4& m, Camera& camera)
   if (!is_affine && !file.find("camera_space")) camera.left_handed = side > 0;
 }
 
+/// Fails where a matrix shows another lens than fx, fy, cx and cy.
+void require_same_lens(const CameraFile& file, const Rows4& m, const Camera& camera) {
+  Camera by_matrix = camera;
+  read_lens_of_matrix(file, m, by_matrix);
+  constexpr double kSame = 0.01, kSamePixels = 1;  // matrices are rounded, and jitter by a part of a pixel
+  const auto require = [&](const char* field, double said, double shown, double tolerance) {
+    if (std::abs(said - shown) > tolerance)
+      file.refuse(field,
+                  fmt::format("is {:.6g}, but the \"projection\" shows {:.6g}: leave one of them out", said, shown));
+  };
+  require("fx", camera.fx, by_matrix.fx, kSame * camera.fx);
+  require("fy", camera.fy, by_matrix.fy, kSame * camera.fy);
+  require("cx", camera.cx, by_matrix.cx, kSamePixels);
+  require("cy", camera.cy, by_matrix.cy, kSamePixels);
+}
+
 void read_lens(const CameraFile& file, Camera& camera) {
   const bool has_none = !file.find("fx") && !file.find("fy") && !file.find("cx") && !file.find("cy");
   const auto matrix = file.rows("projection");
@@ -364,6 +406,7 @@ void read_lens(const CameraFile& file, Camera& camera) {
   camera.fy = file.scale("fy");
   camera.cx = file.center("cx");
   camera.cy = file.center("cy");
+  if (matrix) require_same_lens(file, *matrix, camera);
 }
 
 bool truth(const CameraFile& file, const char* field) {
@@ -384,7 +427,8 @@ DepthKind depth_kind(const CameraFile& file) {
   const char* field = file.find("depth_kind") ? "depth_kind" : "depth";
   const std::string text = file.text(field);
   const DepthKind kind = meaning_of<DepthKind>(text);
-  if (text.empty() || (kind != DepthKind::automatic && kind != DepthKind::position)) return kind;
+  const bool needs_options = kind == DepthKind::position || kind == DepthKind::disparity;
+  if (text.empty() || (kind != DepthKind::automatic && !needs_options)) return kind;
   file.refuse(field, fmt::format("must begin with planar, ray, inverse, device, normalized or log, not \"{}\"", text));
 }
 
@@ -447,6 +491,12 @@ Camera camera_in(CameraFile file, int frame, const std::string& view) {
   camera.far = clip_plane(file, "far");
   camera.matrix_near = matrix_near(file);
   camera.reversed_z = truth(file, "reversed_z");
+  const auto planes = planes_of_matrix(file);
+  if (planes && !camera.near && !camera.far && !file.find("reversed_z")) {
+    camera.near = planes->near;
+    camera.far = planes->far;
+    camera.reversed_z = planes->reversed;
+  }
   camera.depth_kind = depth_kind(file);
   camera.normal_space = normal_space(file);
   camera.normal_encoding = normal_encoding(file);

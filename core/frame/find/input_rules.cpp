@@ -20,10 +20,10 @@ std::optional<T> known_meaning(const std::string& word) {
   return std::nullopt;
 }
 
-/// The kind of a depth channel. Positions have channels of their own.
+/// The kind of a depth channel. Positions have channels of their own, and disparity is said by an option alone.
 std::optional<DepthKind> depth_kind_of(const std::string& word) {
   const auto kind = known_meaning<DepthKind>(word);
-  return kind == DepthKind::position ? std::nullopt : kind;
+  return kind == DepthKind::position || kind == DepthKind::disparity ? std::nullopt : kind;
 }
 
 std::vector<AovCandidate> candidates_of(const std::vector<std::string>& words) {

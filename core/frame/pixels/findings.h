@@ -98,6 +98,7 @@ struct Findings {
   std::vector<std::string> other_depths{};  // channels of the same file that are depth by their names
 
   Grain grain{};
+  double above_shift = 0;  // of disparity: how far that median is above the shift
   Curve curve{};
   bool begins_behind = false;  // values count from a plane behind most surfaces, and are below 0 before it
   double said_offset = 0;      // in the file's units: by the options depth is in proportion to the value and this

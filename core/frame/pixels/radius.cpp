@@ -45,6 +45,19 @@ std::optional<double> proposed_radius(const Camera& camera, std::optional<double
   return number_of(fmt::format("{:.1g}", radius));
 }
 
+std::vector<double> radii_by_depth(const EstimatorSettings& settings, const Camera& camera,
+                                   std::optional<double> median_depth) {
+  if (settings.radius_auto) {
+    const auto proposed = proposed_radius(camera, median_depth);
+    return proposed ? std::vector{*proposed} : std::vector<double>();
+  }
+  if (!median_depth) return {};
+  std::vector<double> radii{*settings.radius};
+  radii.insert(radii.end(), settings.further_radii.begin(), settings.further_radii.end());
+  for (double& radius : radii) radius = number_of(fmt::format("{:.4g}", radius * *median_depth)).value();
+  return radii;
+}
+
 void DepthSample::add(const View& view, const DepthMap& map, const DepthPrecision& precision,
                       std::span<const float> raw) {
   const Window window{0, 0, view.size.x, view.size.y};

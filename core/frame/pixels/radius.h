@@ -23,6 +23,11 @@ std::optional<double> median_depth(const Reading& reading, std::span<const float
 /// the sequence is settled.
 std::optional<double> proposed_radius(const Camera& camera, std::optional<double> median_depth);
 
+/// Gives radii that a frame has to tell, in scene units: the proposed one, or parts of the median depth, to four
+/// figures. Empty where the frame shows no surface.
+std::vector<double> radii_by_depth(const EstimatorSettings& settings, const Camera& camera,
+                                   std::optional<double> median_depth);
+
 /// Planar depths of a frame's surfaces, in scene units: enough of them for a median.
 class DepthSample {
  public:

@@ -22,9 +22,10 @@ class DepthDoubts : private DepthSettlement {
   void run() {
     doubt_range();
     const bool linear = reading_.depth_kind == DepthKind::normalized || reading_.depth_kind == DepthKind::log;
-    const DepthKind said = reading_.depth_kind != DepthKind::device ? reading_.depth_kind
-                           : reading_.camera.orthographic           ? DepthKind::planar
-                                                                    : DepthKind::inverse;
+    const DepthKind said = reading_.depth_kind == DepthKind::disparity ? DepthKind::inverse  // with a shift, alike
+                           : reading_.depth_kind != DepthKind::device  ? reading_.depth_kind
+                           : reading_.camera.orthographic              ? DepthKind::planar
+                                                                       : DepthKind::inverse;
     const auto& scores = seen_.depth_scores;
     doubt_fractions(scores);
     if (scores.empty() || scores[0].straight < (linear ? kSurelyStraight : kLeastStraight)) return;

@@ -159,6 +159,14 @@ class DepthKindSettlement : private DepthSettlement {
          path_, values_.all.least, values_.surfaces.most, 100 * double(values_.below_0.count) / double(all));
   }
 
+  /// What the normals need beside the depth's kind, so that it is no error of its own.
+  std::string text_of_normals() const {
+    const bool may_be_of_world = !raw_.normal.empty() && settings_.normal_space != NormalSpace::view;
+    if (!may_be_of_world || reading_.camera.view_from_world) return "";
+    return "; if its normals are in world space, they need a --camera file with world_to_camera, or --normal none "
+           "instead";
+  }
+
   /// Inverse depth and that of a z-buffer are both affine in 1/z. A near plane that somebody knows tells them apart.
   /// Sky is at the far plane.
   void settle_device(const std::string& why) {
@@ -167,8 +175,8 @@ class DepthKindSettlement : private DepthSettlement {
       fail(ErrorKind::input,
            "{}: the depth may be device or inverse (all in 0 to 1, {}): say --depth-kind device with --near and --far "
            "(inf where there is none) and, "
-           "where near is 1, --reversed-z; or --depth-kind inverse",
-           path_, why);
+           "where near is 1, --reversed-z; or --depth-kind inverse{}",
+           path_, why, text_of_normals());
     reading_.depth_range.reversed = reversed;
     reading_.depth_kind = DepthKind::device;
     guess("depth kind", reversed ? "device with --reversed-z" : "device", "all in 0 to 1, --near is given, and " + why,

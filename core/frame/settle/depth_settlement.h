@@ -107,6 +107,10 @@ void compare_near_planes(const DepthSettlement& depth);
 /// Settles the sign, depth at the ends of a range and beyond them, and one distance that may be the sky.
 void settle_depth_ends(const DepthSettlement& depth);
 
+/// Settles scale and shift of disparity. Without a scale the median depth becomes 1. Fails with ErrorKind::input where
+/// nothing tells the shift.
+void settle_disparity(const DepthSettlement& depth);
+
 /// Settles the space of positions.
 void settle_position_space(const PlanesToSettle& planes);
 

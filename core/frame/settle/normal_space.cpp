@@ -30,6 +30,7 @@ class SpaceSettlement : private NormalSettlement {
       if (source_.open.normal_space) reading_.normal_space = has_usual ? usual : NormalSpace::view;
       return;
     }
+    if (seen_.space_by_shift) return take_by_shift(*seen_.space_by_shift);
     auto all_scores = score_normals(planes());
     if (lacks_sign(source_.channels[RawPlane::normal].size(), reading_.normal_encoding)) refuse_world(all_scores);
     if (settle_cut_normals(*this, all_scores, statistics)) return;
@@ -77,6 +78,14 @@ class SpaceSettlement : private NormalSettlement {
         "channels (--normal-channels), or say --normal-space view, or --normal-encoding octahedral or spheremap, where "
         "they are such; {}",
         path_, channels(), kWithout);
+  }
+
+  /// Takes the space by which the normals have given the shift of the disparity. Its steps are too coarse for more.
+  void take_by_shift(NormalSpace space) {
+    if (!source_.open.normal_space) return;
+    reading_.normal_space = space;
+    guess("normal space", word_of(space), "so they give the disparity's shift", "--normal-space",
+          space != source_.program.normal_space);
   }
 
   /// Takes a reading, and says so where it is not the usual one, or where no matrix would turn normals of the world.

@@ -50,7 +50,7 @@ void take_down(Reading& reading, const Grain& grain, std::span<const float> dept
 Grain measure_rounding(Reading& reading, const Window& window, std::span<const float> depth, const std::string& name) {
   Grain grain;
   if (depth.size() == window.pixels()) {
-    refuse_8_bits(depth, name);
+    if (reading.depth_kind != DepthKind::disparity) refuse_8_bits(depth, name);
     grain = grain_of(depth, reading.sky, reading.camera.orthographic);
   }
   take_down(reading, grain, depth);
@@ -58,7 +58,8 @@ Grain measure_rounding(Reading& reading, const Window& window, std::span<const f
 }
 
 void measure_levels(Reading& reading, std::span<const float> depth) {
-  if (is_between_planes(reading.depth_kind)) reading.depth_step = std::max(reading.depth_step, step_of(depth));
+  if (is_between_planes(reading.depth_kind) || reading.depth_kind == DepthKind::disparity)
+    reading.depth_step = std::max(reading.depth_step, step_of(depth));
 }
 
 namespace {
@@ -95,6 +96,8 @@ Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& s
                  .begins_behind = begins_behind(reading, raw.depth),
                  .said_offset = said_offset(reading),
                  .overflow = overflow_of(reading, raw.depth)};
+  if (reading.depth_kind == DepthKind::disparity)
+    found.above_shift = seen.grain.median - reading.depth_range.disparity_shift.value_or(0);
   found.jitter = jitter_of(raw.depth, depth_map_of(reading), view_of(reading, raw.window), seen.grain);
   if (raw.window == frame.data && raw.depth.size() == raw.window.pixels())
     found.borders = borders_of(raw.depth, raw.window, depth_map_of(reading));

@@ -147,4 +147,28 @@ bool settle_like(FrameSource& source, const FrameSource& settled) {
   return true;
 }
 
+bool settle_like_or_alone(FrameSource& source, const FrameSource& settled, const InputSettings& settings,
+                          std::uint64_t most_bytes) {
+  const bool is_open = settled.reading.depth_kind == DepthKind::disparity && !disparity_of(settings.depth_range).shift;
+  if (!is_open) return settle_like(source, settled);
+  const Notes notes = source.notes, suspicious = source.suspicious;
+  try {
+    settle_by_rows(source, settings, most_bytes);
+    const DepthRange &own = source.reading.depth_range, &other = settled.reading.depth_range;
+    const double apart = std::abs(*own.disparity_shift - *other.disparity_shift);
+    if (source.evidence->tells && apart > own.disparity_error + other.disparity_error) {
+      source.notes.push_back(
+          {NoteCode::unusual_reading,
+           fmt::format("disparity's shift is {:.5g} here, and that of the sequence {:.5g}: the frame has depths of its "
+                       "own, and AO may change from frame to frame (--set disparity-shift says one for all)",
+                       *own.disparity_shift, *other.disparity_shift)});
+      return false;
+    }
+  } catch (const Error&) {  // it does not tell
+  }
+  source.notes = notes;
+  source.suspicious = suspicious;
+  return settle_like(source, settled);
+}
+
 }  // namespace alcove

@@ -41,6 +41,11 @@ void settle_by_rows(FrameSource& source, const InputSettings& settings,
 /// settled by itself.
 bool settle_like(FrameSource& source, const FrameSource& settled);
 
+/// Does the same for a frame of disparity whose shift nobody says, unless its own normals prove another one: then it is
+/// settled by itself, with a note. It reads as settle_by_rows() does. Returns whether it is settled like the other.
+bool settle_like_or_alone(FrameSource& source, const FrameSource& settled, const InputSettings& settings,
+                          std::uint64_t most_bytes);
+
 /// The word of --normal-encoding for normals of a frame that is settled.
 const char* encoding_name(NormalEncoding encoding, bool unorm);
 

@@ -31,8 +31,7 @@ Side side_of(std::vector<float> values) {
 /// Refuses options of the user for a range that depth of this kind lacks. Presets serve frames of every kind.
 void refuse_unused_range(const PlanesToSettle& planes) {
   auto unused = unused_range_options(planes.settings.depth_range, planes.reading.depth_kind);
-  const auto& left_out = planes.settings.from_presets;
-  std::erase_if(unused, [&](const auto& option) { return std::ranges::find(left_out, option) != left_out.end(); });
+  std::erase_if(unused, [&](const auto& option) { return planes.settings.from_presets.contains(option); });
   if (!unused.empty()) refuse_range_options(planes.path, unused, planes.reading.depth_kind);
 }
 
@@ -98,7 +97,9 @@ void settle_depth(const PlanesToSettle& planes, const DepthFacts& facts) {
     DepthShape shape = shape_of(depth, view_of(planes.reading, planes.raw.window), sky, planes.seen.grain);
     planes.seen.depth_scores = std::move(shape.scores);
     planes.seen.curve = shape.curve;
-    settle_plane({planes, facts, values}, facts.is_kind_open);
+    const DepthSettlement depth(planes, facts, values);
+    if (planes.reading.depth_kind == DepthKind::disparity) settle_disparity(depth);
+    settle_plane(depth, facts.is_kind_open);
   }
   refuse_unused_range(planes);
 }

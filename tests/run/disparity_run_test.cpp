@@ -1,0 +1,85 @@
+// The AO of disparity is that of the depth behind it, in radii that need no scene units.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/support/sequence_folder.h"
+#include "tests/support/source_frame.h"
+
+namespace alcove::disparity_run_test {
+namespace {
+
+using namespace test;
+
+/// The room with a ball.
+class DisparityRun : public SequenceFolder {
+ protected:
+  DisparityRun() { write_bytes(camera, camera_of(shot()).dump()); }
+
+  static Vec3 normal(const Hit& hit) { return hit.normal; }
+  /// Frames with 3 / z + 0.7.
+  void write_disparities(int first, int last) const {
+    write_frames(first, last,
+                 file_of(
+                     rendering(), 0.7f, [](const Hit& hit) { return 3 / hit.distance + 0.7; }, normal));
+  }
+  std::vector<float> ao(int frame) const { return read_exr_image(output(frame)).pixels; }
+
+  static constexpr const char* kDisparity = "--depth-kind disparity --normal-space world ";
+  static Options said(const std::string& more) { return typed(kDisparity + more); }
+};
+
+TEST_F(DisparityRun, has_the_ao_of_the_depth_that_it_stands_for) {
+  write_frames(1, 1, file_of(rendering(), kSky, planar, normal));
+  done(typed("--depth-kind planar --normal-space world --radius 20%"));
+  const auto by_depth = ao(1);
+  write_disparities(1, 1);
+  done(said("--radius 20%"));
+  const auto by_disparity = ao(1);
+  ASSERT_EQ(by_disparity.size(), by_depth.size());
+  EXPECT_LT(std::ranges::min(by_depth), 0.8) << "there is AO";
+  for (std::size_t i = 0; i < by_depth.size(); i++) EXPECT_NEAR(by_disparity[i], by_depth[i], 0.01) << i;
+}
+
+TEST_F(DisparityRun, is_the_same_in_chunks_and_regions) {
+  write_disparities(1, 3);
+  done(said("--radius 20%"));
+  const auto whole = ao(2);
+  expect_same_outputs(outputs(), {said("--radius 20% --chunk 2/2"), said("--radius 20% --chunk 1/2")});
+  done(said("--radius 20% --roi 60,40,50,30"));
+  EXPECT_EQ(ao(2), cropped(whole, rendering().shot.data, {60, 40, 50, 30}));
+}
+
+TEST_F(DisparityRun, takes_scene_units_only_with_a_scale) {
+  write_disparities(1, 1);
+  for (const char* length :
+       {"--radius 0.5", "--radius 5% --thickness 1", "--radius 5% --set fade-start=1 --set fade-end=2",
+        "--radius 5% --sky 100", "--radius 5% --depth-scale 2"}) {
+    const Finished finished = run(said(length));
+    EXPECT_EQ(finished.code, 2) << length;
+    EXPECT_THAT(finished.err, AllOf(HasSubstr("no scene units"), HasSubstr("--set disparity-scale"))) << length;
+  }
+  EXPECT_THAT(run(said("--radius 0.5")).err, HasSubstr("in percent"));
+  for (const char* scale :
+       {"--set disparity-scale=3", "--near 10", "--radius 5% --thickness infinite", "--radius auto"})
+    done(said(scale));
+  EXPECT_EQ(run(said("--near 1 --far 9 --set disparity-shift=0")).code, 2);
+  const Finished around = run(said("--radius 5% --around 1"));
+  EXPECT_EQ(around.code, 2);
+  EXPECT_THAT(around.err, HasSubstr("do not fit together"));
+}
+
+TEST_F(DisparityRun, without_normals_ends_as_an_input_that_lacks_something) {
+  write_disparities(1, 1);
+  const Finished finished = run(typed("--depth-kind disparity --normal none --radius 5%"));
+  EXPECT_EQ(finished.code, 3);
+  EXPECT_THAT(finished.err, AllOf(HasSubstr(input(1)), HasSubstr("--set disparity-shift"), HasSubstr("--normal")));
+}
+
+TEST_F(DisparityRun, is_told_by_inspect_with_its_error_and_a_radius_in_percent) {
+  write_disparities(1, 1);
+  const Finished finished = run_program(joined({"inspect", input(1), "--camera", camera}, said("")));
+  EXPECT_EQ(finished.code, 0) << finished;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("+-"), HasSubstr("AO is off by up to"),
+                                  HasSubstr("--set disparity-shift=0."), HasSubstr("--radius 10%")));
+}
+
+}  // namespace
+}  // namespace alcove::disparity_run_test
