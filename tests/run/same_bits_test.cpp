@@ -112,7 +112,7 @@ TEST_F(SameBits, of_a_region_by_error_take_the_tiles_that_decide) {
                    " --stats " + stats + " --roi 480,270,20,16 --radius 0.02 --set complete=none " + search));
     return std::sqrt(json::parse(read_bytes(stats))["frames"][0]["pixels"].get<double>());
   };
-  EXPECT_GE(width_of("--tolerance 0.004"), width_of("--search exact --denoise none") + 70) << "39 px on either side";
+  EXPECT_GE(width_of("--tolerance 0.004"), width_of("--search exact --denoise none") + 55) << "39 px on either side";
 }
 
 TEST_F(SameBits, of_a_region_come_from_one_reading) {
