@@ -14,7 +14,7 @@ namespace {
 
 /// The most dispatches of one submission. A frame of an exact search with 64 slices and eight radii has 4096. Progress
 /// is reported per submission, so long frames need several; a submission costs little.
-constexpr std::uint32_t kMostDispatches = 16;
+constexpr std::uint32_t kMostDispatches = 24;
 
 /// The most workgroups of a slice of a pass that has not been measured. They are half a million pixels. With 8192
 /// samples per pixel (64 slices with 64 steps to each side), an integrated GPU takes some 0.4 s for them, at the 10^10

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "core/reference/reference_scene.h"
 #include "core/reference/reference_slice.h"
@@ -172,7 +173,7 @@ std::pair<double, double> span_between(const Scene& scene, const Receiver& recei
   const Vector to = b.position - receiver.position;
   const auto first = depths_of(scene, receiver, from, a.thickness, radius);
   const auto last = depths_of(scene, receiver, to, b.thickness, radius);
-  if (!same_surface(scene, a, b) || (!first && !last)) return {1, 0};
+  if (!first && !last) return {1, 0};
   const bool from_within = length(from) < radius;
   const bool to_within = length(to) < radius;
   std::pair<double, double> span{INFINITY, -INFINITY};
@@ -208,6 +209,7 @@ class Blocking {
   Arcs arcs() {
     const ReferenceLine line = line_of(scene_, receiver_, side_, settings_);
     Arcs arcs{by_samples(line), {}};
+    for (const auto& [from, to] : line.closing) arcs.seen = arcs.seen + by_face(from, to);
     for (const auto& segment : completed_segments(scene_, receiver_, side_, line, settings_))
       arcs.completed = arcs.completed + by_segment(segment);
     return arcs;
@@ -243,6 +245,20 @@ class Blocking {
     // An angle that wrapped round lies beyond the tangent plane. On the sphere, rounding may turn the end before the
     // front.
     return angle < 0 ? limit_ : std::min(std::max(angle, front), limit_);
+  }
+
+  /// Blocks a face without thickness.
+  Integrals by_face(Vector from, Vector to) {
+    const auto [first, last] = within(from, to - from, settings_.radius);
+    const Vector begin = from + std::max(first, 0.0) * (to - from);
+    const Vector end = from + std::min(last, 1.0) * (to - from);
+    if (std::max(first, 0.0) >= std::min(last, 1.0)) return {};
+    auto [low, high] = std::minmax({angle_of(side_, begin), angle_of(side_, end)});
+    // It passes behind the receiver.
+    if (high > low + kPi) low = std::exchange(high, limit_);
+    if (high <= 0 || low >= lowest_) return {};
+    const double weight = 0.5 * (weight_of(settings_, length(begin)) + weight_of(settings_, length(end)));
+    return weight * blocked_.add(std::max(low, 0.0), std::min(high, limit_));
   }
 
   Integrals by_segment(const CompletedSegment& segment) {
@@ -329,7 +345,8 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
         reach = sine < 1 && forward > 0 ? sine * pixels / forward : INFINITY;
       }
       const Side side{
-          tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels, reach};
+          tangent, tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels,
+          reach};
       Blocked::Transfer transfer;
       if (with_transfer)
         transfer = [&](double from, double to) { return transfer_between(from, to, side.gamma, tangent, v); };

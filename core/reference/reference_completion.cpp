@@ -245,17 +245,6 @@ class Completer {
     return thickness < INFINITY ? thickness : 0;
   }
 
-  /// The t, from the first to the last, for which from + t along is no farther away than a distance; none: the first is
-  /// not before the last.
-  static std::pair<double, double> within(Vector from, Vector along, double distance) {
-    const double a = dot(along, along);
-    const double b = dot(from, along);
-    const double c = dot(from, from) - distance * distance;
-    if (b * b < a * c) return {0, 0};
-    const double root = std::sqrt(b * b - a * c);
-    return {(-b - root) / a, (-b + root) / a};
-  }
-
   const ReferenceScene& scene_;
   const ReferenceReceiver& receiver_;
   const ReferenceSide& side_;

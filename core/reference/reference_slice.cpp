@@ -6,41 +6,36 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/reference/reference_solids.h"
+
 namespace alcove {
 namespace {
-
-/// A run counts as so many radii wide at most.
-constexpr double kWidest = 2;
 
 /// With Completion::all, surfaces that begin within so many reaches of the receiver may go on into the sphere. The
 /// seven rendered scenes came ever nearer to ray tracing up to 3.
 constexpr double kFarReach = 3;
 
-double size_of_pixel(const ReferenceScene& scene, double depth) {
-  return scene.orthographic() ? 1 / scene.fx() : depth / scene.fx();
-}
-
 /// Whether the line must go on beyond the reach. Samples there matter only as the other end of a crossing, as more of a
 /// run's width, and as surfaces that may go on into the sphere. A run that is thicker than the sphere is wide enough.
 /// `firsts` holds, for each sample, the first one of its run. Sky ends all continuations.
-bool goes_on(const ReferenceSettings& settings, const ReferenceSide& side, const ReferenceLine& line,
-             const std::vector<int>& firsts) {
+bool goes_on(const ReferenceSolids& solids, const ReferenceSettings& settings, const ReferenceSide& side,
+             const ReferenceLine& line, const std::vector<int>& firsts) {
   const int step = line.steps() - 1;
   if (step <= side.reach + 1) return true;
   for (int k = 0; k < line.surfaces; k++) {
     const int index = step * line.surfaces + k;
     const ReferenceSample& sample = line[index];
     const int first = firsts[std::size_t(index)];
-    if (settings.thickness == ThicknessRule::width && sample.nearer >= 0 &&
-        length(sample.position - line[first].position) * settings.width_share <= kWidest * settings.radius)
+    // The step that ends the line is not kept, so that the one before it must be long already.
+    if (settings.thickness == ThicknessRule::width && sample.nearer >= 0 && !solids.is_long(line, first, sample.nearer))
       return true;
   }
   return completes_behind(settings) && line.at(step, 0).depth > 0 && step <= kFarReach * side.reach + 1;
 }
 
 /// Links the samples of the last step to those of the step before that show the same surface: the nearest in depth
-/// first, each to at most one.
-void link(const ReferenceScene& scene, ReferenceLine& line) {
+/// first, each to at most one. `firsts`: as for goes_on().
+void link(const ReferenceSolids& solids, ReferenceLine& line, const std::vector<int>& firsts) {
   const int after = (line.steps() - 1) * line.surfaces;
   const int before = after - line.surfaces;
   for (;;) {
@@ -48,9 +43,9 @@ void link(const ReferenceScene& scene, ReferenceLine& line) {
     double least = INFINITY;
     for (int i = before; i < after; i++)
       for (int k = after; k < after + line.surfaces; k++) {
-        if (line[i].farther >= 0 || line[k].nearer >= 0 || !same_surface(scene, line[i], line[k])) continue;
         const double gap = std::abs(line[i].depth - line[k].depth);
-        if (gap < least) least = gap, from = i, to = k;
+        if (line[i].farther >= 0 || line[k].nearer >= 0 || !(gap < least)) continue;
+        if (solids.connect(line, i, k, firsts[std::size_t(i)] == 0)) least = gap, from = i, to = k;
       }
     if (from < 0) return;
     line[from].farther = to;
@@ -60,17 +55,12 @@ void link(const ReferenceScene& scene, ReferenceLine& line) {
 
 /// Puts the surfaces of a pixel at the end of the line.
 void add_step(const ReferenceScene& scene, ReferenceLine& line, int x, int y) {
-  for (int k = 0; k < line.surfaces; k++) {
-    ReferenceSample sample;
-    sample.depth = scene.depth(x, y, k);
-    sample.position = scene.position(x, y, sample.depth);
-    sample.closes = scene.closes(x, y, k);
-    line.samples.push_back(sample);
-  }
+  for (int k = 0; k < line.surfaces; k++) line.samples.push_back(sample_of(scene, x, y, k));
 }
 
 ReferenceLine samples_of(const ReferenceScene& scene, const ReferenceReceiver& receiver, const ReferenceSide& side,
                          const ReferenceSettings& settings) {
+  const ReferenceSolids solids(scene, receiver, side, settings);
   ReferenceLine line;
   line.surfaces = scene.surfaces();
   add_step(scene, line, receiver.x, receiver.y);
@@ -82,10 +72,10 @@ ReferenceLine samples_of(const ReferenceScene& scene, const ReferenceReceiver& r
     line.at_border = !scene.inside(x, y);
     if (line.at_border) break;
     add_step(scene, line, x, y);
-    link(scene, line);
+    link(solids, line, firsts);
     for (int i = step * line.surfaces; i < int(line.samples.size()); i++)
       firsts.push_back(line[i].nearer >= 0 ? firsts[std::size_t(line[i].nearer)] : i);
-    if (!goes_on(settings, side, line, firsts)) {
+    if (!goes_on(solids, settings, side, line, firsts)) {
       line.samples.resize(line.samples.size() - std::size_t(line.surfaces));
       for (auto& sample : line.samples)
         if (sample.farther >= int(line.samples.size())) sample.farther = -1;
@@ -93,23 +83,6 @@ ReferenceLine samples_of(const ReferenceScene& scene, const ReferenceReceiver& r
     }
   }
   return line;
-}
-
-/// The thickness of the run from the first to the last of two samples.
-double thickness_of_run(const ReferenceScene& scene, const ReferenceLine& line, int first, int last,
-                        const ReferenceSettings& settings) {
-  const bool cut = line.at_border && line.step_of(last) + 1 == line.steps();
-  if (first == 0) return INFINITY;
-  // The width counts from outer edge to outer edge: n pixels are n wide, and their centres n - 1 apart. Otherwise
-  // single blades of grass would vanish.
-  const double pixel = size_of_pixel(scene, line[first].depth);
-  const double chord = length(line[last].position - line[first].position) + pixel;
-  // A long run levels off: a wall is not as thick as it is long.
-  const double most = kWidest * settings.radius;
-  const double part = std::min((settings.width_share * chord + settings.width_pixels * pixel) / most, 1.0);
-  const double thickness = most * part * (1 - part * part / 3);
-  return cut && settings.complete != Completion::none ? std::max(thickness, kThicknessOfCut * settings.radius)
-                                                      : thickness;
 }
 
 /// Sets the thickness of solids: everything between a surface and the one that closes its solid is solid. Nothing is
@@ -124,15 +97,30 @@ void end_solids(ReferenceLine& line) {
   }
 }
 
-void set_thickness(const ReferenceScene& scene, ReferenceLine& line, const ReferenceSettings& settings) {
+/// The first sample of what would be the receiver's own run if that were sure to go on; -1: there is none.
+int rest_of_own(const ReferenceSolids& solids, const ReferenceLine& line) {
+  const int last = last_of_run(line, 0), next = (line.step_of(last) + 1) * line.surfaces;
+  if (next >= int(line.samples.size())) return -1;
+  for (int i = next; i < next + line.surfaces; i++)
+    if (line[i].nearer < 0 && solids.connect(line, last, i, false)) return i;
+  return -1;
+}
+
+void set_thickness(const ReferenceSolids& solids, ReferenceLine& line, const ReferenceSettings& settings) {
   if (settings.thickness != ThicknessRule::width) {
     const double value = settings.thickness == ThicknessRule::infinite ? INFINITY : settings.thickness_length;
     for (auto& sample : line.samples) sample.thickness = value;
   } else {
+    const int rest = rest_of_own(solids, line);
     for (int first = 0; first < int(line.samples.size()); first++) {
       if (line[first].depth == 0 || line[first].nearer >= 0) continue;
-      const double thickness = thickness_of_run(scene, line, first, last_of_run(line, first), settings);
-      for (int i = first; i >= 0; i = line[i].farther) line[i].thickness = thickness;
+      std::vector<int> run;
+      for (int i = first; i >= 0; i = line[i].farther) run.push_back(i);
+      if (first > 0 && first != rest) {
+        solids.thicken(line, run);
+        continue;
+      }
+      for (const int i : run) line[i].thickness = first == 0 ? INFINITY : solids.thickness_of_rest(line, run);
     }
   }
   end_solids(line);
@@ -148,10 +136,15 @@ std::pair<int, int> pixel_at(const ReferenceReceiver& receiver, const ReferenceS
   return {receiver.x + int(std::lround(side.step_x * step)), receiver.y + int(std::lround(side.step_y * step))};
 }
 
-bool same_surface(const ReferenceScene& scene, const ReferenceSample& a, const ReferenceSample& b) {
-  if (a.depth == 0 || b.depth == 0) return false;
-  const double pixel = size_of_pixel(scene, std::min(a.depth, b.depth));
-  return std::abs(a.depth - b.depth) < kRunSlope * pixel;
+ReferenceSample sample_of(const ReferenceScene& scene, int x, int y, int surface) {
+  ReferenceSample sample;
+  sample.x = x;
+  sample.y = y;
+  sample.depth = scene.depth(x, y, surface);
+  sample.position = scene.position(x, y, sample.depth);
+  if (surface == 0 && sample.depth > 0) sample.normal = scene.normal(x, y, scene.toward_eye(sample.position));
+  sample.closes = scene.closes(x, y, surface);
+  return sample;
 }
 
 int last_of_run(const ReferenceLine& line, int first) {
@@ -163,8 +156,17 @@ int last_of_run(const ReferenceLine& line, int first) {
 ReferenceLine line_of(const ReferenceScene& scene, const ReferenceReceiver& receiver, const ReferenceSide& side,
                       const ReferenceSettings& settings) {
   ReferenceLine line = samples_of(scene, receiver, side, settings);
-  set_thickness(scene, line, settings);
+  set_thickness(ReferenceSolids(scene, receiver, side, settings), line, settings);
   return line;
+}
+
+std::pair<double, double> within(Vector from, Vector along, double distance) {
+  const double a = dot(along, along);
+  const double b = dot(from, along);
+  const double c = dot(from, from) - distance * distance;
+  if (b * b < a * c) return {0, 0};
+  const double root = std::sqrt(b * b - a * c);
+  return {(-b - root) / a, (-b + root) / a};
 }
 
 double angle_of(const ReferenceSide& side, Vector offset) {

@@ -15,7 +15,9 @@ constexpr double kThicknessOfCut = 0.5;
 
 /// A surface of a pixel on a slice's image line.
 struct ReferenceSample {
+  int x = 0, y = 0;  // its pixel
   Vector position;
+  Vector normal;         // unit; of the first surface, where the thickness goes by the width
   double depth = 0;      // 0: no surface; for the first surface: sky
   double thickness = 0;  // scene units, infinite allowed
   bool closes = false;   // it closes the solid of the surface before it in its pixel
@@ -32,6 +34,7 @@ struct ReferenceReceiver {
 
 /// A side of a slice at a receiver.
 struct ReferenceSide {
+  Vector tangent;           // unit, across the eye's ray
   Vector along_t, along_v;  // in-slice coordinates of an offset, moved into the slice parallel to the tangent plane
   double gamma;
   double step_x, step_y;  // pixels per step; the longer component is +-1
@@ -44,6 +47,8 @@ struct ReferenceLine {
   std::vector<ReferenceSample> samples;
   int surfaces = 1;        // per step
   bool at_border = false;  // the line ends where the picture does
+  // Faces without thickness that close solids and are not seen, from and to: offsets from the receiver.
+  std::vector<std::pair<Vector, Vector>> closing = {};
 
   int steps() const { return int(samples.size()) / surfaces; }
   int step_of(int index) const { return index / surfaces; }
@@ -59,8 +64,8 @@ bool completes_behind(const ReferenceSettings& settings);
 /// The pixel at so many steps from the receiver.
 std::pair<int, int> pixel_at(const ReferenceReceiver& receiver, const ReferenceSide& side, int step);
 
-/// Whether two neighbours on a slice show one surface.
-bool same_surface(const ReferenceScene& scene, const ReferenceSample& a, const ReferenceSample& b);
+/// A surface of a pixel, 0 being the first one.
+ReferenceSample sample_of(const ReferenceScene& scene, int x, int y, int surface);
 
 /// The index of the last sample of the run that begins with sample `first`.
 int last_of_run(const ReferenceLine& line, int first);
@@ -68,6 +73,10 @@ int last_of_run(const ReferenceLine& line, int first);
 /// The line with the thickness of every sample, as long as the settings need it.
 ReferenceLine line_of(const ReferenceScene& scene, const ReferenceReceiver& receiver, const ReferenceSide& side,
                       const ReferenceSettings& settings);
+
+/// The t, from the first to the last, for which from + t along is no farther away than a distance; none: the first is
+/// not before the last.
+std::pair<double, double> within(Vector from, Vector along, double distance);
 
 /// The angle between an offset and the view ray, in the slice; negative on the other side.
 double angle_of(const ReferenceSide& side, Vector offset);

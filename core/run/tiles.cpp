@@ -19,6 +19,7 @@
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/settle/settle.h"
 #include "core/run/frame_files.h"
+#include "kernels/estimate/estimate.h"
 #include "kernels/estimate/exact.h"
 #include "kernels/geometry/geometry.h"
 #include "kernels/hidden/hidden.h"
@@ -55,10 +56,11 @@ int filter_reach(const Settings& settings) {
   return std::max(own, reach_of_filters(bracket_of(settings.estimator)));
 }
 
-/// How far lines of an exact search reach beyond the sphere of the radius until they have the vertices of the whole
-/// frame, in px; 0 for other searches.
+/// How far lines reach beyond the sphere of the radius until they tell what those of the whole frame do, in px; 0 where
+/// no line tells how far back anything is solid.
 int line_reach(const EstimatorSettings& settings) {
-  return searches_exactly(settings) ? int(settings.resolution) * (kProfileRestart + 2) : 0;
+  if (searches_exactly(settings)) return int(settings.resolution) * (kProfileRestart + 2);
+  return tells_backs(settings) ? int(settings.resolution) * 4 : 0;
 }
 
 /// How far from a surface it is told which one closes its solid, and whether it is an occluder, in px; 0 where nothing
@@ -70,10 +72,15 @@ int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
   return occluders + (tells && settings.hidden > 0 ? kEndsReach + kEndsBeyond : 0);
 }
 
-/// The width, in radii, from which a run that begins within reach of a receiver is as good as endless. It is more than
-/// the sphere's 2, since exact.comp rounds widths by up to 3 %. Where surfaces are completed, a run is half as thick as
-/// wide, and it may begin so far beyond the reach as a surface goes on, which is 3 radii in complete.comp.
-double widest_run(const EstimatorSettings& settings) { return completes(settings) ? 3 + 4.2 : 2.1; }
+/// The width, in radii, from which a run that begins within reach of a receiver is as good as endless: with `auto` more
+/// of it adds nothing to its thickness, and nothing else is told by its other end. It is a little more than 4 radii,
+/// twice the width from which runs level off, since exact.comp rounds. Where surfaces are completed, a run is half as
+/// thick as wide, and it may begin so far beyond the reach as a surface goes on, which is 3 radii in complete.comp.
+/// In a search by samples nothing farther away than kLongestChain tells.
+double widest_run(const EstimatorSettings& settings) {
+  if (tells_backs(settings)) return kLongestChain + 0.1;
+  return completes(settings) ? 3 + 8.4 : 4.2;
+}
 
 /// How many pixels the image of a sphere reaches from the image of its centre, on one axis. Centres are no nearer than
 /// `nearest`, and no farther off axis than `tangent`.

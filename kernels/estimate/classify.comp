@@ -222,7 +222,9 @@ void main() {
     const float reach = reach_of_samples(view, params.radius, farthest_here);
     const Rect rect = image_of_reach(view, box, reach);
     const float front = reach_of_samples(view, params.front, farthest_here);
-    if (kReuses) is_kept = is_as_before(rect);  // 3.
+    // 3.
+    const float told = reach_of_samples(view, params.told, farthest_here);
+    if (kReuses) is_kept = is_as_before(image_of_reach(view, box, told));
     // 4.
     if (kTellsLayered && !is_kept && is_hidden_near(view, box, front, rect)) atomicOr(layered[row], 1u);
   }

@@ -47,6 +47,7 @@ ALCOVE_CONSTANT int kChangeBlock = 32;  // px of the frame a side of the blocks 
 struct ClassifyParams {
   View view;
   float radius;      // scene units: the farthest at which anything blocks
+  float told;        // scene units: the farthest that may tell how far back that is solid
   float front;       // scene units: the farthest front of a surface that blocks within the radius
   uint plane;        // of the AO
   ivec2 frame_size;  // px; the frame is the image, or `factor` times as large
@@ -66,7 +67,20 @@ ALCOVE_CONSTANT uint kThicknessEndless = 2;  // solid as far as the sphere of th
 ALCOVE_CONSTANT uint kCompletesBorder = 4;   // a bit beside them: surfaces go on beyond the image's border
 ALCOVE_CONSTANT uint kCompletesHidden = 8;   // another one: they go on behind what is nearer, if not kThicknessEndless
 ALCOVE_CONSTANT uint kInSectors = 16;        // another one: all that blocks is counted in sectors, no horizon is exact
-ALCOVE_CONSTANT uint kHiddenSurface = 32;
+ALCOVE_CONSTANT uint kTellsBacks = 32;       // another one: pixels tell how far back they are solid
+ALCOVE_CONSTANT uint kHiddenSurface = 64;
+
+ALCOVE_CONSTANT int kChainsGroup = 16;
+ALCOVE_CONSTANT int kSegment = 32;  // px of a row or a column: see backs.glsl
+// radii: nothing farther away along a row of pixels of one surface tells how far back it is solid
+ALCOVE_CONSTANT float kLongestChain = 1.9f;
+ALCOVE_CONSTANT float kMostBack = 4;  // radii: solids reach back as far as they are seen to, but no farther
+
+struct BacksParams {
+  View view;
+  float radius;      // scene units
+  uint has_normals;  // 0: they were reconstructed, and at outlines tell nothing of how a surface goes on
+};
 
 struct HorizonParams {
   View view;

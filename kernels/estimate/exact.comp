@@ -23,8 +23,9 @@
 //     planes of its pixels.
 //  6. Every stroke is cut to the part within the sphere. A stroke before the sphere blocks by the part of its solid
 //     within the sphere.
-//  7. A stroke blocks from its front to its back, which lies as far along the eye's ray as its run is wide ("width as
-//     thickness"). What goes on from the receiver is its own surface: it blocks all below its horizon.
+//  7. A stroke blocks from its front to its back, which lies as far along the eye's ray as its run is solid there
+//     (profile.comp). What goes on from the receiver is its own surface: it blocks all below its horizon. Behind a
+//     run's end a hidden face may close its solid.
 //  8. What is blocked is a union of intervals. It is exact for what joins the horizon; all others are counted in 24
 //     sectors (sectors.glsl). Its arcs are integrated in closed form (slice.glsl).
 //  9. The result is 1 - (sum of blocked arcs) / (sum of whole arcs).
@@ -57,6 +58,7 @@ readonly buffer Depth { float depth[]; };       // one float per pixel, from pre
 readonly buffer Normal { uint normal[]; };      // one uint per pixel, from prepare
 readonly buffer Vertex { float vertex[]; };     // from profile
 readonly buffer Mark { uint mark[]; };          // from profile
+readonly buffer Solid { uint solid[]; };        // from profile
 readonly buffer Neighbor { uint neighbor[]; };  // from profile
 buffer Whole { float whole_arcs[]; };           // one float per pixel, sum of whole arcs
 // one float per pixel, sum of blocked arcs; after the last slice visibility in [0, 1], 1 = open
@@ -89,11 +91,12 @@ const float kTouches = 1e-3;
 
 /// A walk from vertex to vertex of one side.
 struct Walk {
-  vec2 last;        // the vertex before, in (across, toward)
-  bool starts;      // there is none yet
-  bool is_own;      // the run is the receiver's own surface
-  float thickness;  // scene units, of the run; with several slots of the vertex before
-  float change;     // of the thickness up to the next vertex; 0 with one slot
+  vec2 last;             // the vertex before, in (across, toward)
+  bool starts;           // there is none yet
+  bool is_own;           // the run is the receiver's own surface
+  bool is_rest;          // the run is what the receiver's own surface is not sure to go on with
+  float thickness;       // scene units, where the stroke begins
+  float last_thickness;  // where it ends
 };
 
 /// A piece of the profile, in (across, toward).
@@ -186,14 +189,14 @@ struct Search {
   // unit normal of the eye's ray that touches the sphere of the radius, in (across, toward): what is further along it
   // is beyond the sphere
   vec2 leaving;
-  vec2 normal;                     // the normal's projection, in (across, toward)
-  float lowest;                    // slope_of() where blocking begins
-  float least_height, least_rise;  // of what blocks: see clearance.glsl
-  int from;                        // the receiver's step
-  int step;                        // of columns, to that side
-  uint begins, last;               // the flags of vertices to that side
-  float shift;                     // of the sectors' boundaries, in [0, 1): see sectors.glsl
-  float unit;                      // scene units: a power of two near the receiver's depth
+  vec2 normal;                       // the normal's projection, in (across, toward)
+  float lowest;                      // slope_of() where blocking begins
+  float least_height, least_rise;    // of what blocks: see clearance.glsl
+  int from;                          // the receiver's step
+  int step;                          // of columns, to that side
+  uint begins, last, apart, closes;  // the flags of vertices to that side
+  float shift;                       // of the sectors' boundaries, in [0, 1): see sectors.glsl
+  float unit;                        // scene units: a power of two near the receiver's depth
 };
 
 /// One side of a receiver's line: what all steps of its search share.
@@ -217,11 +220,6 @@ struct Blocked {
   float own;     // slope_of() up to which the receiver's own surface blocks
   uint sectors;  // that other runs block
 };
-
-/// The unit vector in the plane of a line that is across the line, away from the eye.
-vec3 away_of(View view, LinePlane plane) {
-  return view.orthographic == 0 ? vec3(plane.foot, -1) / plane.ray_length : vec3(0, 0, -1);
-}
 
 Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
   const bool perspective = view.orthographic == 0;
@@ -286,7 +284,6 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
   vec2 slopes = is_within ? vec2(max(near_slope, far_slope), min(near_slope, far_slope)) : vec2(-1, 1);
   float height = is_within ? max(dot(front.near, search.normal), dot(front.far, search.normal)) : -kNone;
   const bool bends = kGoesOn && goes_on;
-  const float last = walk.thickness + walk.change;
   if (walk.is_own || walk.thickness >= kNone) {
     // What has no end blocks by its front within the sphere alone.
     const bool bends_within = both(bends, dot(corner.place, corner.place) < radius_sq);
@@ -299,7 +296,7 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
     const Stroke ends = before_sphere(stroke, search.leaving);
     Stroke back;
     const vec2 from = depths_of(ends.from, eye_distance, walk.thickness, radius_sq, back.from);
-    const vec2 to = depths_of(ends.to, eye_distance, last, radius_sq, back.to);
+    const vec2 to = depths_of(ends.to, eye_distance, walk.last_thickness, radius_sq, back.to);
     slopes = vec2(max(to.x, max(from.x, slopes.x)), min(to.y, min(from.y, slopes.y)));
     // Behind a part of the stroke alone the solid may reach into the sphere, or farther down in it than at the ends.
     const Clipped ends_back = clip_to_sphere(back, radius_sq, search.unit);
@@ -310,7 +307,7 @@ void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner co
     height = is_solid || to.x >= to.y ? max(dot(ends.to, search.normal), height) : height;
     if (bends) {
       vec2 unused;
-      const vec2 bend = depths_of(corner.place, eye_distance, last, radius_sq, unused);
+      const vec2 bend = depths_of(corner.place, eye_distance, walk.last_thickness, radius_sq, unused);
       slopes = vec2(max(bend.x, slopes.x), min(bend.y, slopes.y));
       height = bend.x >= bend.y ? max(dot(corner.place, search.normal), height) : height;
     }
@@ -410,27 +407,32 @@ uint first_column(Search search, int index) {
 }
 
 /// The thickness at a vertex.
-float thickness_at(uint marked) {
-  const float known = unpack_width(marked);
+float thickness_at(Search search, int at) {
+  const float known = unpack_thickness(solid[at], search.step > 0);
   return known > 0.0 ? known : min(params.thickness, kNone);
+}
+
+/// The thickness of a whole run at a vertex of it. Where the receiver's own run may end, the vertex before tells it.
+float whole_thickness_at(Search search, int at) {
+  while ((mark[at] & search.apart) != 0u && (mark[at] & search.begins) == 0u) at -= search.step;
+  return thickness_at(search, at);
 }
 
 /// A walk that comes to the vertex at an index from the one before, where there are several. A run that passes behind
 /// the receiver is cut beside the eye's ray.
-void come_to(inout Walk walk, Context c, int at, vec2 place) {
-  const float here = thickness_at(mark[at]);
+void come_to(inout Walk walk, Context c, int at, vec2 place, bool begins) {
+  const float here = begins ? thickness_at(c.search, at) : whole_thickness_at(c.search, at);
   walk.thickness = here;
-  walk.change = 0.0;
-  if (!walk.starts && (mark[at] & c.search.begins) == 0u) {
+  walk.last_thickness = here;
+  if (!walk.starts && !begins) {
     const int before = at - c.search.step, from_step = int(mark[before] >> 16);
     const vec2 from = from_receiver(c, place_at(c.view, c.plane, float(from_step), abs(vertex[before])));
     const float least = kBesideReceiver * place.x;
     const bool is_behind = both((from_step - c.search.from) * c.search.step <= 0, from.x < least);
     const float part = is_behind ? (place.x - least) / (place.x - from.x) : 1.0;
-    const float change = here - thickness_at(mark[before]);
+    const float last = whole_thickness_at(c.search, before);
     walk.last = is_behind ? place + part * (from - place) : from;
-    walk.thickness = is_behind ? here - part * change : thickness_at(mark[before]);
-    walk.change = is_behind ? part * change : change;
+    walk.thickness = is_behind ? here - part * (here - last) : last;
   }
 }
 
@@ -467,12 +469,11 @@ void add_beyond(inout Found found, Walk walk, Context c, int last) {
   const uint beyond = looks_beyond ? vertex_beyond(c, last) : kNoVertex;
   if (beyond != kNoVertex) {
     const int at = (kWalks - 1) * c.view.size.x * c.view.size.y + c.row + int(beyond);
-    const uint marked = mark[at];
-    const int to = int(marked >> 16);
+    const int to = int(mark[at] >> 16);
     const Corner corner = corner_at(c, at, to, abs(vertex[at]), true);
     walk.is_own = false;
-    walk.thickness = params.thickness == 0.0 || kWalks > 1 ? thickness_at(marked) : params.thickness;
-    walk.change = 0.0;
+    walk.thickness = params.thickness == 0.0 || kWalks > 1 ? thickness_at(c.search, at) : params.thickness;
+    walk.last_thickness = walk.thickness;
     const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
     block(found.all, walk, c, stroke, corner, true);
   }
@@ -511,7 +512,7 @@ void add_border(inout Found found, Context c) {
   const float first = float(border + c.plane.origin);
   const float whole = kReachBeyond * params.radius / (plane.step * (perspective ? c.z : 1.0));
   const float rest = min(whole - float(abs(border - c.search.from)), kMostBeyond);
-  Walk walk = Walk(vec2(0), false, false, 0.0, 0.0);
+  Walk walk = Walk(vec2(0), false, false, false, 0.0, 0.0);
   float last_z = kSkyDepth, last_at = first;
   vec2 last = vec2(0), start = vec2(0);
   // Whether a step lies within the sphere's image is the same at any depth.
@@ -533,6 +534,7 @@ void add_border(inout Found found, Context c) {
       const float gap = rest / float(kStepsBeyond) * plane.step * (perspective ? z : 1.0);
       const float width = length(corner.place - start) + gap;
       walk.thickness = params.thickness > 0.0 ? params.thickness : min(width, kCutThickness * params.radius);
+      walk.last_thickness = walk.thickness;
       if (z < kSkyDepth && corner.place.x > 0.0)
         block(found.all, walk, c, Stroke(joins ? last : kShortStroke * corner.place, corner.place), corner, false);
       last = corner.place;
@@ -551,13 +553,32 @@ BlockedArcs arcs_of(Context c, Found found) {
                      kOrder > 0u ? moments_of(c.side, c.search, found.all) : mat2(0));
 }
 
+/// 7. The thickness from the last vertex to this one. What is left of a run has one thickness, and the vertex where it
+/// begins knows none of the whole run.
+void thicken(inout Walk walk, Search search, int at, uint marked, bool begins) {
+  const bool changes = begins || !walk.is_rest && (marked & search.apart) == 0u;
+  const float here = changes ? thickness_at(search, at) : walk.last_thickness;
+  walk.thickness = begins ? here : walk.last_thickness;
+  walk.last_thickness = here;
+}
+
+/// 7. Where a hidden face closes the solid behind the vertex that begins a run, across its own face, the stroke from
+/// the face's end to the vertex, which has the whole thickness: what is behind both hangs together there.
+void close_solid(inout Walk walk, inout Stroke stroke, Context c, int step) {
+  const int pixel = index_at(c.view, c.lines, step, c.line + shift_at(c.lines, step));
+  const vec2 n = in_plane(c.view, c.plane, unpack_normal(normal[pixel]));
+  const vec2 back = vec2(dot(n, c.search.across), dot(n, c.point.eye));
+  stroke.from = with_unseen(stroke, true, stroke.to - walk.thickness * back).from;
+  walk.thickness = 0.0;
+}
+
 /// 3. Where the line has one profile: a walk along it.
 BlockedArcs blocked_by_one(Context c) {
   const Search search = c.search;
   const uint first = first_column(search, c.row + search.from);
   const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
   Found found = Found(nothing, nothing);
-  Walk walk = Walk(vec2(0), true, true, params.thickness, 0.0);
+  Walk walk = Walk(vec2(0), true, true, false, params.thickness, params.thickness);
   int at = c.row + int(first), last = -1;
   bool goes = first != kNoVertex;
   if (goes) {
@@ -566,11 +587,14 @@ BlockedArcs blocked_by_one(Context c) {
       const uint marked = mark[at];
       const int to = int(marked >> 16), steps = abs(to - search.from);
       const float stored = vertex[at], z = kGoesOn ? abs(stored) : stored;
-      const bool begins = (marked & search.begins) != 0u;
+      const bool begins_run = (marked & search.begins) != 0u;
+      const bool begins = begins_run || walk.is_own && (marked & search.apart) != 0u;
       const Corner corner = corner_at(c, at, to, z, begins);
+      walk.is_rest = begins ? !begins_run : walk.is_rest;
       walk.is_own = begins ? false : walk.is_own;
-      walk.thickness = begins && params.thickness == 0.0 ? unpack_width(marked) : walk.thickness;
-      const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+      if (params.thickness == 0.0 && !walk.is_own) thicken(walk, search, at, marked, begins);
+      Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+      if (begins_run && (marked & search.closes) != 0u) close_solid(walk, stroke, c, to);
       add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0);
       goes = !ends_at(marked, corner, search);
       walk.last = corner.place;
@@ -597,8 +621,9 @@ BlockedArcs blocked_by_several(Context c) {
   }
   const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
   Found found = Found(nothing, nothing);
-  Walk walk = Walk(vec2(0), true, true, params.thickness, 0.0);
-  bool is_own = true, starts = true;                    // the walk along the receiver's own slot
+  Walk walk = Walk(vec2(0), true, true, false, params.thickness, params.thickness);
+  bool is_own = true, starts = true, rests = false;     // the walk along the receiver's own slot
+  float rest = 0.0;                                     // its thickness, where the own run has ended
   int last = next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
   if (goes) {
     do {
@@ -609,7 +634,8 @@ BlockedArcs blocked_by_several(Context c) {
       const uint marked = mark[at];
       const int to = int(marked >> 16), steps = abs(to - search.from);
       const float stored = vertex[at], z = kGoesOn ? abs(stored) : stored;
-      const bool begins = (marked & search.begins) != 0u;
+      const bool is_parted = i == c.slot && is_own && (marked & search.apart) != 0u;
+      const bool begins = (marked & search.begins) != 0u || is_parted;
       // The walk for what is unseen has the same vertex where the run begins or ends there too.
       const int unseen_at = next.at[kWalks - 1];
       bool is_twin = kUnseen != 0u && !is_unseen && next.away[kWalks - 1] == steps && next.z[kWalks - 1] == z;
@@ -620,8 +646,18 @@ BlockedArcs blocked_by_several(Context c) {
       walk.is_own = i == c.slot && is_own;
       walk.starts = i == c.slot && starts;
       starts = i == c.slot ? false : starts;
-      come_to(walk, c, at, corner.place);
-      const Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+      come_to(walk, c, at, corner.place, begins);
+      if (i == c.slot && begins) {
+        rests = is_parted;
+        rest = walk.thickness;
+      }
+      if (i == c.slot && rests) {
+        walk.thickness = rest;
+        walk.last_thickness = rest;
+      }
+      Stroke stroke = stroke_to(corner.place, walk, begins, steps);
+      const bool begins_run = begins && !is_parted;
+      if (begins_run && (marked & search.closes) != 0u) close_solid(walk, stroke, c, to);
       // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
       if (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0 || twin_goes_on);
       if (is_unseen || is_twin) last = unseen_at;
@@ -709,6 +745,8 @@ void main() {
       search.step = sign;
       search.begins = sign > 0 ? kVertexBegins : kVertexEnds;
       search.last = sign > 0 ? kVertexLast : kVertexFirst;
+      search.apart = sign > 0 ? kVertexApart : kVertexApartAgainst;
+      search.closes = sign > 0 ? kVertexCloses : kVertexClosesAgainst;
       whole += share * weight * whole_arc(side);
       search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
       const Context c = Context(view, lines, line, on_image, z, plane, point, side, search, row, slot, radius * radius);

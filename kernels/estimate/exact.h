@@ -13,8 +13,13 @@ ALCOVE_CONSTANT uint kVertexBegins = 1;  // its run, where one looks along the l
 ALCOVE_CONSTANT uint kVertexEnds = 2;
 ALCOVE_CONSTANT uint kVertexLast = 4;  // of the line
 ALCOVE_CONSTANT uint kVertexFirst = 8;
-ALCOVE_CONSTANT uint kVertexFlags = 15;
-ALCOVE_CONSTANT uint kVertexThickness = 0xfff0;
+// The receiver's own run ends before this vertex, though others go on, where one looks along the line; and against it.
+ALCOVE_CONSTANT uint kVertexApart = 16;
+ALCOVE_CONSTANT uint kVertexApartAgainst = 32;
+// A hidden face closes the run's solid here, where one looks along the line; and against it.
+ALCOVE_CONSTANT uint kVertexCloses = 64;
+ALCOVE_CONSTANT uint kVertexClosesAgainst = 128;
+ALCOVE_CONSTANT uint kVertexHidden = 256;  // it is not of the first surface of its pixel
 ALCOVE_CONSTANT uint kNoVertex = 0xffff;
 
 ALCOVE_CONSTANT int kSlopeBits = 14;  // so that products with 100,000 pixels are no larger than an int
@@ -36,9 +41,13 @@ struct ProfileParams {
   float tolerance;  // px: how far in depth a pixel may be from the profile, in its own widths
   // A run's thickness is its width times the first and so many widths of its pixels.
   float depth_per_width, more_pixels;
-  float widest;           // scene units: the most that counts of that, and what thickness levels off at
-  float least_at_border;  // scene units: a run that the image's border cuts is taken to be at least so thick
-  uint slot;              // planes of what comes out before that of the first slot
+  // scene units: the most that counts of that, and what thickness levels off at; twice of a run that begins flat
+  float widest;
+  // scene units: a run that the image's border cuts is taken to be at least so thick, and twice that where it is flat
+  float least_at_border;
+  float radius;  // scene units: of the sphere beyond which nothing blocks
+  uint solids;   // 1: by the rules of solids.glsl; 0: depth alone tells surfaces apart
+  uint slot;     // planes of what comes out before that of the first slot
 };
 
 ALCOVE_CONSTANT uint kCompleteGroup = 32;  // lines of a workgroup

@@ -2,7 +2,7 @@
 // thickness.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planar depth, view normals.
+// In: planar depth, view normals; how far back each pixel is solid.
 // Out: visibility, 1 = open; where they are asked for, the moments of the blocked directions (see moments.glsl), and
 // the visibility that completed surfaces took.
 //
@@ -20,8 +20,9 @@
 //     all below its horizon (line 24). A sample below the tangent plane says nothing else.
 //  6. Every other run blocks from its front to its back, and nothing beyond the radius. The back lies further along the
 //     eye's ray by the run's width ("width as thickness": a blade of grass is as thin as it is narrow, a column as
-//     thick as it is broad), or by what the user says. A front before the sphere blocks by the part of its solid
-//     within the sphere. The paper lets the horizon sink instead (section 4.3).
+//     thick as it is broad), or as far as the sample's pixel tells (backs.comp), or by what the user says. A front
+//     before the sphere blocks by the part of its solid within the sphere. The paper lets the horizon sink instead
+//     (section 4.3).
 //     Runs are counted in 24 sectors, as in the mask of Therrien et al., "Screen Space Indirect Lighting with
 //     Visibility Bitmask", 2023; see sectors.glsl. With kInSectors, which is `--estimator bitmask`, so is the own
 //     surface; else its interval is exact.
@@ -45,15 +46,16 @@
 #include "kernels/base/clearance.glsl"
 #include "kernels/estimate/slice.glsl"
 #include "kernels/estimate/sectors.glsl"
+#include "kernels/estimate/backs.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kSlices = 3;  // slices per pixel
 layout(constant_id = 1) const uint kSteps = 6;   // steps to each side of a slice
 // CMakeLists.txt makes specialization constants of these two, 2 and 4, but in the twin.
 ALCOVE_MODE const uint kMode = kFalloffNone;  // one of kFalloff* of slice.glsl, and kWith* or not
-// one of kThickness*, of what is not connected to the receiver, kCompletes* and kInSectors or not, and
+// one of kThickness*, of what is not connected to the receiver, kCompletes*, kInSectors and kTellsBacks or not, and
 // kHiddenSurface times as many surfaces as a pixel may have behind the first
-ALCOVE_SOLID const uint kSolid = kThicknessWidth | kCompletesBorder | kCompletesHidden;
+ALCOVE_SOLID const uint kSolid = kThicknessWidth | kCompletesBorder | kCompletesHidden | kTellsBacks;
 // 0: all pixels are estimated; else only the sites of the list, and those of the widest lattice by so many slices
 layout(constant_id = 3) const uint kSparse = 0;
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
@@ -74,6 +76,8 @@ layout(binding = 8) writeonly buffer Moments { float moments[]; };
 layout(binding = 9) writeonly buffer Completed { float completed[]; };
 // planes of hidden surfaces that may block, see GBuffer; with layers only
 layout(binding = 10) readonly buffer Hidden { float hidden[]; };
+// one uint per pixel, how far back it is solid, from backs; only with kTellsBacks
+layout(binding = 11) readonly buffer Backs { uint backs[]; };
 
 // How many surfaces a pixel has at most: 1, or for horizon_layers as kSolid says. CMakeLists.txt makes kernels of
 // this file, since drivers take long over code that is left out by a specialization constant alone.
@@ -87,6 +91,7 @@ const uint kThickness = kSolid & 3u;
 const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
 const bool kBehindOthers = (kSolid & kCompletesHidden) != 0u;
 const bool kAllInSectors = (kSolid & kInSectors) != 0u;
+const bool kHasBacks = (kSolid & kTellsBacks) != 0u;
 
 /// A run is so many times as thick as it is wide.
 const float kThicknessPerWidth = 1.25;
@@ -109,6 +114,8 @@ struct Run {
   vec2 start, end;  // its outer samples
   float near, far;  // largest and smallest of the samples that block
   float gap;        // steps from the sample before it
+  bool is_round;    // it begins behind a rounded outline, of which its back is the mirror image
+  float deepest;    // of its samples before the sphere: how far back along the eye's ray they are told to be solid
 };
 
 /// The blocked directions: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors
@@ -158,7 +165,22 @@ mat2x3 blocked_arcs(Side side, Blocked blocked, float shift) {
 float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width, float gap) {
   if (kThickness != kThicknessWidth) return reach.thickness;
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0), wider = 1.0 + kGapPart * (run.gap + gap);
-  return levelled(per_width * (length(run.end - run.start) + wider * pixel), kWidestRun * reach.radius);
+  const float width = per_width * (length(run.end - run.start) + wider * pixel);
+  return run.is_round ? 0.0 : levelled(width, kWidestRun * reach.radius);
+}
+
+/// How much deeper than its front the solid of a sample is that its pixel tells, in pixels' widths; below 0: nothing is
+/// told, or it does not reach into the sphere.
+float depth_told(Receiver r, Reach reach, Sample s, float pixels) {
+  const float depth = pixels * reach.pixel_size * (r.perspective ? s.z : 1.0);
+  return both(pixels >= 0.0, depth * r.ray_length > sqrt(s.distance_sq) - reach.radius) ? depth : -1.0;
+}
+
+/// slope_of() the end of a sample's solid that is so much deeper than its front; 1 where it does not block.
+float slope_behind(Receiver r, Side side, Sample s, vec2 beside, float told) {
+  const float z = s.z + told;
+  const float slope = slope_of(place_of(r, side, beside, z, r.perspective ? z : 1.0));
+  return both(s.above, s.within) ? slope : 1.0;
 }
 
 /// 6. The sectors that a run blocks whose front lies within the sphere. is_open: it has samples without a known back.
@@ -285,7 +307,7 @@ void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach rea
 void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, float gap) {
   Sample last = border;
   const vec2 at_border = slopes_of(border, false, 0.0);
-  Run run = Run(border.place, border.place, at_border.x, at_border.y, 0.0);
+  Run run = Run(border.place, border.place, at_border.x, at_border.y, 0.0, false, 0.0);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
   int k = 0;
@@ -299,7 +321,7 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
       take_before(before, run, is_before, thickness, within_of(run, thickness));
     }
     is_before = joins ? is_before : false;
-    run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0, gap);
+    run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0, gap, false, 0.0);
     const vec2 slopes = slopes_of(s, kHard && both(joins, s.within != last.within), mix(s.slope, last.slope, 0.5));
     run.near = max(run.near, slopes.x);
     run.far = min(run.far, slopes.y);
@@ -393,23 +415,26 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   bool own = true;
   Sample last = receiver_sample(r);
   ivec2 last_pixel = r.pixel;
-  Run run = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0);
+  Run run = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0, false, 0.0);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   bool is_before = false;  // the run has samples before the sphere
+  const uint outline = outline_of(side.direction_px);
   int k = 0;
   if (count > 0) {
     do {
       const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
       const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
       const uint sectors = kHard ? sectors_of(r, reach, run, true, thickness, draw.shift) : 0u;
-      const float within = within_of(run, thickness);
+      const float deep = max(thickness, run.deepest);
+      const float within = within_of(run, deep);
       const vec2 beside = round(side.direction_px * offset);
       const ivec2 here = r.pixel + ivec2(beside);
       const ivec2 middle = last_pixel + here >> 1;
       const float z = occluder_depth[here.y * reach.width + here.x];
       // The receiver itself need be no occluder.
       const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
+      const uint word = kHasBacks ? backs[here.y * reach.width + here.x] : 0u;
       const Sample s = sample_of(r, side, reach, offset, beside, z);
       last_pixel = here;
       const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
@@ -420,16 +445,26 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       const bool ends = both(connected, s.above) ? false : true;
       if (kHard) {
         found.blocked.sectors |= ends ? sectors : 0u;
-        take_before(before, run, both(ends, is_before), thickness, within);
+        take_before(before, run, both(ends, is_before), deep, within);
       }
       own = ends ? !s.above : own;
       run.start = ends ? s.place : run.start;
       run.end = s.place;
       run.near = greater(own ? -1.0 : slopes.x, ends ? -1.0 : run.near);
-      run.far = lesser(own ? 1.0 : slopes.y, ends ? 1.0 : run.far);
+      float told = 0.0, far = slopes.y;
+      if (kHasBacks) {
+        const float mirrored = depth_told(r, reach, s, unpack_mirrored(word >> outline));
+        run.is_round = ends ? mirrored >= 0.0 : run.is_round;
+        told =
+            both(run.is_round, mirrored >= 0.0) ? mirrored : greater(depth_told(r, reach, s, unpack_depth(word)), 0.0);
+        far = lesser(far, slope_behind(r, side, s, beside, told));
+      }
+      run.far = lesser(own ? 1.0 : far, ends ? 1.0 : run.far);
       run.gap = ends ? gap : run.gap;
       found.blocked.near = greater(own ? slopes.x : -1.0, found.blocked.near);
-      is_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place)) ? true : both(is_before, !ends);
+      const bool here_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place));
+      is_before = here_before ? true : both(is_before, !ends);
+      run.deepest = greater(here_before ? told * r.ray_length : 0.0, ends ? 0.0 : run.deepest);
       if (!kHard) {
         const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 0.0);
         found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
@@ -445,7 +480,8 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   if (kHard) {
     const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 0.0);
     found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
-    take_before(before, run, is_before, thickness, within_of(run, thickness));
+    const float deep = max(thickness, run.deepest);
+    take_before(before, run, is_before, deep, within_of(run, deep));
     found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   }
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
@@ -479,6 +515,8 @@ Slot chosen(Slot a, Slot b, bool second) {
   s.run.near = second ? b.run.near : a.run.near;
   s.run.far = second ? b.run.far : a.run.far;
   s.run.gap = second ? b.run.gap : a.run.gap;
+  s.run.is_round = second ? b.run.is_round : a.run.is_round;
+  s.run.deepest = second ? b.run.deepest : a.run.deepest;
   return s;
 }
 
@@ -490,7 +528,7 @@ float thickness_of(Receiver r, Reach reach, Slot slot, float gap) {
 /// What the runs of slots block if they end at their last samples.
 struct Ends {
   uint sectors[kMostSurfaces];
-  float thickness[kMostSurfaces], within[kMostSurfaces];
+  float thickness[kMostSurfaces], within[kMostSurfaces];  // of those before the sphere
 };
 
 Ends ends_of(Receiver r, Reach reach, Slot slots[kMostSurfaces], float gap, float shift) {
@@ -498,8 +536,9 @@ Ends ends_of(Receiver r, Reach reach, Slot slots[kMostSurfaces], float gap, floa
   for (int j = 0; j < kSurfaces; j++) {
     const bool is_open = (slots[j].bits & kSlotOpen) != 0u;
     ends.thickness[j] = thickness_of(r, reach, slots[j], gap);
-    ends.within[j] = within_of(slots[j].run, ends.thickness[j]);
     ends.sectors[j] = sectors_of(r, reach, slots[j].run, is_open, ends.thickness[j], shift);
+    ends.thickness[j] = max(ends.thickness[j], slots[j].run.deepest);
+    ends.within[j] = within_of(slots[j].run, ends.thickness[j]);
   }
   return ends;
 }
@@ -519,7 +558,8 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
   ivec2 last_pixel = r.pixel;
-  const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0);
+  const uint outline = outline_of(side.direction_px);
+  const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0, false, 0.0);
   Slot slots[kMostSurfaces];
   for (int i = 0; i < kSurfaces; i++)
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
@@ -571,12 +611,21 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
         slot.run.end = s.place;
         const bool own = begins ? !s.above : (slot.bits & kSlotOwn) != 0u;
         const bool counts = both(here.exists[i], !own);
+        const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
+        // Of first surfaces without a known one behind them their pixel tells how far back they are solid.
+        const bool is_told = kHasBacks && i == 0 && !knows && !here.has_back[i];
+        const uint word = is_told ? backs[pixel.y * reach.width + pixel.x] : 0u;
+        const float mirrored = is_told ? depth_told(r, reach, s, unpack_mirrored(word >> outline)) : -1.0;
+        slot.run.is_round = begins ? mirrored >= 0.0 : slot.run.is_round;
+        const float seen = is_told ? greater(depth_told(r, reach, s, unpack_depth(word)), 0.0) : 0.0;
+        const float told = both(slot.run.is_round, mirrored >= 0.0) ? mirrored : seen;
+        const float behind = is_told ? slope_behind(r, side, s, vec2(pixel - r.pixel), told) : 1.0;
         found.blocked.near = max(found.blocked.near, both(here.exists[i], own) ? open.x : -1.0);
         slot.run.near = max(slot.run.near, counts ? slopes.x : -1.0);
-        slot.run.far = min(slot.run.far, counts ? slopes.y : 1.0);
-        const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
+        slot.run.far = min(slot.run.far, counts ? min(slopes.y, behind) : 1.0);
         const bool is_open = both(counts, !here.has_back[i]);
         const bool is_before = kHard ? both(both(is_open, s.above), is_before_sphere(r, reach, s.place)) : false;
+        slot.run.deepest = max(is_before ? told * r.ray_length : 0.0, begins ? 0.0 : slot.run.deepest);
         slot.bits = (begins ? 0u : slot.bits & (kSlotOpen | kSlotKnows | kSlotBefore)) | (s.above ? kSlotAbove : 0u) |
                     (s.within ? kSlotWithin : 0u) | (own ? kSlotOwn : 0u) | (knows ? kSlotKnows : 0u) |
                     (is_open ? kSlotOpen : 0u) | (is_before ? kSlotBefore : 0u);

@@ -36,9 +36,14 @@ float rest_at(Lines lines, int step) {
 /// A line's row in the sheared image: its number modulo the rows.
 int row_of(Lines lines, int line, int rows) { return (line + lines.wrap) % rows; }
 
-/// A width in 12 bits above 4 bits of flags, within 3 %: a float's exponent and 4 bits of its mantissa.
-uint pack_width(float width) { return (floatBitsToUint(width) + 0x40000u) >> 19 << 4; }
-float unpack_width(uint mark) { return uintBitsToFloat((mark & 0xfff0u) << 15); }
+/// Two thicknesses of a vertex, within 0.2 %: where one looks along the line in the low half, and against it.
+uint pack_thickness(float along, float against) {
+  const uvec2 halves = floatBitsToUint(vec2(along, against)) + 0x4000u >> 15;
+  return halves.x | halves.y << 16;
+}
+float unpack_thickness(uint packed, bool along) {
+  return uintBitsToFloat((along ? packed & 0xffffu : packed >> 16) << 15);
+}
 
 /// Up to where a surface goes on unseen: so many steps further along the line, at most 8191, and there it is so many
 /// times as deep. Steps are held within 1/16. Of the depth the change is held, within 1/2048 of itself: so what goes on
@@ -51,8 +56,9 @@ float depths_of_goes_on(uint packed) { return 1.0 + unpackHalf2x16(packed).x; }
 
 /// The place of a point of the line in its plane.
 vec2 place_at(View view, LinePlane plane, float step, float z) {
-  return vec2((view.orthographic != 0 ? 1.0 : z) * (plane.start + (float(plane.origin) + step) * plane.step),
-              z * plane.ray_length);
+  const float scale = view.orthographic != 0 ? 1.0 : z;
+  precise const float along = scale * (plane.start + (float(plane.origin) + step) * plane.step);
+  return vec2(along, z * plane.ray_length);
 }
 
 /// tangent_of() the centre of a pixel, counted along and across from the display window's corner, so that it is the
@@ -75,6 +81,17 @@ LinePlane plane_of(View view, Lines lines, int line) {
   plane.foot = first - plane.start * plane.along;
   plane.ray_length = view.orthographic != 0 ? 1.0 : sqrt(1.0 + dot(plane.foot, plane.foot));
   return plane;
+}
+
+/// The unit vector in the plane of a line that is across the line, away from the eye.
+vec3 away_of(View view, LinePlane plane) {
+  return view.orthographic == 0 ? vec3(plane.foot, -1) / plane.ray_length : vec3(0, 0, -1);
+}
+
+/// A direction within the plane of a line, as a unit vector along the line and away from the eye.
+vec2 in_plane(View view, LinePlane plane, vec3 direction) {
+  const vec2 projected = vec2(dot(direction.xy, plane.along), dot(direction, away_of(view, plane)));
+  return projected * inversesqrt(max(dot(projected, projected), 1e-12));
 }
 
 /// The value that is straight along a line where the surface is: disparity, or orthographic depth.

@@ -107,12 +107,14 @@ TEST_F(Aovs, only_what_was_asked_for_is_computed) {
   EXPECT_EQ(stats_of({"--aov", "depth"})["frames"][0]["samples_per_pixel"], 0);
   EXPECT_THAT(passes_of({"--aov", "normal"}), ElementsAre("prepare", "reconstruct", "directions"));
   const Options plain{"--denoise", "none"};
-  EXPECT_THAT(passes_of(plain), ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion"));
-  EXPECT_THAT(
-      passes_of(joined(plain, {"--aov", "specular-occlusion"})),
-      ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion", "bent_normal", "specular_occlusion"));
+  EXPECT_THAT(passes_of(plain), ElementsAre("prepare", "reconstruct", "classify", "chains", "chain_ends", "backs",
+                                            "horizon", "completion"));
+  EXPECT_THAT(passes_of(joined(plain, {"--aov", "specular-occlusion"})),
+              ElementsAre("prepare", "reconstruct", "classify", "chains", "chain_ends", "backs", "horizon",
+                          "completion", "bent_normal", "specular_occlusion"));
   EXPECT_THAT(passes_of(joined(plain, {"--aov", "transfer"})),
-              ElementsAre("prepare", "reconstruct", "classify", "horizon", "completion", "transfer"));
+              ElementsAre("prepare", "reconstruct", "classify", "chains", "chain_ends", "backs", "horizon",
+                          "completion", "transfer"));
 }
 
 TEST_F(Aovs, a_region_holds_what_the_whole_holds_there) {

@@ -119,9 +119,10 @@ TEST(Scales, share_all_passes_but_the_search) {
     for (const Names& part : parts) expected.insert(expected.end(), part.begin(), part.end());
     EXPECT_EQ(planes_of(frame, settings, aovs).passes, expected);
   };
-  const Names sites{"links", "sites", "sites", "sites", "sites"}, search{"classify", "list_sites", "horizon"},
-      dense_search{"classify", "horizon"}, combine{"combine"}, fit{"fit_sites"}, filter{"interpolate", "interpolate"},
-      denoise{"denoise"};
+  const Names sites{"links", "sites", "sites", "sites", "sites"},
+      search{"classify", "list_sites", "chains", "chain_ends", "backs", "horizon"},
+      dense_search{"classify", "chains", "chain_ends", "backs", "horizon"}, combine{"combine"}, fit{"fit_sites"},
+      filter{"interpolate", "interpolate"}, denoise{"denoise"};
   expect_passes(settings_of({0.1, 0.6, 2}), "ao", {sites, search, search, search, combine, fit, filter});
   expect_passes(settings_of({0.1, 0.6, 2}), "ao,ao-scales",
                 {sites, search, search, search, combine, fit, fit, filter, filter});

@@ -57,6 +57,9 @@ Scene cylinder(double radius, double depth) {
   return scene;
 }
 
+// What is flat levels off late, so that the reference and the exact search take these flat things for thicker than they
+// are by a little more than half their width.
+
 /// A step before a wall.
 Scene step(double tread, double rise) {
   return {{parallelogram({0, -10, -10}, {0, 20, 0}, {0, 0, 20}),
@@ -116,7 +119,7 @@ TEST(Solids, the_rim_of_a_deep_hole_hides_the_wall_below_it) {
                slot(0.4, 1.3),
                Shot::orthographic(slanted, target, 3.2, 96, 96),
                is_wall,
-               {0.085, 0.075, 0.24},
+               {0.085, 0.077, 0.24},
                {5, 5, 1.8}},
               3);
   expect_rays({"cylinder, floor",
@@ -140,8 +143,8 @@ TEST(Solids, a_step_hides_its_tread) {
                step(1.1, 2),
                Shot::perspective({6, 0.3, -0.8}, {0.5, 0, 0.2}, 40, 96, 96),
                [](const Hit& hit) { return hit.primitive == 0 && hit.position.z < 1; },
-               {0.016, 0.016, 0.115},
-               {8, 8, 1.15}},
+               {0.028, 0.027, 0.115},
+               {4.9, 5, 1.15}},
               4);
 }
 
@@ -154,8 +157,8 @@ TEST(Solids, a_slab_before_a_wall_blocks_as_far_as_it_reaches) {
   };
   for (const auto& [front, most, gain] : {Front{0.6, {0.02, 0.018, 0.018}, {}},
                                           {1.0, {0.03, 0.032, 0.036}, {2.3, 2.3, 2}},
-                                          {1.2, {0.045, 0.046, 0.068}, {2, 2, 1.3}},
-                                          {1.4, {0.047, 0.048, 0.084}, {1.5, 1.5, 0}},
+                                          {1.2, {0.052, 0.053, 0.068}, {1.7, 1.7, 1.3}},
+                                          {1.4, {0.05, 0.054, 0.084}, {1.4, 1.3, 0}},
                                           {2.0, {0.002, 0.003, 0.006}, {}}}) {
     Case c{fmt::format("front at {}", front), slab(front), Shot::orthographic({6, 1.5, 0.7}, {0, 0, 0}, 4.4, 80, 80),
            is_near};

@@ -461,7 +461,7 @@ TEST_F(Runs, in_memory_of_the_devices_own_give_the_bits_of_shared_memory_in_tile
   const auto outputs = [&](const std::string& more, const test::Launch& launch) {
     const Finished finished =
         run_program(joined({"run", frame, "-o", ao, "--camera", camera, "--composite", folder / "c.exr"},
-                           typed("--radius 0.1 --type float --device cpu --aov ao,normal,depth,confidence " + more)),
+                           typed("--radius 0.05 --type float --device cpu --aov ao,normal,depth,confidence " + more)),
                     launch);
     EXPECT_EQ(finished.code, 0) << finished;
     return read_bytes(ao) + read_bytes(folder / "c.exr");

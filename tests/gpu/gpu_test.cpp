@@ -41,7 +41,7 @@ TEST(Reflection, reads_blocks_groups_and_constants) {
   const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
   EXPECT_THAT(block_names(gpu::kernel_code("horizon")),
               UnorderedElementsAre("Depth", "Normal", "Ao", "Moments", "List", "Counts", "Completed", "Sites",
-                                   "SiteCountsBuffer", "Occluders"));
+                                   "SiteCountsBuffer", "Occluders", "Backs"));
   EXPECT_THAT(block_names(gpu::kernel_code("horizon_layers")), Contains("Hidden"));
   EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
   EXPECT_THAT(horizon.constants,
@@ -308,7 +308,7 @@ std::span<const float> copied_64(std::size_t from, std::size_t to) {
 
 TEST(Recorder, tells_which_share_of_a_long_recording_is_done) {
   auto& gpu = test::recorder();
-  for (int i = 0; i < 40; i++) record_copy_of_64(64, 64);
+  for (int i = 0; i < 60; i++) record_copy_of_64(64, 64);
   std::vector<double> shares;
   gpu.run([&](double share) { shares.push_back(share); });
   EXPECT_GE(shares.size(), 3u);

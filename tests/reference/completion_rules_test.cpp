@@ -123,7 +123,7 @@ TEST(Thickness, levels_off_from_a_share_of_the_width_and_some_pixels) {
     wide.settings.width_pixels = pixels;
     const std::vector<float> by_width = reference_ao(wide.frame, wide.settings);
     wide.settings.thickness = ThicknessRule::constant;
-    const double width = (share * 7 + pixels) * 0.02, most = 2 * wide.settings.radius;
+    const double width = (share * 7 + pixels) * 0.02, most = 4 * wide.settings.radius;
     wide.settings.thickness_length = width - width * width * width / (3 * most * most);
     const std::vector<float> by_length = reference_ao(wide.frame, wide.settings);
     for (std::size_t i = 0; i < by_width.size(); i++)
@@ -137,19 +137,19 @@ TEST(Thickness, of_a_long_run_grows_no_more) {
   wide.settings.width_share = 100;
   const std::vector<float> by_width = reference_ao(wide.frame, wide.settings);
   wide.settings.thickness = ThicknessRule::constant;
-  wide.settings.thickness_length = 4.0 / 3 * wide.settings.radius;
+  wide.settings.thickness_length = 8.0 / 3 * wide.settings.radius;
   const std::vector<float> by_length = reference_ao(wide.frame, wide.settings);
   for (std::size_t i = 0; i < by_width.size(); i++)
     if (wide.frame.depth[i] > 4.9) EXPECT_NEAR(by_width[i], by_length[i], 1e-6) << "pixel " << i;
 }
 
-TEST(Thickness, of_a_run_that_the_border_cuts_is_half_a_radius_at_least) {
+TEST(Thickness, of_a_run_that_the_border_cuts_is_a_radius_at_least_where_it_is_flat) {
   Strip cut = strip(7, true);
   cut.settings.complete = Completion::border;
   cut.settings.width_share = 0.01;
   const std::vector<float> by_width = reference_ao(cut.frame, cut.settings);
   cut.settings.thickness = ThicknessRule::constant;
-  cut.settings.thickness_length = 0.5 * cut.settings.radius;
+  cut.settings.thickness_length = cut.settings.radius;
   EXPECT_EQ(reference_ao(cut.frame, cut.settings), by_width);
 }
 

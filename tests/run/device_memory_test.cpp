@@ -38,7 +38,7 @@ class DeviceMemory : public SequenceFolder {
     return json::parse(read_bytes(folder / "stats.json"));
   }
 
-  inline static const Options kOptions = typed("--threads 4 --noise animated --radius 0.1");
+  inline static const Options kOptions = typed("--threads 4 --noise animated --radius 0.04");
   std::map<std::string, std::string> whole;
   std::string said;  // by the last run
 };
@@ -82,7 +82,7 @@ TEST_F(DeviceMemory, that_runs_out_halves_the_frames_at_once_and_then_the_tiles)
 }
 
 TEST_F(DeviceMemory, that_runs_out_for_an_estimate_halves_its_parts) {
-  const Options options = typed("--radius 0.02 --frames 2 --accumulate 1");
+  const Options options = typed("--radius 0.02 --thickness 0.02 --frames 2 --accumulate 1");
   expect_whole({}, options);
   // One of them is the driver's own. The frame fails at once, and once more when it is alone and without the buffers of
   // the first time.
@@ -139,7 +139,7 @@ class MemoryLimit : public SequenceFolder {
     write_bytes(camera, wall_camera(window).dump());
     const std::string stats = folder / "stats.json";
     const Finished finished = done(typed(fmt::format(
-        "--radius 0.3 --memory {}M --device cpu --stats {} --frames 1-{} {}", mebibytes, stats, frames, more)));
+        "--radius 0.1 --memory {}M --device cpu --stats {} --frames 1-{} {}", mebibytes, stats, frames, more)));
     EXPECT_LE(finished.peak_mib, mebibytes) << finished;
     return json::parse(read_bytes(stats));
   }

@@ -206,11 +206,12 @@ TEST_F(Shots, tell_how_many_frames_memory_has_room_for) {
   for (int frame = 1; frame <= kFrames; frame++) fs::remove(input(frame));
   write_frames(1, kFrames, wall_frame(large, large));
   write_bytes(camera, wall_camera(large).dump());
-  const Finished refused = run(typed("--around all --threads 2 --memory 182M"));
+  const Finished refused = run(typed("--around all --threads 2 --thickness 0.2 --memory 182M"));
   test::expect_refused(refused, 2, {"f.0001.exr", "--around ", "--memory "});
-  EXPECT_EQ(run(typed("--around all --threads 2 --memory 182M --dry-run")).code, 2);
+  EXPECT_EQ(run(typed("--around all --threads 2 --thickness 0.2 --memory 182M --dry-run")).code, 2);
   const std::string enough = refused.err.substr(refused.err.find("or --memory ") + 3);
-  done(joined(typed("--around all --threads 2 --frames 4"), typed(enough.substr(0, enough.find_first_of("\n ", 9)))));
+  done(joined(typed("--around all --threads 2 --thickness 0.2 --frames 4"),
+              typed(enough.substr(0, enough.find_first_of("\n ", 9)))));
 }
 
 /// Adds motion vectors of what stands still, as Blender writes them: to the place in the frame before.

@@ -98,7 +98,7 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
            "--estimator crytek --denoise none", "--resolution half", "--resolution quarter --set denoise-radius=5",
            "--set stride=4", "--set stride=8 --set density=uniform", "--set stride=1",
            "--set supersampling=2 --set filter-width=5 --roi 3,5,225,125", "--roi 3,5,450,250 --falloff smooth"})
-    expect_same(typed("--radius 0.2 " + more));
+    expect_same(typed("--radius 0.06 " + more));
 }
 
 TEST_F(Tiles, give_the_bits_of_the_whole_with_a_beauty_of_another_window) {
@@ -107,7 +107,7 @@ TEST_F(Tiles, give_the_bits_of_the_whole_with_a_beauty_of_another_window) {
     beauty_over(window, display).write(beauty);
     // All of its layers would take more than the little memory.
     expect_same(
-        typed("--radius 0.2 --beauty " + beauty + " --composite " + composite + " --set composite-layers=rgba"));
+        typed("--radius 0.06 --beauty " + beauty + " --composite " + composite + " --set composite-layers=rgba"));
   }
 }
 
@@ -120,7 +120,7 @@ TEST_F(Tiles, give_the_bits_of_the_whole_with_hidden_surfaces) {
   write_plane(folder / "near.exr", "Z", near, data, display);
   write_plane(folder / "far.exr", "Z", far, data, display);
   expect_same({"--behind", folder / "near.exr", "--behind", folder / "far.exr", "--behind-kind", "backs,fronts",
-               "--aov", "ao,hidden", "--radius", "0.2"});
+               "--aov", "ao,hidden", "--radius", "0.06"});
   EXPECT_EQ(text_in(read_header(ao), "alcove/hidden"), "far.exr Z fronts; near.exr Z backs");
 }
 
@@ -184,7 +184,7 @@ TEST_F(TilesOfShots, give_the_bits_of_the_whole) {
   const auto expect_same = [&](const char* more, std::uint64_t mebibytes) {
     SCOPED_TRACE(more);
     const auto computed = [&](std::uint64_t bytes) {
-      const Options all = joined(typed("--radius 0.3 --frames 2 --type float"), typed(more));
+      const Options all = joined(typed("--radius 0.08 --frames 2 --type float"), typed(more));
       const RunReport report = run_here(joined(arguments(all), {"--stats", folder / "stats.json"}), bytes);
       EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
       return report.done == 1 ? std::pair(report.frames[0].parts, read_exr_image(output(2), {"Y"}).pixels)
@@ -221,7 +221,7 @@ std::uint64_t memory_named_in(const std::string& text) {
 }
 
 TEST_F(Tiles, too_little_memory_is_refused_with_the_least_that_is_enough) {
-  const Options options{"--radius", "0.2"};
+  const Options options{"--radius", "0.06"};
   const std::uint64_t named = memory_named_in(expect_refused_with(3 << 20, options, {}));
   ASSERT_GT(named, 0);
   const auto with = [&](std::uint64_t megabytes) {
@@ -245,12 +245,12 @@ TEST_F(Tiles, too_little_memory_is_refused_with_the_least_that_is_enough) {
 }
 
 TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough_for_the_whole) {
-  const std::string refusal = expect_refused_with(3 << 20, {"--radius", "0.2"}, {"times as long", "at once"});
+  const std::string refusal = expect_refused_with(3 << 20, {"--radius", "0.06"}, {"times as long", "at once"});
   const std::uint64_t least = memory_named_in(refusal);
   const std::uint64_t at_once = memory_named_in(refusal.substr(refusal.find("), or --memory")));
   ASSERT_GT(at_once, least);
   const auto frame_within = [&](std::uint64_t megabytes) {
-    const RunReport report = run_with(0, {"--radius", "0.2", "--memory", std::to_string(megabytes) + "M"});
+    const RunReport report = run_with(0, {"--radius", "0.06", "--memory", std::to_string(megabytes) + "M"});
     EXPECT_EQ(report.done, 1) << megabytes << (report.stop ? report.stop->what() : "");
     return report.done == 1 ? report.frames[0] : FrameReport();
   };
@@ -260,9 +260,9 @@ TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough
   // At the least, rounded up to whole MiB, a part or two fewer may do.
   const double told = std::strtod(refusal.c_str() + refusal.find("M (in ") + 6, nullptr);
   EXPECT_LE(parts.parts, told);
-  EXPECT_GE(parts.parts, told / 2);
+  EXPECT_GE(parts.parts, told / 3);
   const auto planned = [&](const Options& more) {
-    return run_program(joined({"run", shot, "-o", ao, "--camera", shot_camera, "--radius", "0.2", "--type", "float",
+    return run_program(joined({"run", shot, "-o", ao, "--camera", shot_camera, "--radius", "0.06", "--type", "float",
                                "--stats", folder / "stats.json", "--dry-run"},
                               more));
   };
@@ -300,7 +300,7 @@ TEST_F(Tiles, that_are_refused_leave_no_folder) {
 }
 
 TEST_F(Tiles, are_told_of_in_a_note_and_decode_each_row_once) {
-  const FrameReport report = done_in_tiles({"--radius", "0.05"}).frames[0];
+  const FrameReport report = done_in_tiles({"--radius", "0.015"}).frames[0];
   EXPECT_GT(report.parts, 2);
   EXPECT_EQ(report.rows_read, std::uint64_t(data.height));
   const auto note = std::ranges::find(report.notes, NoteCode::in_parts, &Note::code);
@@ -315,7 +315,7 @@ TEST_F(Tiles, of_a_frame_with_one_near_corner_are_few) {
   for (std::size_t y = 0; y < 16; y++)
     for (std::size_t x = 0; x < 32; x++) depth[y * std::size_t(data.width) + x] = 0.25f;
   corner.write(shot);
-  EXPECT_LT(double(done_in_tiles({"--radius", "0.05"}).frames[0].pixels), 2.4 * double(data.pixels()));
+  EXPECT_LT(double(done_in_tiles({"--radius", "0.015"}).frames[0].pixels), 3.8 * double(data.pixels()));
 }
 
 }  // namespace

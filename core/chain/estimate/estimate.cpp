@@ -30,7 +30,7 @@ float thickness_of(const EstimatorSettings& settings) {
 double front_reach_of(const EstimatorSettings& settings, double radius) {
   double thickness = 0;
   if (settings.falloff == Falloff::none && settings.thickness == ThicknessKind::automatic)
-    thickness = 2.0 / 3 * kWidestRun * radius;
+    thickness = (tells_backs(settings) ? kMostBack : 2.0 / 3 * kWidestRun) * radius;
   if (settings.falloff == Falloff::none && settings.thickness == ThicknessKind::constant)
     thickness = settings.thickness_length;
   return std::max(radius + thickness, kFarEnd * radius);
@@ -122,6 +122,11 @@ bool searches_slices(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::gtao || settings.estimator == Estimator::bitmask;
 }
 
+bool tells_backs(const EstimatorSettings& settings) {
+  return searches_slices(settings) && settings.search == SliceSearch::steps &&
+         settings.thickness == ThicknessKind::automatic;
+}
+
 bool completes(const EstimatorSettings& settings) {
   return searches_slices(settings) && settings.complete == Completion::all &&
          settings.thickness != ThicknessKind::infinite;
@@ -152,6 +157,7 @@ Reach reach_of(const EstimatorSettings& settings, double radius) {
   // Crytek's samples fill the sphere of the radius whatever the falloff.
   const double end = settings.estimator == Estimator::crytek ? 1 : settings.falloff_end;
   return {float(radius * end),
+          float(radius * end * (tells_backs(settings) ? 1 + kMostBack + kLongestChain : 1)),
           float(front_reach_of(settings, radius * end)),
           float(radius * settings.falloff_start),
           settings.falloff,
@@ -210,6 +216,11 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
     Estimate out = of_radius(result, plane, radii.size());
     out.listed = classify(gpu, gbuffer, skipping, reach, sites, out);
     list_sites(gpu, gbuffer, sites, out.listed);
+    if (tells_backs(settings)) {
+      const Chains links = chains(gpu, gbuffer, reach, frame[RawPlane::normal] != nullptr);
+      chain_ends(gpu, gbuffer, links);
+      out.told = &backs(gpu, gbuffer, links);
+    }
     switch (settings.estimator) {
       case Estimator::gtao:
       case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
@@ -246,16 +257,11 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                     (out.order > 1 ? kClassifyWithSecond : 0) | (out.completed ? kClassifyWithCompleted : 0) |
                     (skipping.changes ? kClassifyReuses : 0) | (selects ? kClassifySelects : 0) |
                     (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
-  const ClassifyParams params{gbuffer.view,
-                              reach.radius,
-                              reach.front,
-                              out.plane,
-                              gbuffer.grid.frame_size,
-                              gbuffer.grid.overhang,
-                              gbuffer.grid.factor,
-                              gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin,
-                              skipping.needed.from,
-                              skipping.needed.to};
+  const ClassifyParams params{
+      gbuffer.view,          reach.radius,        reach.told,
+      reach.front,           out.plane,           gbuffer.grid.frame_size,
+      gbuffer.grid.overhang, gbuffer.grid.factor, gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin,
+      skipping.needed.from,  skipping.needed.to};
   gpu.dispatch("classify", params,
                {{"Bounds", gpu::Optional(skipping.bounds)},
                 {"Changes", gpu::Optional(skipping.changes)},
@@ -272,6 +278,37 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   return list;
 }
 
+Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
+  const View& view = gbuffer.view;
+  const auto segments_of = [](int steps) { return uint((steps + kSegment - 1) / kSegment); };
+  const std::size_t segments =
+      std::size_t(view.size.y) * segments_of(view.size.x) + std::size_t(view.size.x) * segments_of(view.size.y);
+  const std::size_t bytes = segments * 2 * sizeof(uint);
+  const Chains result{
+      {view, reach.radius, has_normals ? 1u : 0u}, gpu.buffer("chains", bytes), gpu.buffer("chain ends", bytes)};
+  gpu.dispatch("chains", result.params,
+               {{"Depth", occluder_depth_of(gbuffer)}, {"Normal", gbuffer.normal}, {"Chains", result.links}},
+               {uint(view.size.x + view.size.y), segments_of(std::max(view.size.x, view.size.y))});
+  return result;
+}
+
+void chain_ends(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains) {
+  gpu.dispatch("chain_ends", chains.params, {{"Chains", chains.links}, {"Ends", chains.ends}},
+               uint(gbuffer.view.size.x + gbuffer.view.size.y));
+}
+
+const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains) {
+  gpu::Buffer& result = gpu.buffer("backs", plane_bytes(gbuffer.view));
+  gpu.dispatch("backs", chains.params,
+               {{"Depth", occluder_depth_of(gbuffer)},
+                {"Normal", gbuffer.normal},
+                {"Chains", chains.links},
+                {"Ends", chains.ends},
+                {"Backs", result}},
+               extent_of(gbuffer.view));
+  return result;
+}
+
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
              const Estimate& out) {
   HorizonParams params{};
@@ -286,10 +323,13 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   params.plane = out.plane;
   params.depth_precision = gbuffer.depth_precision;
   std::vector<gpu::Binding> buffers = buffers_of(gbuffer, out);
-  buffers.insert(buffers.end(), {{"Moments", gpu::Optional(out.moments)}, {"Completed", gpu::Optional(out.completed)}});
+  buffers.insert(buffers.end(), {{"Moments", gpu::Optional(out.moments)},
+                                 {"Completed", gpu::Optional(out.completed)},
+                                 {"Backs", gpu::Optional(out.told)}});
   const uint mode = uint(reach.falloff) | (out.order > 0 ? kWithFirst : 0) | (out.order > 1 ? kWithSecond : 0) |
                     (out.completed ? kWithCompleted : 0);
-  const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0);
+  const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0) |
+                     (out.told ? kTellsBacks : 0);
   const uint sites = out.listed.sites ? uint(sampling.wide_slices) : 0;
   std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, sites, solid};
   gpu.dispatch("horizon", params, buffers, estimate_extent(out.listed), constants);

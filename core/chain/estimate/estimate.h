@@ -7,6 +7,7 @@
 #include "core/base/settings.h"
 #include "core/chain/estimate/sites.h"
 #include "core/chain/geometry/geometry.h"
+#include "kernels/estimate/estimate.h"
 
 namespace alcove {
 
@@ -27,6 +28,9 @@ bool searches_slices(const EstimatorSettings& settings);
 /// Whether surfaces are completed behind what is nearer. They are not where occluders are endless, since all that those
 /// hide is blocked anyway. What goes on beyond the picture's border does not count here.
 bool completes(const EstimatorSettings& settings);
+
+/// Whether an estimator that takes samples reads how far back pixels are told to be solid: see backs.comp.
+bool tells_backs(const EstimatorSettings& settings);
 
 /// Whether surfaces are completed anywhere, be it beyond the picture's border alone.
 bool completes_anywhere(const EstimatorSettings& settings);
@@ -53,13 +57,14 @@ gpu::Extent estimate_extent(const TileList& list);
 
 /// The result of an estimator for the sites of a G-buffer.
 struct Estimate {
-  gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on
-  uint plane = 0;                  // of `ao`: that of the radius that an estimator writes
-  gpu::Buffer* moments = nullptr;  // of the largest radius: see Visibility
-  uint order = 0;                  // of the moments
-  TileList listed{};               // of the largest radius
-  gpu::Buffer* error = nullptr;    // with a tolerance, of the mean over the radii: see refine.comp
-  gpu::Buffer* squares = nullptr;  // the same
+  gpu::Buffer* ao = nullptr;          // a plane of visibility for each radius, from the smallest on
+  uint plane = 0;                     // of `ao`: that of the radius that an estimator writes
+  gpu::Buffer* moments = nullptr;     // of the largest radius: see Visibility
+  uint order = 0;                     // of the moments
+  TileList listed{};                  // of the largest radius
+  const gpu::Buffer* told = nullptr;  // how far back pixels are solid, from backs(); null: the settings say it
+  gpu::Buffer* error = nullptr;       // with a tolerance, of the mean over the radii: see refine.comp
+  gpu::Buffer* squares = nullptr;     // the same
   // A plane of the visibility that completed surfaces took, of the largest radius, before any filter: 0 to what is
   // blocked, 0 at sky. Null: not asked for.
   gpu::Buffer* completed = nullptr;
@@ -80,6 +85,7 @@ Estimate of_radius(const Estimate& all, uint plane, std::size_t radii);
 /// The rules by which surfaces around a receiver block, for one radius.
 struct Reach {
   float radius;         // scene units: nothing beyond blocks
+  float told;           // scene units: nothing beyond tells how far back anything is solid
   float front;          // scene units: no front farther away than this blocks by the solid behind it
   float falloff_start;  // scene units: what is nearer blocks fully
   Falloff falloff;
@@ -126,6 +132,21 @@ const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skip
 /// buffers where there is another estimate.
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, const Reach& reach,
                   const Sites& sites, const Estimate& out, const std::string& prefix = "");
+
+/// The pixels of rows and columns that show one surface, see backs.glsl, and how far they go on beyond segments.
+struct Chains {
+  BacksParams params;
+  gpu::Buffer &links, &ends;
+};
+
+/// Links pixels: see chains.comp. Without normals of their own, surfaces end where depth alone says so.
+Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals);
+
+/// Tells how far chains go on beyond segments: see chain_ends.comp.
+void chain_ends(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains);
+
+/// How far back what each pixel shows is solid: see backs.comp.
+const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains);
 
 /// gtao and bitmask. Tiles that have hidden surfaces within reach are searched by horizon_layers.
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,

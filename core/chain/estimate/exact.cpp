@@ -105,6 +105,8 @@ void draw_profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirect
                        is_thinner ? kCompletedMorePixels : 0,
                        kWidestRun * reach.radius,
                        reach.complete != Completion::none ? kCutThickness * reach.radius : 0,
+                       reach.radius,
+                       reach.thickness == 0 ? 1u : 0u,
                        slot};
   // With several slots a thickness of 0 is one that is not known, for which exact takes the given one.
   if (gbuffer.hidden && reach.thickness != 0) params.depth_per_width = params.more_pixels = params.least_at_border = 0;
@@ -112,7 +114,9 @@ void draw_profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirect
                {{"Depth", occluder_depth_of(gbuffer)},
                 {"Vertex", profile.vertex},
                 {"Mark", profile.mark},
+                {"Solid", profile.solid},
                 {"Neighbor", profile.neighbor},
+                {"Normal", gbuffer.normal},
                 {"Hidden", gpu::Optional(occluder_hidden_of(gbuffer))},
                 {"Own", gpu::Optional(profile.own)}},
                groups ? gpu::Extent(*groups) : gpu::Extent(profile.count),
@@ -227,6 +231,7 @@ Profile profile(gpu::Recorder& gpu, const GBuffer& gbuffer, const SearchDirectio
   const std::size_t bytes = planes_of(result) * plane_bytes(gbuffer.view);
   result.vertex = &gpu.buffer("profile vertex", bytes);
   result.mark = &gpu.buffer("profile mark", bytes);
+  result.solid = &gpu.buffer("profile solid", bytes);
   result.neighbor = &gpu.buffer("profile neighbor", bytes);
   if (gbuffer.hidden) result.own = &gpu.buffer("profile own", plane_bytes(gbuffer.view));
   const ivec2 size = gbuffer.view.size;
@@ -296,6 +301,7 @@ void exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const Profile& profile, c
                 {"Normal", gbuffer.normal},
                 {"Vertex", profile.vertex},
                 {"Mark", profile.mark},
+                {"Solid", profile.solid},
                 {"Neighbor", profile.neighbor},
                 {"Whole", whole_arcs(gpu, gbuffer)},
                 {"Ao", out.ao},

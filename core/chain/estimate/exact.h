@@ -24,12 +24,13 @@ SearchDirections search_directions(const EstimatorSettings& settings);
 struct Profile {
   int direction;
   Lines lines;
-  int first = 0;            // number of the first line
-  uint count = 0;           // lines
-  uint slots = 1;           // a plane of vertices, marks and neighbors each; as many as a pixel has surfaces at most
+  int first = 0;   // number of the first line
+  uint count = 0;  // lines
+  uint slots = 1;  // a plane of vertices, marks, solids and neighbors each; as many as a pixel has surfaces at most
   bool has_unseen = false;  // behind the slots is a plane for what goes on behind what is nearer
   gpu::Buffer* vertex = nullptr;
   gpu::Buffer* mark = nullptr;
+  gpu::Buffer* solid = nullptr;
   gpu::Buffer* neighbor = nullptr;
   gpu::Buffer* own = nullptr;      // the slot of each step's first surface; null: there is one slot
   gpu::Buffer* goes_on = nullptr;  // null: no surface goes on unseen
