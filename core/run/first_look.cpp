@@ -426,11 +426,12 @@ std::string plan_text(FirstLook& look, bool is_wedge) {
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
   const std::string needs = is_wedge ? "" : needs_text(source, first, limits, plan.is_sequence());
   if (!needs.empty()) line("--memory", needs);
+  const bool computes = !wanted.empty();
   const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared,
                                   const std::string& cost) {
     line(name, fmt::format("up to {} of the {} frames of the shot: {} MiB of {} for each at once, beside what it takes "
                            "itself{}",
-                           count, plan.shot().size(), shared >> 20, kind, wanted.empty() ? "" : "; " + cost));
+                           count, plan.shot().size(), shared >> 20, kind, computes ? "; " + cost : ""));
   };
   const SharedCounts counts = shared_counts(plan, wanted);
   if (around_of(first.input) > 0)
