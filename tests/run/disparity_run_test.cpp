@@ -47,6 +47,19 @@ TEST_F(DisparityRun, is_the_same_in_chunks_and_regions) {
   EXPECT_EQ(ao(2), cropped(whole, rendering().shot.data, {60, 40, 50, 30}));
 }
 
+TEST_F(DisparityRun, is_found_where_input_holds_nothing_else) {
+  const Window& data = rendering().shot.data;
+  std::vector<float> values;
+  for (const float z : rendering().frame.depth) values.push_back(z < kSky ? 3 / z + 0.7f : 0.7f);
+  for (const char* channel : {"disparity", "Y", "R"}) {
+    write_plane(input(1), channel, values, data, data);
+    done(typed("--depth-kind disparity --set disparity-shift=0.7 --radius 20%"));
+    EXPECT_LT(std::ranges::min(ao(1)), 0.8) << channel;
+  }
+  EXPECT_EQ(run(typed("--depth-kind planar --radius 1")).code, 3)
+      << "other depth is named, or stands in a --depth file";
+}
+
 TEST_F(DisparityRun, takes_scene_units_only_with_a_scale) {
   write_disparities(1, 1);
   for (const char* length :

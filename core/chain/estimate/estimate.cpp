@@ -30,7 +30,7 @@ float thickness_of(const EstimatorSettings& settings) {
 double front_reach_of(const EstimatorSettings& settings, double radius) {
   double thickness = 0;
   if (settings.falloff == Falloff::none && settings.thickness == ThicknessKind::automatic)
-    thickness = (tells_backs(settings) ? kMostBack : 2.0 / 3 * kWidestRun) * radius;
+    thickness = 2.0 / 3 * kWidestRun * radius;
   if (settings.falloff == Falloff::none && settings.thickness == ThicknessKind::constant)
     thickness = settings.thickness_length;
   return std::max(radius + thickness, kFarEnd * radius);
@@ -257,11 +257,20 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                     (out.order > 1 ? kClassifyWithSecond : 0) | (out.completed ? kClassifyWithCompleted : 0) |
                     (skipping.changes ? kClassifyReuses : 0) | (selects ? kClassifySelects : 0) |
                     (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
-  const ClassifyParams params{
-      gbuffer.view,          reach.radius,        reach.told,
-      reach.front,           out.plane,           gbuffer.grid.frame_size,
-      gbuffer.grid.overhang, gbuffer.grid.factor, gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin,
-      skipping.needed.from,  skipping.needed.to};
+  // Where pixels tell how far back they are solid, a known back says otherwise wherever that may reach into the sphere.
+  const bool has_backs = reach.told > reach.radius;
+  const float front = has_backs ? std::max(reach.front, (1 + kMostBack) * reach.radius) : reach.front;
+  const ClassifyParams params{gbuffer.view,
+                              reach.radius,
+                              reach.told,
+                              front,
+                              out.plane,
+                              gbuffer.grid.frame_size,
+                              gbuffer.grid.overhang,
+                              gbuffer.grid.factor,
+                              gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin,
+                              skipping.needed.from,
+                              skipping.needed.to};
   gpu.dispatch("classify", params,
                {{"Bounds", gpu::Optional(skipping.bounds)},
                 {"Changes", gpu::Optional(skipping.changes)},
