@@ -44,8 +44,11 @@ struct Line {
   int first;   // segment of all
 };
 
+/// Of a row, and of a column.
+ivec2 segments_of(View view) { return (view.size + kSegment - 1) / kSegment; }
+
 Line line_of(View view, bool is_column, int number) {
-  const ivec2 segments = (view.size + kSegment - 1) / kSegment;
+  const ivec2 segments = segments_of(view);
   return is_column ? Line(true, number, view.size.y, view.size.y * segments.x + number * segments.y)
                    : Line(false, number, view.size.x, number * segments.x);
 }

@@ -58,11 +58,13 @@ bool is_round(View view, float beyond, Facet end, vec3 third) {
 
 void main() {
   const View view = params.view;
-  const int index = int(gl_GlobalInvocationID.x);
-  if (index >= view.size.x + view.size.y) return;
-  const Line line = line_at(view, index);
-  const int first = kSegment * int(gl_GlobalInvocationID.y);
-  if (first >= line.steps) return;
+  const ivec2 segments = segments_of(view), all = segments * view.size.yx;  // of rows, and of columns
+  const int index = int(gl_GlobalInvocationID.y) * kChainsRow + int(gl_GlobalInvocationID.x);
+  if (index >= all.x + all.y) return;
+  const bool is_column = index >= all.x;
+  const int lines = is_column ? view.size.x : view.size.y, rest = is_column ? index - all.x : index;
+  const Line line = line_of(view, is_column, rest % lines);
+  const int segment = rest / lines, first = kSegment * segment;
   const vec2 along = line.is_column ? vec2(0, 1) : vec2(1, 0);
   // The pixel at a step, two before it, and two after it.
   Facet b2, b1 = facet_at(view, line, first - 2), here = facet_at(view, line, first - 1),
@@ -82,7 +84,6 @@ void main() {
     links |= goes_on ? 1u << i : 0u;
     rounds |= is_round(view, beyond, here, third) ? 1u << i : 0u;
   } while (++i < kSegment);
-  const int segment = line.first + int(gl_GlobalInvocationID.y);
-  chains[2 * segment] = links;
-  chains[2 * segment + 1] = rounds;
+  chains[2 * (line.first + segment)] = links;
+  chains[2 * (line.first + segment) + 1] = rounds;
 }

@@ -71,7 +71,8 @@ ALCOVE_CONSTANT uint kTellsBacks = 32;       // another one: pixels tell how far
 ALCOVE_CONSTANT uint kHiddenSurface = 64;
 
 ALCOVE_CONSTANT int kChainsGroup = 16;
-ALCOVE_CONSTANT int kSegment = 32;  // px of a row or a column: see backs.glsl
+ALCOVE_CONSTANT int kChainsRow = 65536;  // invocations of chains in a row, of which each computes a segment
+ALCOVE_CONSTANT int kSegment = 32;       // px of a row or a column: see backs.glsl
 // radii: nothing farther away along a row of pixels of one surface tells how far back it is solid
 ALCOVE_CONSTANT float kLongestChain = 1.9f;
 ALCOVE_CONSTANT float kMostBack = 4;  // radii: solids reach back as far as they are seen to, but no farther

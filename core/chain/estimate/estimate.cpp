@@ -297,7 +297,7 @@ Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bo
       {view, reach.radius, has_normals ? 1u : 0u}, gpu.buffer("chains", bytes), gpu.buffer("chain ends", bytes)};
   gpu.dispatch("chains", result.params,
                {{"Depth", occluder_depth_of(gbuffer)}, {"Normal", gbuffer.normal}, {"Chains", result.links}},
-               {uint(view.size.x + view.size.y), segments_of(std::max(view.size.x, view.size.y))});
+               {uint(std::min<std::size_t>(segments, kChainsRow)), groups_of(int(segments), kChainsRow)});
   return result;
 }
 
