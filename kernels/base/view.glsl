@@ -52,6 +52,10 @@ float steps_to_border(View view, ivec2 pixel, vec2 direction) {
 /// A surface goes on where no pixel shows it no nearer to the eye and no farther from it than so many times its depth.
 const float kMostChange = 2.0;
 
+/// Neighbours on a line whose depths differ by less than this many pixels' worth of slope, for every step between them,
+/// are one surface.
+const float kRunSlope = 8.0;
+
 /// The sine of the angle below a border pixel's tangent plane from which on what is seen is another surface: a smooth
 /// one bends less, and a normal map leans less.
 const float kMostBend = 0.55;

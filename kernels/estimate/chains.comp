@@ -17,9 +17,6 @@ readonly buffer Depth { float depth[]; };   // one float per pixel
 readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
 writeonly buffer Chains { uint chains[]; };
 
-/// As kRunSlope of slice.glsl.
-const float kChainSlope = 8.0;
-
 /// What a pixel of a line shows; beside the line, something of depth 0, which is no surface with anything.
 Facet facet_at(View view, Line line, int step) {
   const int at = clamp(step, 0, line.steps - 1);
@@ -45,7 +42,7 @@ bool are_one(View view, vec2 step, Facet before, Facet a, Facet b, Facet after) 
   const bool by_depth = !(apart > kParallelSlope * pixel && are_parallel(view, a, b, params.radius));
   const bool by_normals =
       are_coplanar(view, a, b, kPlaneDot, kPlaneOff) || meet_at_edge(view, far, near, next, recedes ? -step : step);
-  const bool one = apart < kChainSlope * pixel ? by_depth : params.has_normals != 0u && by_normals;
+  const bool one = apart < kRunSlope * pixel ? by_depth : params.has_normals != 0u && by_normals;
   return one && min(a.z, b.z) > 0.0 && max(a.z, b.z) < kSkyDepth;
 }
 

@@ -90,7 +90,6 @@ struct Run {
   bool is_open;        // whether the last step is in a run
   bool is_pending;     // whether the last step is in it without being a vertex
   int first;           // column of the run's first vertex
-  Step start;          // the run's first step
   int anchor;          // step of the last vertex
   float anchor_value;  // value_of() it
   float low, high;     // slopes of the strokes from the last vertex that keep to all steps since
@@ -431,7 +430,6 @@ void fill(inout Run run, int end, int after) {
 void begin_run(inout Run run, Step start) {
   fill(run, start.at, run.next);
   run.first = run.next;
-  run.start = start;
   run.is_open = true;
   emit_vertex(run, start);
 }
@@ -550,7 +548,7 @@ void main() {
   for (uint slot = 0u; slot < kSlots; slot++) {
     lasts[slot] = none;
     const int first = int(params.slot + slot) * extent.x * extent.y + row;
-    runs[slot] = Run(first, steps.x, steps.x, false, false, steps.x, none, 0, 0.0, 0.0, 0.0, steps.x, -1.0, 0.0, 0.0);
+    runs[slot] = Run(first, steps.x, steps.x, false, false, steps.x, 0, 0.0, 0.0, 0.0, steps.x, -1.0, 0.0, 0.0);
   }
   int t = steps.x;
   do {

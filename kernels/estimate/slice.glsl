@@ -35,10 +35,6 @@ const float kLeastTilt = 1e-3;
 /// to sample all of the reach densely instead: the exponent is then the one with which the first step is a pixel long.
 const int kManySteps = 16;
 
-/// Neighbours on a slice whose depths differ by less than this many pixels' worth of slope, for every step between
-/// them, are one surface.
-const float kRunSlope = 8.0;
-
 /// The parameters that an estimator's loop over samples needs. They are read once, since lavapipe gathers a
 /// parameter anew at each use within a loop.
 struct Reach {

@@ -11,6 +11,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "kernels/hidden/hidden.h"
+#include "kernels/base/view.glsl"
 #include "kernels/hidden/ends.glsl"
 
 layout(local_size_x = kEndsGroup) in;
@@ -21,8 +22,6 @@ readonly buffer Hidden { float hidden[]; };  // planes of floats, from layers
 buffer Result { uint result[]; };            // two planes of uints, along rows and along columns, see pack_ends
 
 const uint kMost = kMostHidden + 1u;
-/// As slice.glsl has it.
-const float kRunSlope = 8.0;
 
 /// The surfaces of a pixel.
 struct Pixel {

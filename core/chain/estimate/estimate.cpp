@@ -289,9 +289,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
 
 Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
   const View& view = gbuffer.view;
-  const auto segments_of = [](int steps) { return uint((steps + kSegment - 1) / kSegment); };
-  const std::size_t segments =
-      std::size_t(view.size.y) * segments_of(view.size.x) + std::size_t(view.size.x) * segments_of(view.size.y);
+  const std::size_t segments = std::size_t(view.size.y) * groups_of(view.size.x, kSegment) +
+                               std::size_t(view.size.x) * groups_of(view.size.y, kSegment);
   const std::size_t bytes = segments * 2 * sizeof(uint);
   const Chains result{
       {view, reach.radius, has_normals ? 1u : 0u}, gpu.buffer("chains", bytes), gpu.buffer("chain ends", bytes)};

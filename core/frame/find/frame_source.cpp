@@ -323,8 +323,10 @@ std::vector<ChannelRef> find_depth(FrameSource& source, const ChannelSearch& sea
     if (auto position = search.find(file, kPositionNames, "", false); !position.empty()) return position;
   AovNames names = kDepthNames;
   const bool is_disparity = settings.depth_kind == DepthKind::disparity;
-  if (is_disparity) names.layers.push_back("disparity");
-  if (is_disparity) names.bare.push_back({"disparity"});
+  if (is_disparity) {
+    names.layers.push_back("disparity");
+    names.bare.push_back({"disparity"});
+  }
   // Networks write their disparity alone, as INPUT.
   auto depth = search.require(file, names, settings.depth_channel, is_disparity || !settings.depth.empty(), "Depth.Z");
   if (settings.depth_channel.empty()) doubt_depth_of_three(source, search, depth.front());
