@@ -89,9 +89,12 @@ TEST_F(Wedge, estimates_once_for_looks_that_differ_in_their_shaping_alone) {
   ASSERT_EQ(report["rows"].size(), 8);
   EXPECT_EQ(estimates_of(report), 2);
   expect_bits_of_commands(report);
-  const json shapes = shown(of_frame("--radius auto --set least=0,.2 --set gain=1,2 --set power=1,2"));
+  const json shapes = shown(of_frame("--radius auto --set least=0,.8 --set gain=1,2 --set power=1,2"));
   EXPECT_EQ(estimates_of(shapes), 1);
   expect_bits_of_commands(shapes);
+  // AO has no gain.
+  EXPECT_THAT(names_of(shapes)[2], HasSubstr("gain=2"));
+  EXPECT_TRUE(shapes["images"][0].at("composite") != shapes["images"][2].at("composite"));
   EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --set slices=2,4 --set intensity=1,2"))), 2);
   write_bytes(folder / "dark.toml", "intensity=2\n");
   EXPECT_EQ(estimates_of(shown(of_frame("--radius auto --preset standard," + (folder / "dark.toml")))), 1);
