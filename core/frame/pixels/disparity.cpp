@@ -25,7 +25,6 @@ struct Stretch {
 
   double middle() const { return 0.5 * (disparity[0] + disparity[1]); }
   double slope() const { return disparity[1] - disparity[0]; }
-  double length() const { return std::hypot(ray[1][0] - ray[0][0], ray[1][1] - ray[0][1]); }
 };
 
 /// Finds stretches along rows and columns.
