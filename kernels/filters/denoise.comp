@@ -66,9 +66,8 @@ void main() {
       const int j = i - apart;
       if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius) continue;
       // 1.
-      const float alike = kByDepth != 0u
-                              ? similarity_of_depths(taps[j], taps[i], params.depth_sigma, 0.0)
-                              : similarity(taps[j], taps[i], float(apart) * vec2(params.axis), 0.0);
+      const float alike = kByDepth != 0u ? similarity_of_depths(taps[j], taps[i], params.depth_sigma, 0.0)
+                                         : similarity(taps[j], taps[i], float(apart) * vec2(params.axis), 0.0);
       const float weight = params.weight[apart] * alike;
       // 2.
       for (int p = 0; p < kPlanes * kCount; p += kCount) {

@@ -135,9 +135,8 @@ void interpolate(ivec2 first, uint sites, int plane) {
     for (int i = 0; i < kDenoiseRun; i++) {
       const float away = float(j - i);
       const float at = window_at(away, narrowness[i]);
-      const float alike =
-          kByDepth != 0u ? similarity_of_depths(taps[i], tap, params.depth_sigma, kLeastSimilarity)
-                         : similarity(taps[i], tap, away * vec2(params.axis), kLeastSimilarity);
+      const float alike = kByDepth != 0u ? similarity_of_depths(taps[i], tap, params.depth_sigma, kLeastSimilarity)
+                                         : similarity(taps[i], tap, away * vec2(params.axis), kLeastSimilarity);
       const float share = abs(away) <= float(kRadius) ? weight * at * alike : 0.0;
       // 3.
       sums[i].whole += share;
