@@ -62,7 +62,7 @@ struct Chosen {
 
 /// The pixels of a block in the order of the rule.
 constexpr int kOrder[] = {5, 10, 6, 9, 0, 15, 3, 12, 1, 14, 2, 13, 4, 11, 7, 8};
-constexpr double kCovered = 0.6;  // px
+constexpr double kCovered = 0.64;
 
 /// The sites of the block that begins at this pixel; `is_doubtful` where floats may decide otherwise.
 std::set<std::pair<int, int>> sites_slowly(const Geometry& geometry, int x, int y, bool& is_doubtful) {
@@ -76,9 +76,9 @@ std::set<std::pair<int, int>> sites_slowly(const Geometry& geometry, int x, int 
     const auto site = left.front();
     sites.insert(site);
     std::erase_if(left, [&](const auto& pixel) {
-      const double apart = geometry.apart(site.first, site.second, pixel.first, pixel.second) / kCovered;
-      is_doubtful = is_doubtful || std::abs(apart - 1) < 1e-3;
-      return pixel == site || apart < 1;
+      const double likeness = geometry.likeness(site.first, site.second, pixel.first, pixel.second);
+      is_doubtful = is_doubtful || std::abs(likeness - kCovered) < 1e-3;
+      return pixel == site || likeness > kCovered;
     });
   }
   return sites;
