@@ -318,6 +318,16 @@ TEST(Interpolate, keeps_a_ramp_up_to_an_edge) {
         }
 }
 
+// On both sides of a crease pixels lie in both planes: the normals tell them apart.
+TEST(Interpolate, mixes_nothing_across_a_crease) {
+  const Crease crease;
+  const std::vector<float> sides = crease.sides();
+  for (const EstimatorSettings& settings : {filter(16, 8), filter(8, 8), filter(4, 8), filter(2, 8)}) {
+    const Difference d = difference(Sparse(crease.rendering.frame, settings).interpolated(sides, settings), sides);
+    EXPECT_LT(d.max, 1e-3) << name_of(settings) << " pixel " << d.worst % 80 << " " << d.worst / 80;
+  }
+}
+
 /// A thin line and a far wall, in which no plane of the one is anywhere near the other.
 HostFrame line_before_far_wall() {
   HostFrame frame = wall_at(0, 0, 45, 37, {-1, 0, 0}, false);

@@ -241,6 +241,14 @@ TEST(Blocks, mix_no_surfaces) {
       ASSERT_NEAR(ao[std::size_t(y * 64 + x)], is_near(x, y) ? 0.2 : 0.9, 2e-3) << x << " " << y;
 }
 
+TEST(Blocks, mix_nothing_across_a_crease) {
+  const Crease crease;
+  const std::vector<float> sides = crease.sides();
+  const auto ao = Chosen(crease.rendering.frame).filtered([&](int x, int y) { return sides[std::size_t(y * 80 + x)]; });
+  const Difference d = difference(ao, sides);
+  EXPECT_LT(d.max, 1e-3) << d.worst % 80 << " " << d.worst / 80;
+}
+
 // The search.
 
 /// The truth beside an endless bar of a rectangle's section over a floor, by even directions of the cosine-weighted
