@@ -5,7 +5,7 @@
 // Out: as many planes. What is constant stays exactly constant; sky stays 1 and is never mixed in.
 //
 // The steps have their numbers at the code:
-//  1. Two pixels mix as far as they show one surface (kernels/base/likeness.glsl), times the kernel's weight at their distance. That
+//  1. Two pixels mix as far as they show one surface (likeness.glsl), times the kernel's weight at their distance. That
 //     is the same for both of them, so it is computed once per pair.
 //  2. A pair moves both visibilities towards each other. Sums are of differences, so that what is constant stays so.
 //  3. A pixel moves by the mean of its differences.

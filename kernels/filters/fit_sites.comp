@@ -6,7 +6,7 @@
 //
 // A site takes its own place on the plane, over the image, that fits the sites about it best (W. S. Cleveland, "Robust
 // Locally Weighted Regression and Smoothing Scatterplots", 1979): a mean alone would be pulled to that side of an edge
-// on which there are sites. They count as far as they show one surface (kernels/base/likeness.glsl), by a parabola of their
+// on which there are sites. They count as far as they show one surface (likeness.glsl), by a parabola of their
 // distance, and no farther than a part of the radius. One invocation computes some in a row, which share what they
 // load.
 #version 450

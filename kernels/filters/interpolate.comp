@@ -8,7 +8,7 @@
 //
 // The steps have their numbers at the code:
 //  1. The sites in reach of a run of pixels are found: of rows in the words of tiles; of columns, what rows have made.
-//  2. A site counts at a pixel as far as both show one surface (kernels/base/likeness.glsl), and by a parabola of their distance.
+//  2. A site counts at a pixel as far as both show one surface (likeness.glsl), and by a parabola of their distance.
 //  3. Sums over the sites are taken for each pixel.
 //  4. The pixel takes its own place on the straight line that fits the sites best (W. S. Cleveland, "Robust Locally
 //     Weighted Regression and Smoothing Scatterplots", 1979): a mean alone would be pulled to that side of an edge on
