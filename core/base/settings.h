@@ -153,7 +153,7 @@ struct EstimatorSettings {
   // instead of the radius: 2 to 9 weights from the centre outwards, none negative, the centre's above 0; empty: a
   // Gaussian, or interpolate's parabola
   std::vector<double> denoise_kernel;
-  // part of the depth, 0 to 100: a step of this size weighs 1/e; 0: weighs by plane distance instead
+  // part of the depth, 0 to 100: a step of this size weighs 1/e; 0: weighs by planes and normals instead
   double denoise_depth_sigma = 0;
   double intensity = 1;  // factor on the occlusion, 0 to 100
   double power = 1;      // exponent of the visibility, above 0 to 100

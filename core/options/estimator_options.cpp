@@ -196,7 +196,9 @@ void add_denoise_rows(std::vector<SettingRow>& rows) {
   const auto unless_bilateral = [](const Settings& all) {
     return first_of({unless_denoised(all, {Denoise::bilateral}), if_by_error_alone(all)});
   };
-  pixels.choice("--denoise", &S::denoise, "smooths each surface; bilateral: by distance and plane; box: evenly, 4 x 4")
+  pixels
+      .choice("--denoise", &S::denoise,
+              "smooths each surface; bilateral: by distance, plane and normal; box: evenly, 4 x 4")
       .idle([](const Settings& all) { return all.estimator.denoise == Denoise::none ? "" : if_by_error_alone(all); });
   pixels
       .own(
@@ -222,7 +224,7 @@ void add_denoise_rows(std::vector<SettingRow>& rows) {
       .idle(unless_bilateral);
   pixels
       .number("denoise-depth-sigma", &S::denoise_depth_sigma, "of the depth", between(0, 100),
-              "depths that far apart weigh 1/e; 0: weighs by the distance from each other's plane")
+              "depths that far apart weigh 1/e; 0: weighs by planes and normals")
       .others_idle([](const Settings& all) {
         return unless_denoised(all, {Denoise::bilateral, Denoise::box});
       })

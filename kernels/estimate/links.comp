@@ -5,8 +5,8 @@
 // In: planar depth, view normals.
 // Out: the words of every tile of 8 x 8 pixels, see tiles.glsl.
 //
-// Two neighbours are one surface if the filters take them for one (likeness.glsl), and without a bend if they are so
-// alike that pixels further on are, too. An invocation computes a tile, row by row, so that each pixel is read once.
+// Two neighbours are one surface if the filters take them for one (likeness.glsl). An invocation computes a tile, row by
+// row, so that each pixel is read once.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
@@ -26,20 +26,14 @@ writeonly buffer Rows { uint rows[]; };     // 8 words per tile, see tiles.glsl
 // the same, of which two bytes are written: linked without a bend; only if adaptive
 writeonly buffer Flat { uint flat_rows[]; };
 
+const bool kReadsNormals = kAdaptive != 0u;
+#include "kernels/base/plane_at.glsl"
+
 /// Neighbours are one surface if the filters give one so much of the other's weight at least.
 const float kLinked = 0.9;
 
-/// On a round surface the weight lost grows with the square of the distance between the pixels. Neighbours are linked
-/// without a bend if those 3 pixels apart are linked still.
+/// And linked without a bend if so much less of the weight is lost: a site far away says nothing of a round surface.
 const float kFlat = 1.0 - (1.0 - kLinked) / 9.0;
-
-Plane plane_at(View view, ivec2 at) {
-  const ivec2 nearest = min(at, view.size - 1);
-  const int index = index_of(view, nearest);
-  const float z = at == nearest ? depth[index] : kSkyDepth;
-  if (kAdaptive == 0u) return Plane(z, 1.0, 0.0, vec2(0), vec3(0));
-  return plane_of(view, nearest, z, unpack_normal(normal[index]));
-}
 
 /// How far neighbours are one surface. px: from a to b.
 float link(Plane a, Plane b, vec2 px) {
@@ -65,18 +59,18 @@ void main() {
   uint word = 0u, flat_word = 0u;
   int y = 0;
   do {
-    Plane taps[kTile + 1];
-    for (int x = 0; x <= kTile; x++) taps[x] = plane_at(view, first + ivec2(x, y));
+    Plane planes[kTile + 1];
+    for (int x = 0; x <= kTile; x++) planes[x] = plane_at(view, first + ivec2(x, y));
     uint below = 0u, flat_below = 0u, right = 0u, flat_right = 0u, surface = 0u;
     for (int x = 0; x < kTile; x++) {
-      const float down = y > 0 ? link(above[x], taps[x], vec2(0, 1)) : 0.0;
-      const float across = link(taps[x], taps[x + 1], vec2(1, 0));
+      const float down = y > 0 ? link(above[x], planes[x], vec2(0, 1)) : 0.0;
+      const float across = link(planes[x], planes[x + 1], vec2(1, 0));
       below |= down > kLinked ? 1u << x : 0u;
       flat_below |= down > kFlat ? 1u << x : 0u;
       right |= across > kLinked ? 1u << x : 0u;
       flat_right |= across > kFlat ? 1u << x : 0u;
-      surface |= taps[x].z < kSkyDepth ? 1u << x : 0u;
-      above[x] = taps[x];
+      surface |= planes[x].z < kSkyDepth ? 1u << x : 0u;
+      above[x] = planes[x];
     }
     if (y > 0) rows[words + y - 1] = word | below << kBelowByte;
     if (y > 0 && kAdaptive != 0u) flat_rows[words + y - 1] = flat_word | flat_below << kBelowByte;

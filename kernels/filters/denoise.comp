@@ -15,12 +15,13 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/filters/filters.h"
 #include "kernels/base/view.glsl"
+#include "kernels/base/likeness.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const int kRadius = 3;    // pixels to each side, 1 to kDenoiseMostRadius
-layout(constant_id = 1) const uint kByDepth = 0;  // 1: weighs by depth_sigma instead of by plane distance
+layout(constant_id = 1) const uint kByDepth = 0;  // 1: weighs by depth_sigma, not by planes and normals
 layout(constant_id = 2) const uint kListed = 0;   // 1: only the runs of the list, not all
 layout(constant_id = 3) const int kPlanes = 1;    // how many planes; they share their weights
 layout(scalar, push_constant) uniform Push { DenoiseParams params; };
@@ -31,7 +32,8 @@ writeonly buffer Result { float result[]; };  // as many planes, in [0, 1]
 readonly buffer List { uint list[]; };        // one uint per run, from dilate; only if listed
 readonly buffer Counts { RunCounts counts; };
 
-#include "kernels/filters/taps.glsl"
+const bool kReadsNormals = kByDepth == 0u;
+#include "kernels/base/plane_at.glsl"
 
 /// Pixels that one invocation looks at.
 const int kCount = kDenoiseRun + 2 * kRadius;
@@ -52,11 +54,11 @@ void main() {
   if (any(greaterThanEqual(first, params.view.size))) return;
 
   const int plane = params.view.size.x * params.view.size.y;
-  Plane taps[kCount];
+  Plane planes[kCount];
   float whole[kCount], values[kPlanes * kCount], change[kPlanes * kCount];  // plane by plane
   for (int i = 0; i < kCount; i++) {
     const ivec2 here = first + (i - kRadius) * params.axis;
-    taps[i] = plane_at(params.view, here);
+    planes[i] = plane_at(params.view, here);
     whole[i] = params.weight[0];
     for (int p = 0; p < kPlanes; p++) {
       values[p * kCount + i] = value_at(here, p * plane);
@@ -66,8 +68,8 @@ void main() {
       const int j = i - apart;
       if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius) continue;
       // 1.
-      const float alike = kByDepth != 0u ? similarity_of_depths(taps[j], taps[i], params.depth_sigma, 0.0)
-                                         : similarity(taps[j], taps[i], float(apart) * vec2(params.axis), 0.0);
+      const float alike = kByDepth != 0u ? similarity_of_depths(planes[j], planes[i], params.depth_sigma, 0.0)
+                                         : similarity(planes[j], planes[i], float(apart) * vec2(params.axis), 0.0);
       const float weight = params.weight[apart] * alike;
       // 2.
       for (int p = 0; p < kPlanes * kCount; p += kCount) {
@@ -84,7 +86,7 @@ void main() {
     for (int p = 0; p < kPlanes; p++) {
       const float own = values[p * kCount + done];
       result[index_of(params.view, pixel) + p * plane] =
-          taps[done].z < kSkyDepth ? clamp(own + change[p * kCount + done] / whole[done], 0.0, 1.0) : 1.0;
+          planes[done].z < kSkyDepth ? clamp(own + change[p * kCount + done] / whole[done], 0.0, 1.0) : 1.0;
     }
   }
 }

@@ -53,7 +53,7 @@ struct SpreadParams {
 
 ALCOVE_CONSTANT uint kInterpolateColumns = 1;  // columns, after rows; else rows
 ALCOVE_CONSTANT uint kInterpolateListed = 2;   // only the runs of the list, not all
-ALCOVE_CONSTANT uint kInterpolateByDepth = 4;  // weighs by depth_sigma instead of by plane distance
+ALCOVE_CONSTANT uint kInterpolateByDepth = 4;  // weighs by depth_sigma instead of by planes and normals
 ALCOVE_CONSTANT uint kInterpolateLooksUp = 8;  // weighs by `weight` instead of by the parabola
 ALCOVE_CONSTANT uint kInterpolateFitted = 16;  // the sites of the lattice have the values of fit_sites
 

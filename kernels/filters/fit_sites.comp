@@ -13,6 +13,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/filters/filters.h"
 #include "kernels/base/view.glsl"
+#include "kernels/base/likeness.glsl"
 #include "kernels/base/normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -29,8 +30,8 @@ const int kReach = kFitReach / kLatticeStep;
 /// The slopes of the plane are held back by this, px^2: a spread of the sites this wide halves them.
 const float kLeastSpread = 4.0;
 
-const uint kByDepth = 0u;
-#include "kernels/filters/taps.glsl"
+const bool kReadsNormals = true;
+#include "kernels/base/plane_at.glsl"
 
 /// Sums over the sites about one: of their weights, times the distance, and times its products; of what they block, and
 /// of that times the distance.
@@ -80,15 +81,15 @@ void main() {
     int x = -kReach;
     do {
       const ivec2 other = pixel + kLatticeStep * ivec2(x, y), nearest = clamp(other, ivec2(0), most);
-      const Plane plane_there = plane_at(view, other);
-      const bool is_site = plane_there.z < kSkyDepth;
+      const Plane there = plane_at(view, other);
+      const bool is_site = there.z < kSkyDepth;
       const float exists = is_site ? 1.0 : 0.0;
       float blocked[kPlanes];  // what is no site was never written: 0 times it need not be 0
       for (int p = 0; p < kPlanes; p++) blocked[p] = is_site ? 1.0 - ao[index_of(view, nearest) + p * plane] : 0.0;
       for (int i = 0; i < kFitRun; i++) {
         const vec2 away = float(kLatticeStep) * vec2(x - i, y);
         precise const float window = greater(exists - narrowness[i] * dot(away, away), 0.0);
-        const float share = window * similarity(here[i], plane_there, away, 0.0);
+        const float share = window * similarity(here[i], there, away, 0.0);
         sums[i].whole += share;
         sums[i].along += share * away;
         sums[i].xx += share * away.x * away.x;

@@ -12,6 +12,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/filters/filters.h"
 #include "kernels/base/view.glsl"
+#include "kernels/base/likeness.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/tiles.glsl"
 
@@ -26,8 +27,8 @@ readonly buffer Fitted { float fitted[]; };    // planes of the lattice's pixels
 readonly buffer Sites { uint rows[]; };        // 8 words per tile, see tiles.glsl
 writeonly buffer Result { float result[]; };   // as many planes of all pixels
 
-const uint kByDepth = 0u;
-#include "kernels/filters/taps.glsl"
+const bool kReadsNormals = true;
+#include "kernels/base/plane_at.glsl"
 
 const int kCell = kLatticeStep * kLatticeStep;  // pixels
 

@@ -4,8 +4,8 @@
 // In: planar depth, view normals, needed tiles.
 // Out: the words of blocks and the planes of sites, see blocks.glsl; the list of sites; depth with a margin.
 //
-// The first site is a pixel beside the block's middle. It stands for the pixels that lie in its plane, and it in
-// theirs. The next site is one of the others. An invocation computes a block.
+// The first site is a pixel beside the block's middle. It stands for the pixels of its surface (likeness.glsl).
+// The next site is one of the others. An invocation computes a block.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -27,7 +27,8 @@ writeonly buffer Planes { vec4 planes[]; };  // by the sites' numbers
 writeonly buffer List { uint list[]; };      // the sites' numbers, in no order
 buffer Counts { SiteCounts counts; };        // zeros before
 
-/// A pixel lies in a site's plane by this many pixels' widths. Error and time hardly change from .25 to .7.
+/// A site stands for a pixel that is at least so alike: on a plane, one less than .6 pixels' widths off. Error and time
+/// hardly change from .25 to .7.
 const float kCovered = 0.64;
 
 const int kPixels = kBlock * kBlock;

@@ -6,13 +6,13 @@
 // A site has the number of its block times kBlockSites, and its own in the block.
 #include "kernels/base/likeness.glsl"
 
-/// The normal's z follows from its x and y, since it faces the eye.
-vec4 pack_plane(Plane plane) { return vec4(plane.z, plane.ahead, plane.n.xy); }
+/// A unit normal's z follows from its x and y, and a sign, which that of the depth keeps.
+vec4 pack_plane(Plane plane) { return vec4(plane.n.z < 0.0 ? -plane.z : plane.z, plane.ahead, plane.n.xy); }
 Plane plane_of_site(View view, vec4 packed) {
-  const vec2 xy = packed.zw, pixel = view.tangent_per_pixel;
-  const float scale = view.orthographic == 0 ? packed.x : 1.0;
-  const vec3 n = vec3(xy, sqrt(max(1.0 - dot(xy, xy), 0.0)));
-  return Plane(packed.x, scale, packed.y, xy * (pixel / (abs(pixel.x) * scale)), n);
+  const vec2 xy = packed.zw;
+  const float z = abs(packed.x), scale = view.orthographic == 0 ? z : 1.0, up = sqrt(max(1.0 - dot(xy, xy), 0.0));
+  const vec3 n = vec3(xy, packed.x < 0.0 ? -up : up);
+  return Plane(z, scale, packed.y, xy * (view.tangent_per_pixel / width_at(view, scale)), n);
 }
 
 uint sites_in(uint word) { return word & 15u; }

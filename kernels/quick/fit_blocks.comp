@@ -5,7 +5,8 @@
 // Out: what is blocked at each site, and how that changes over the image.
 //
 // A site takes its place on the plane through the sites about it, as in fit_sites.comp: a plane through 5 x 5 blocks
-// leaves a straight gradient as it is. Sites count by their distance, and by how far they lie in each other's planes.
+// leaves a straight gradient as it is. Sites count by their distance, and by how far they show one
+// surface (likeness.glsl).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/quick/quick.h"
@@ -65,14 +66,13 @@ vec3 fit(Sums sums) {
 
 void main() {
   const ivec2 blocks = params.blocks;  // a copy, since lavapipe reads parameters anew in each round of a loop
-  const bool perspective = params.view.orthographic == 0;
   const uint at = (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
   if (at >= counts.listed) return;
   const uint site = list[at];
   const int number = int(site) / kBlockSites;
   const ivec2 block = block_of(number, blocks), place = place_of_site(words[number], site % uint(kBlockSites));
   const Plane here = plane_of_site(params.view, planes[site]);
-  const float reach = clamp(params.reach / (perspective ? here.z : 1.0), kLeastReach, kMostReach);
+  const float reach = clamp(params.reach / here.scale, kLeastReach, kMostReach);
   const float narrow = 1.0 / (reach * reach);
   Sums sums = Sums(0.0, 0.0, vec2(0), vec2(0), 0.0, 0.0, 0.0);
   const int around = reach > kLeastToSecond ? kAround : 1;

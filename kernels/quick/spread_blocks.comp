@@ -5,8 +5,7 @@
 // Out: visibility; sky is 1.
 //
 // An invocation makes a quarter of a block: 2 x 2 pixels, which have the same four blocks. A site counts by its
-// distance, as in linear interpolation along x and y, and by how far it and the pixel lie in each other's planes. Where
-// nothing is alike, the least unlike site counts.
+// distance, as in linear interpolation along x and y, and by how far it and the pixel show one surface (likeness.glsl).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -27,8 +26,8 @@ writeonly buffer Ao { float ao[]; };        // one float per pixel, visibility
 /// Of the slopes at the sites so much counts: all of them would bring their noise to the pixels.
 const float kSlope = 0.25;
 
-/// The weight of what is too far away, or unlike.
-const float kLeastNear = 1e-3, kLeastAlike = 1e-4;
+/// The weight of a site that is too far away.
+const float kLeastNear = 1e-3;
 
 const int kQuarter = kBlock / 2;  // px a side
 const int kQuarterPixels = kQuarter * kQuarter;
@@ -69,7 +68,7 @@ void main() {
         const vec2 at = vec2(other * kBlock - quarter * kQuarter + place_of_site(word, j));
         [[unroll]] for (int i = 0; i < kQuarterPixels; i++) {
           const vec2 px = at - vec2(place_in_quarter(i));
-          const float weight = nearness(px) * similarity(pixels[i], plane, px, kLeastAlike);
+          const float weight = nearness(px) * similarity(pixels[i], plane, px, kLeastSimilarity);
           whole[i] += weight;
           blocked[i] += weight * clamp(fit.x - kSlope * dot(fit.yz, px), 0.0, 1.0);
         }

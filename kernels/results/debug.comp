@@ -5,7 +5,8 @@
 // In: planar depth, view normals, and for some views a plane of values or a second set of normals.
 // Out: the number.
 //
-// An edge is where a neighbour lies off the pixel's tangent plane: the denoisers and the upsampling stop there.
+// An edge is where a neighbour lies off the pixel's tangent plane: the denoisers and the upsampling stop there, and
+// at creases, which it does not show.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/results/results.h"

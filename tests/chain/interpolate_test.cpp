@@ -328,6 +328,23 @@ TEST(Interpolate, mixes_nothing_across_a_crease) {
   }
 }
 
+// Moments take another way than AO.
+TEST(Spread, mixes_nothing_across_a_crease) {
+  const Crease crease;
+  const std::vector<float> sides = crease.sides();
+  for (const EstimatorSettings& settings : {filter(16, 8), filter(4, 8)}) {
+    const Sparse sparse(crease.rendering.frame, settings);
+    gpu::Buffer& moments = recorder().buffer("moments of a test", sides.size() * sizeof(float), gpu::Use::upload);
+    std::ranges::copy(sides, moments.as<float>().begin());
+    recorder().upload(moments);
+    const Visibility noisy{.moments = &moments};
+    const Visibility fitted = fit_sites(recorder(), sparse.frame.gbuffer, noisy, sparse.sites, denoiser_of(settings));
+    const Visibility smooth = spread(recorder(), sparse.frame.gbuffer, noisy, fitted, sparse.sites, {});
+    const Difference d = difference(downloaded<float>(*smooth.moments), sides);
+    EXPECT_LT(d.max, 1e-3) << name_of(settings) << " pixel " << d.worst % 80 << " " << d.worst / 80;
+  }
+}
+
 /// A thin line and a far wall, in which no plane of the one is anywhere near the other.
 HostFrame line_before_far_wall() {
   HostFrame frame = wall_at(0, 0, 45, 37, {-1, 0, 0}, false);

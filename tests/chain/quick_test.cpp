@@ -4,6 +4,7 @@
 #include "core/chain/quick/quick.h"
 #include "tests/support/chain.h"
 #include "tests/support/preset.h"
+#include "tests/support/random_scenes.h"
 #include "tests/support/site_frames.h"
 #include "tests/support/site_picture.h"
 
@@ -86,9 +87,10 @@ std::set<std::pair<int, int>> sites_slowly(const Geometry& geometry, int x, int 
 
 TEST(BlockSites, are_one_for_each_surface_of_a_block_by_the_rule) {
   std::mt19937 random(5);
+  RandomScenes scenes(78);
   std::size_t doubtful = 0, compared = 0, several = 0;
   for (int i = 0; i < 60; i++) {
-    const Chosen chosen(random_picture(random));
+    const Chosen chosen(i % 2 ? scenes.next() : random_picture(random));
     const Geometry geometry(chosen.frame.gbuffer);
     const auto sites = chosen.sites();
     const ivec2 overhang = chosen.blocks.params.overhang;
@@ -247,6 +249,23 @@ TEST(Blocks, mix_nothing_across_a_crease) {
   const auto ao = Chosen(crease.rendering.frame).filtered([&](int x, int y) { return sides[std::size_t(y * 80 + x)]; });
   const Difference d = difference(ao, sides);
   EXPECT_LT(d.max, 1e-3) << d.worst % 80 << " " << d.worst / 80;
+}
+
+// Far from the middle of a wide picture a normal that faces the eye may still point away from it along the axis.
+TEST(Blocks, mix_no_surfaces_at_the_sides_of_a_wide_picture) {
+  const Plane wall{.point = {1, 2, 0}, .normal = {0.8, -0.6, 0}};
+  HostFrame host = render({{wall}}, Shot::perspective({}, {1, 0, 0}, 140, 160, 40)).frame;
+  const auto is_near = [](int x, int y) { return (x / 5 + y / 7) % 2 == 0; };
+  for (std::size_t i = 0; i < host.depth.size(); i++)
+    if (is_near(int(i) % 160, int(i) / 160)) host.depth[i] *= 0.7F;
+  const auto ao = Chosen(host).filtered([&](int x, int y) { return is_near(x, y) ? 0.2 : 0.9; });
+  int seen = 0;
+  for (std::size_t i = 0; i < host.depth.size(); i++) {
+    if (i % 160 >= 25) continue;  // farther in, the walls are nearer to each other than a pixel is wide
+    seen++;
+    ASSERT_NEAR(ao[i], is_near(int(i) % 160, int(i) / 160) ? 0.2 : 0.9, 1e-3) << i % 160 << " " << i / 160;
+  }
+  EXPECT_EQ(seen, 1000);
 }
 
 // The search.

@@ -62,7 +62,7 @@ inline HostFrame wall_at(int x, int y, int width, int height, Vec3 normal, bool 
   return render({{Plane{.point = {5, 0, 0}, .normal = normal}}}, shot).frame;
 }
 
-/// Two planes that meet at right angles towards the eye, along a slanting line; pixels beside it lie in both.
+/// Two planes at a right angle that opens towards the eye, along a slanting line; pixels beside it lie in both.
 struct Crease {
   Rendering rendering = render({{Plane{.point = {5, 0, 0}, .normal = unit({-1, 0.8, 0.6})},
                                  Plane{.point = {5, 0, 0}, .normal = unit({-1, -0.8, -0.6})}}},

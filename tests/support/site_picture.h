@@ -156,7 +156,7 @@ struct Geometry {
   /// The larger of both distances from the other's plane, in widths of the pixel there, squared.
   double apart_sq(int x, int y, int u, int v) const {
     const Vec3 away = point(u, v) - point(x, y);
-    const double width = std::abs(view.tangent_per_pixel.x);
+    const double width = (std::abs(view.tangent_per_pixel.x) + std::abs(view.tangent_per_pixel.y)) / 2;
     const auto width_at = [&](int i, int j) { return width * (view.orthographic ? 1 : depth[index(i, j)]); };
     return std::pow(std::max(std::abs(dot(normal_of(x, y), away)) / width_at(x, y),
                              std::abs(dot(normal_of(u, v), away)) / width_at(u, v)),
