@@ -5,8 +5,8 @@
 // In: planar depth, view normals.
 // Out: the words of every tile of 8 x 8 pixels, see tiles.glsl.
 //
-// Two neighbours are one surface if the filters take them for one (likeness.glsl). An invocation computes a tile, row by
-// row, so that each pixel is read once.
+// Two neighbours are one surface if the filters take them for one (likeness.glsl). An invocation computes a tile, row
+// by row, so that each pixel is read once.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
