@@ -61,13 +61,14 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   Seen seen;
   const GBuffer work = work_of(gpu, frame, inputs, surfaces, settings, seen.matte);
   const uint order = moment_order(settings, wanted);
-  if (searches_quickly(settings, work, order)) {
+  if (searches_quickly(settings, work, order) && !wanted.needs_curvature()) {
     see_quickly(gpu, work, inputs, settings, wanted, seen);
     return seen;
   }
   const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn));
   const bool with_completed = wanted.completed && completes_anywhere(settings);
-  seen.estimate = estimate(gpu, work, chosen, inputs, settings, order, with_completed);
+  seen.estimate =
+      estimate(gpu, work, chosen, inputs, settings, order, with_completed, wanted.needs_curvature());
   seen.completion = completion(gpu, work, seen.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
   const Visibility noisy = combine(gpu, work, seen.estimate, wanted.needs_scales());
@@ -75,7 +76,7 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   const Visibility fitted = fit_sites(gpu, work, noisy, chosen, denoiser);
   const Visibility smooth = chosen.rows ? interpolate(gpu, work, noisy, fitted, chosen, denoiser, runs)
                                         : denoise(gpu, work, noisy, denoiser, runs);
-  const Visibility whole = spread(gpu, work, noisy, fitted, chosen, smooth);
+  const Visibility whole = spread(gpu, work, noisy, fitted, chosen, smooth, order);
   seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, whole, runs));
   if (wanted.has(&FrameOutputs::error)) seen.error = cut(gpu, frame, seen.estimate.error, "error");
   seen.stages = {work, noisy.ao, chosen, smooth.ao, seen.estimate.completed, seen.estimate.listed.kinds};
@@ -90,7 +91,8 @@ Seen mean_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surface
   Seen seen;
   seen.matte = matte(gpu, frame);
   const Accumulation mean =
-      accumulate(gpu, surfaces.frame, frame.estimates, settings, scales, moment_order(settings, wanted));
+      accumulate(gpu, surfaces.frame, frame.estimates, settings, scales, moment_order(settings, wanted),
+                 wanted.needs_curvature());
   seen.visibility = mean.visibility;
   seen.count = mean.count;
   seen.stages.count = mean.count;
@@ -160,6 +162,11 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& se
     out.confidence = cut(gpu, frame, &confidence(gpu, seen.surfaces.wide, with_margin(frame), settings), "confidence");
   if (wanted.has(&FrameOutputs::specular_occlusion))
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, open, *visibility.ao, settings.roughness);
+  for (const auto& [planes, kind] : {std::pair{&FrameOutputs::convexity, kConvexity},
+                                     {&FrameOutputs::cavity, kCavity},
+                                     {&FrameOutputs::curvature, kCurvature}})
+    if (wanted.has(planes))
+      out.*planes = &curvature(gpu, gbuffer, seen.visibility, radii_of(settings).size(), kind, seen.matte);
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
   out = reduce(gpu, frame, wanted.filter, out);
   out.composite = composite(gpu, gbuffer, out.color_ao ? out.color_ao : out.ao, frame, wanted.look, settings.least);

@@ -9,6 +9,14 @@ struct BentNormalParams {
   ivec2 size;  // px
 };
 
+struct CurvatureParams {
+  ivec2 size;  // px
+  uint first;  // plane of what is open inside at the smallest radius
+  uint radii;
+  float flat_value;       // of a flat surface
+  float inside, outside;  // what all that is blocked there adds
+};
+
 ALCOVE_CONSTANT uint kShapeByIntensity = 1;  // what is not asked for leaves every bit as it is
 ALCOVE_CONSTANT uint kShapeByPower = 2;
 ALCOVE_CONSTANT uint kShapeByFade = 4;

@@ -180,11 +180,14 @@ Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame
 }
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
-                  const EstimatorSettings& settings, uint order, bool with_completed) {
-  const std::size_t plane = plane_bytes(gbuffer.view);
-  Estimate result{&gpu.buffer("ao", radii_of(settings).size() * plane)};
-  if (order > 0) result.moments = &gpu.buffer("moments", moments_in(order) * plane);
+                  const EstimatorSettings& settings, uint order, bool with_completed,
+                  bool with_curvature) {
+  const std::size_t plane = plane_bytes(gbuffer.view), radii = radii_of(settings).size();
+  Estimate result{&gpu.buffer("ao", radii * plane)};
+  const std::size_t further = moments_in(order) + (with_curvature ? 2 * radii : 0);
+  if (further > 0) result.moments = &gpu.buffer("moments", further * plane);
   result.order = order;
+  result.has_curvature = with_curvature;
   if (with_completed) result.completed = &gpu.buffer("completed", plane);
   if (!searches_exactly(settings))
     estimate_sampled(gpu, gbuffer, sites, frame, settings, result);
@@ -196,7 +199,9 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
 Estimate of_radius(const Estimate& all, uint plane, std::size_t radii) {
   const bool is_largest = plane + 1 == radii;
   Estimate out{all.ao, plane};
-  if (is_largest) out.moments = all.moments;
+  if (is_largest || all.has_curvature) out.moments = all.moments;
+  out.has_curvature = all.has_curvature;
+  out.curvature = uint(moments_in(all.order)) + 2 * plane;
   if (is_largest) out.order = all.order;
   if (is_largest) out.completed = all.completed;
   return out;
@@ -255,6 +260,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   gpu.clear(*list.counts);
   const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (out.order > 0 ? kClassifyWithFirst : 0) |
                     (out.order > 1 ? kClassifyWithSecond : 0) | (out.completed ? kClassifyWithCompleted : 0) |
+                    (out.has_curvature ? kClassifyWithCurvature : 0) |
                     (skipping.changes ? kClassifyReuses : 0) | (selects ? kClassifySelects : 0) |
                     (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
   // Where pixels tell how far back they are solid, a known back says otherwise wherever that may reach into the sphere.
@@ -265,6 +271,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                               reach.told,
                               front,
                               out.plane,
+                              out.curvature,
                               gbuffer.grid.frame_size,
                               gbuffer.grid.overhang,
                               gbuffer.grid.factor,
@@ -329,13 +336,14 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   params.thickness = reach.thickness;
   params.bias = reach.bias;
   params.plane = out.plane;
+  params.curvature = out.curvature;
   params.depth_precision = gbuffer.depth_precision;
   std::vector<gpu::Binding> buffers = buffers_of(gbuffer, out);
   buffers.insert(buffers.end(), {{"Moments", gpu::Optional(out.moments)},
                                  {"Completed", gpu::Optional(out.completed)},
                                  {"Backs", gpu::Optional(out.told)}});
   const uint mode = uint(reach.falloff) | (out.order > 0 ? kWithFirst : 0) | (out.order > 1 ? kWithSecond : 0) |
-                    (out.completed ? kWithCompleted : 0);
+                    (out.completed ? kWithCompleted : 0) | (out.has_curvature ? kWithCurvature : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0) |
                      (out.told ? kTellsBacks : 0);
   const uint sites = out.listed.sites ? uint(sampling.wide_slices) : 0;

@@ -61,6 +61,8 @@ struct Estimate {
   uint plane = 0;                     // of `ao`: that of the radius that an estimator writes
   gpu::Buffer* moments = nullptr;     // of the largest radius: see Visibility
   uint order = 0;                     // of the moments
+  bool has_curvature = false;         // two planes for each radius follow the moments: see Visibility
+  uint curvature = 0;                 // those of the radius that an estimator writes begin with this plane
   TileList listed{};                  // of the largest radius
   const gpu::Buffer* told = nullptr;  // how far back pixels are solid, from backs(); null: the settings say it
   gpu::Buffer* error = nullptr;       // with a tolerance, of the mean over the radii: see refine.comp
@@ -73,7 +75,8 @@ struct Estimate {
 /// Runs the estimator of the settings for each of their radii. The frame gives the number that animates the noise, and
 /// what has changed.
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
-                  const EstimatorSettings& settings, uint order = 0, bool with_completed = false);
+                  const EstimatorSettings& settings, uint order = 0, bool with_completed = false,
+                  bool with_curvature = false);
 
 /// Runs an estimator that takes samples for each radius of the settings, into the buffers of `result`.
 void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,

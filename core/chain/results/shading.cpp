@@ -80,6 +80,20 @@ gpu::Buffer& transfer(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibili
   return planes;
 }
 
+gpu::Buffer& curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, std::size_t radii,
+                       const CurvatureKind& kind, const Matte& matte) {
+  gpu::Buffer& planes = gpu.buffer(kind.name, planes_of_curvature(radii) * plane_bytes(gbuffer.view));
+  const uint first = planes_in(*visibility.moments, gbuffer.view) - 2 * uint(radii);
+  gpu.dispatch("curvature",
+               CurvatureParams{gbuffer.view.size, first, uint(radii), kind.flat_value, kind.inside, kind.outside},
+               {{"Depth", gbuffer.depth},
+                {"Open", visibility.moments},
+                {"Matte", gpu::Optional(matte.plane)},
+                {"Result", planes}},
+               extent_of(gbuffer.view), {matte.plane ? 1u : 0u});
+  return planes;
+}
+
 gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,
                         const Matrix3& aov_from_view) {
   gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view));
