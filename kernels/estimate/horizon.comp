@@ -266,11 +266,11 @@ float add_faded(inout Found found, Side side, Reach reach, Draw draw, vec2 place
   return added[0].x;
 }
 
-/// With kCurved: follows the receiver's own surface to the next sample, or to the end of a side.
-void follow(inout Found found, Receiver r, Side side, Reach reach, Sample s, vec2 beside, bool connected,
-            float rises, float last_z) {
+/// With kCurved: follows the receiver's own surface to the next sample.
+void follow(inout Found found, Receiver r, Side side, Reach reach, Sample s, Sample last, vec2 beside,
+            bool connected, float rises) {
   if (!kCurved) return;
-  follow(found.own, r, side, reach, s, beside, connected, rises, last_z);
+  follow(found.own, r, reach, s, last, beside, connected, rises);
   if (kHard) return;
   const vec2 arcs = arcs_of(side, found.own);
   found.own.sum +=
@@ -427,7 +427,7 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
       const ivec2 pixel = pixel_at(r, side, offset), middle = last_pixel + pixel >> 1;
       const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
       const bool is_one = is_through(r, reach, s.z, middle_z, last.z, offset - last.offset);
-      follow(found, r, side, reach, s, vec2(pixel - r.pixel), is_one, slopes.x, last.z);
+      follow(found, r, side, reach, s, last, vec2(pixel - r.pixel), is_one, slopes.x);
       last_pixel = pixel;
     }
     last = s;
@@ -466,7 +466,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       // A run that crosses the sphere between two samples blocks half way to the one beyond.
       const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
       const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
-      follow(found, r, side, reach, s, beside, connected, slopes.x, last.z);
+      follow(found, r, side, reach, s, last, beside, connected, slopes.x);
       if (kBehindOthers) take_down(interrupted, k, s, last, connected, connected, reach);
       const bool ends = both(connected, s.above) ? false : true;
       if (kHard) {
@@ -610,8 +610,8 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
       if (kCurved) {
         const Sample s = here.at[0];
         const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
-        follow(found, r, side, reach, s, vec2(pixel - r.pixel), connected,
-               slopes_of(s, crosses, mix(s.slope, last.slope, 0.5)).x, last.z);
+        follow(found, r, side, reach, s, last, vec2(pixel - r.pixel), connected,
+               slopes_of(s, crosses, mix(s.slope, last.slope, 0.5)).x);
       }
       if (kBehindOthers) {
         const bool goes_on = here.at[0].z > last.z ? from[0] >= 0 : is_taken(from, 0);
@@ -688,7 +688,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
 mat2x3 search(Receiver r, Side side, Reach reach, Draw draw, out vec2 curved) {
   const int count = min(int(kSteps), int(side.reach));
   const Blocked nothing = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
-  Found found = Found(nothing, nothing, mat2x3(0), mat2x3(0), 0.0, own_surface(side));
+  Found found = Found(nothing, nothing, mat2x3(0), mat2x3(0), 0.0, own_surface());
   if (kThickness == kThicknessEndless)
     search_endless(found, r, side, reach, draw, count);
   else if (kSurfaces > 1)
