@@ -162,11 +162,13 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& se
     out.confidence = cut(gpu, frame, &confidence(gpu, seen.surfaces.wide, with_margin(frame), settings), "confidence");
   if (wanted.has(&FrameOutputs::specular_occlusion))
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, open, *visibility.ao, settings.roughness);
-  for (const auto& [planes, kind] : {std::pair{&FrameOutputs::convexity, kConvexity},
-                                     {&FrameOutputs::cavity, kCavity},
-                                     {&FrameOutputs::curvature, kCurvature}})
-    if (wanted.has(planes))
-      out.*planes = &curvature(gpu, gbuffer, seen.visibility, radii_of(settings).size(), kind, seen.matte);
+  if (wanted.needs_curvature()) {
+    const Curvature made =
+        curvature(gpu, gbuffer, seen.visibility, radii_of(settings).size(), wanted, seen.matte);
+    out.convexity = made.convexity;
+    out.cavity = made.cavity;
+    out.curvature = made.curvature;
+  }
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
   out = reduce(gpu, frame, wanted.filter, out);
   out.composite = composite(gpu, gbuffer, out.color_ao ? out.color_ao : out.ao, frame, wanted.look, settings.least);

@@ -272,7 +272,7 @@ void follow(inout Found found, Receiver r, Side side, Reach reach, Sample s, Sam
   if (!kCurved) return;
   follow(found.own, r, reach, s, last, beside, connected, rises);
   if (kHard) return;
-  const vec2 arcs = arcs_of(side, found.own);
+  const vec2 arcs = arcs_of(found.own, r, side, reach);
   found.own.sum +=
       falloff_weight(kFalloff, length(s.place), reach.falloff_start, reach.radius) * (arcs - found.own.last);
   found.own.last = arcs;
@@ -696,8 +696,7 @@ mat2x3 search(Receiver r, Side side, Reach reach, Draw draw, out vec2 curved) {
   else
     search_runs(found, r, side, reach, draw, count);
   if (kBeyondBorder && side.reach < side.whole_reach) complete_beyond(found, r, side, reach, draw);
-  if (kCurved) end(found.own, reach);
-  curved = !kCurved ? vec2(0) : kHard ? arcs_of(side, found.own) : found.own.sum;
+  curved = !kCurved ? vec2(0) : kHard ? arcs_of(found.own, r, side, reach) : found.own.sum;
   if (!kHard) {
     found.sum[1].z = found.completed_sum;
     return found.sum;

@@ -13,63 +13,46 @@
 // goes on along its last slope, as it does between the last sample and the radius, behind what is nearer, and beyond
 // the border.
 
-/// The own surface as far as a search has come.
+/// The own surface as far as a search has come. What lies in the loop over samples is without branches: lavapipe
+/// computes both sides of each.
 struct OwnSurface {
-  bool goes_on;
-  bool falls;          // its last sample lies below the tangent plane
+  bool is_linked;      // so is its last sample
+  bool is_inside;      // and all samples were within the radius
+  bool falls;          // where it ends inside, it goes on below the tangent plane
   float low, high;     // its smallest and largest slope_of() within the radius; 1 and -1: there is none
-  vec2 place, onward;  // its last sample's, and the way to that from the one before
+  vec2 place, onward;  // of its last sample inside, and where to it goes on from there; 0: along the eye's ray
   vec2 sum, last;      // with falloff: the weighed arcs, inside and outside, and those of all so far
 };
 
-OwnSurface own_surface() { return OwnSurface(true, false, 1.0, -1.0, vec2(0), vec2(0), vec2(0), vec2(0)); }
-
-/// The arc integrals of what it blocks, inside and outside.
-vec2 arcs_of(Side side, OwnSurface own) {
-  const float plane = slope_of(side.ahead);
-  const vec2 arcs = vec2(arc_to(side, place_at(min(own.low, plane))), arc_to(side, place_at(max(own.high, plane))));
-  return arc_to(side, place_at(plane)) - arcs;
-}
-
-/// Whether a sample lies below the tangent plane as clearly as is_above() asks for above it.
-bool is_below(Receiver r, Reach reach, Sample s, vec2 beside) {
-  const float depth = -height_of(r, beside, s.z, s.scale);
-  const bool is_sloping = s.z < kSkyDepth ? is_elevated(depth, reach.per_elevation, s.distance_sq) : true;
-  return both(depth > r.least_height + s.scale * (reach.least_rise * s.offset), is_sloping);
-}
-
-/// slope_of() where a straight line from a place within the sphere of the radius leaves it.
-float slope_of_exit(Reach reach, vec2 place, vec2 onward) {
-  const vec2 d = onward * inversesqrt(max(dot(onward, onward), 1e-37));
-  const float along = dot(place, d);
-  return slope_of(place + (sqrt(max(along * along - dot(place, place) + reach.radius_sq, 0.0)) - along) * d);
-}
-
-/// Ends it at its last sample.
-void end(inout OwnSurface own, Reach reach) {
-  if (both(both(own.goes_on, own.falls), dot(own.place, own.place) < reach.radius_sq))
-    own.low = min(own.low, slope_of_exit(reach, own.place, own.onward));
-  own.goes_on = false;
-}
+OwnSurface own_surface() { return OwnSurface(true, true, false, 1.0, -1.0, vec2(0), vec2(0), vec2(0), vec2(0)); }
 
 /// Takes the next sample. connected: it and the one before are one surface. rises: the largest slope that it blocks.
 void follow(inout OwnSurface own, Receiver r, Reach reach, Sample s, Sample last, vec2 beside, bool connected,
             float rises) {
-  if (!own.goes_on) return;
-  const bool falls = is_below(r, reach, s, beside);
-  if (!connected) {
-    const bool turns = both(falls, s.z > last.z);
-    own.falls = turns ? true : own.falls;
-    own.onward = turns ? away_from_eye(r, own.place) : own.onward;
-    end(own, reach);
-    return;
-  }
+  // As clearly as is_above() asks for. What is infinitely far away has no elevation.
+  const float height = height_of(r, beside, s.z, s.scale);
+  const bool is_below = -height > r.least_height + s.scale * (reach.least_rise * s.offset);
+  const bool falls = both(is_below, is_elevated(height, reach.per_elevation, s.distance_sq));
+  const bool goes_on = both(own.is_inside, connected), turns = both(both(own.is_inside, is_below), s.z > last.z);
   const vec2 onward = s.place - own.place;
-  const bool leaves = both(!s.within, dot(own.place, own.place) < reach.radius_sq);
-  if (both(falls, s.within)) own.low = min(own.low, s.slope);
-  if (both(falls, leaves)) own.low = min(own.low, slope_of_exit(reach, own.place, onward));
-  own.high = max(own.high, rises);
-  own.falls = falls;
-  own.place = s.place;
-  own.onward = onward;
+  own.onward.x = goes_on ? onward.x : turns ? 0.0 : own.onward.x;
+  own.onward.y = goes_on ? onward.y : turns ? 0.0 : own.onward.y;
+  own.falls = goes_on ? falls : turns ? true : own.falls;
+  own.is_linked = both(own.is_linked, connected);
+  own.is_inside = both(goes_on, s.within);
+  own.place.x = own.is_inside ? s.place.x : own.place.x;
+  own.place.y = own.is_inside ? s.place.y : own.place.y;
+  own.low = lesser(both(own.is_inside, falls) ? s.slope : 1.0, own.low);
+  own.high = greater(own.is_linked ? rises : -1.0, own.high);
+}
+
+/// The arc integrals of what it blocks, inside and outside. It goes on straight to the sphere of the radius.
+vec2 arcs_of(OwnSurface own, Receiver r, Side side, Reach reach) {
+  const float length_sq = dot(own.onward, own.onward), plane = slope_of(side.ahead);
+  const vec2 d = length_sq > 0.0 ? own.onward * inversesqrt(length_sq) : away_from_eye(r, own.place);
+  const float along = dot(own.place, d), beside_sq = reach.radius_sq - dot(own.place, own.place);
+  const float end = slope_of(own.place + (sqrt(max(along * along + beside_sq, 0.0)) - along) * d);
+  const float low = min(own.low, own.falls ? end : 1.0);
+  return vec2(low < plane ? whole_arc(side) - arc_to(side, place_at(low)) : 0.0,
+              own.high > plane ? whole_arc(side) - arc_to(side, place_at(own.high)) : 0.0);
 }

@@ -80,18 +80,24 @@ gpu::Buffer& transfer(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibili
   return planes;
 }
 
-gpu::Buffer& curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, std::size_t radii,
-                       const CurvatureKind& kind, const Matte& matte) {
-  gpu::Buffer& planes = gpu.buffer(kind.name, planes_of_curvature(radii) * plane_bytes(gbuffer.view));
-  const uint first = planes_in(*visibility.moments, gbuffer.view) - 2 * uint(radii);
+Curvature curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, std::size_t radii,
+                    const Wanted& wanted, const Matte& matte) {
+  const auto planes = [&](gpu::Buffer* FrameOutputs::*member, const char* name) {
+    return wanted.has(member) ? &gpu.buffer(name, planes_of_curvature(radii) * plane_bytes(gbuffer.view)) : nullptr;
+  };
+  const Curvature result{planes(&FrameOutputs::convexity, "convexity"), planes(&FrameOutputs::cavity, "cavity"),
+                         planes(&FrameOutputs::curvature, "curvature")};
+  const uint mode = (result.convexity ? kCurvatureConvexity : 0) | (result.cavity ? kCurvatureCavity : 0) |
+                    (result.curvature ? kCurvatureBoth : 0) | (matte.plane ? kCurvatureByMatte : 0);
   gpu.dispatch("curvature",
-               CurvatureParams{gbuffer.view.size, first, uint(radii), kind.flat_value, kind.inside, kind.outside},
-               {{"Depth", gbuffer.depth},
-                {"Open", visibility.moments},
+               CurvatureParams{gbuffer.view.size, planes_in(*visibility.moments, gbuffer.view) - 2 * uint(radii)},
+               {{"Open", visibility.moments},
                 {"Matte", gpu::Optional(matte.plane)},
-                {"Result", planes}},
-               extent_of(gbuffer.view), {matte.plane ? 1u : 0u});
-  return planes;
+                {"Convexity", gpu::Optional(result.convexity)},
+                {"Cavity", gpu::Optional(result.cavity)},
+                {"Curvature", gpu::Optional(result.curvature)}},
+               extent_of(gbuffer.view), {mode, uint(radii)});
+  return result;
 }
 
 gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,

@@ -8,6 +8,7 @@
 #include "core/base/settings.h"
 #include "core/chain/base/planes.h"
 #include "core/chain/geometry/matte.h"
+#include "core/chain/results/outputs.h"
 
 namespace alcove {
 
@@ -38,18 +39,13 @@ gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::
 gpu::Buffer& transfer(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
                       const Matrix3& space_from_view, const std::string& name, const Environment* light = nullptr);
 
-/// The values of curvature.comp by which an AOV is made.
-struct CurvatureKind {
-  const char* name;
-  float flat_value, inside, outside;
+/// Convexity, cavity and curvature, those that are wanted, of so many radii. Of the visibility's moments the last two
+/// planes for each radius are what they are made of.
+struct Curvature {
+  gpu::Buffer *convexity, *cavity, *curvature;
 };
-inline constexpr CurvatureKind kConvexity{"convexity", 0, 1, 0}, kCavity{"cavity", 0, 0, 1},
-    kCurvature{"curvature", 0.5f, 0.5f, -0.5f};
-
-/// Such an AOV of so many radii. Of the visibility's moments the last two planes for each radius are those of
-/// curvature.
-gpu::Buffer& curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, std::size_t radii,
-                       const CurvatureKind& kind, const Matte& matte);
+Curvature curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, std::size_t radii,
+                    const Wanted& wanted, const Matte& matte);
 
 /// Packed directions as planes x, y, z of that name, for the host. aov_from_view rotates them.
 gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,
