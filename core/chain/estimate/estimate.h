@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/base/settings.h"
@@ -61,8 +62,9 @@ struct Estimate {
   uint plane = 0;                     // of `ao`: that of the radius that an estimator writes
   gpu::Buffer* moments = nullptr;     // of the largest radius: see Visibility
   uint order = 0;                     // of the moments
-  bool has_curvature = false;         // two planes for each radius follow the moments: see Visibility
-  uint curvature = 0;                 // those of the radius that an estimator writes begin with this plane
+  // The first of two planes of `moments` for each radius, or of those of the radius that an estimator writes: see
+  // Visibility; none: not asked for, or left to estimate_curvature().
+  std::optional<uint> curvature{};
   TileList listed{};                  // of the largest radius
   const gpu::Buffer* told = nullptr;  // how far back pixels are solid, from backs(); null: the settings say it
   gpu::Buffer* error = nullptr;       // with a tolerance, of the mean over the radii: see refine.comp
@@ -81,6 +83,10 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
 /// Runs an estimator that takes samples for each radius of the settings, into the buffers of `result`.
 void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
                       const EstimatorSettings& settings, Estimate& result);
+/// Follows the receivers' own surfaces where the estimator of the settings does not: by a search that takes samples and
+/// whose AO nobody reads, into the planes of `result` from that one on.
+void estimate_curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
+                        const EstimatorSettings& settings, const Estimate& result, uint first);
 /// The buffers of an estimate of so many radii into which an estimator writes one of them: moments, and what
 /// completed surfaces took, only with the largest.
 Estimate of_radius(const Estimate& all, uint plane, std::size_t radii);
