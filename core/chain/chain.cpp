@@ -67,8 +67,7 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   }
   const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn));
   const bool with_completed = wanted.completed && completes_anywhere(settings);
-  seen.estimate =
-      estimate(gpu, work, chosen, inputs, settings, order, with_completed, wanted.needs_curvature());
+  seen.estimate = estimate(gpu, work, chosen, inputs, settings, order, with_completed, wanted.needs_curvature());
   seen.completion = completion(gpu, work, seen.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
   const Visibility noisy = combine(gpu, work, seen.estimate, wanted.needs_scales());
@@ -90,9 +89,8 @@ Seen mean_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surface
   const std::size_t scales = wanted.needs_scales() && radii > 1 ? radii : 0;
   Seen seen;
   seen.matte = matte(gpu, frame);
-  const Accumulation mean =
-      accumulate(gpu, surfaces.frame, frame.estimates, settings, scales, moment_order(settings, wanted),
-                 wanted.needs_curvature());
+  const Accumulation mean = accumulate(gpu, surfaces.frame, frame.estimates, settings, scales,
+                                       moment_order(settings, wanted), wanted.needs_curvature());
   seen.visibility = mean.visibility;
   seen.count = mean.count;
   seen.stages.count = mean.count;
@@ -145,7 +143,8 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& se
                     const Wanted& wanted) {
   const GBuffer& gbuffer = seen.surfaces.frame;
   const bool has_open = wanted.has(&FrameOutputs::bent_normal) || wanted.has(&FrameOutputs::specular_occlusion);
-  const gpu::Buffer& open = bent_normal(gpu, gbuffer, has_open ? seen.visibility.moments : nullptr);
+  const gpu::Buffer& open =
+      bent_normal(gpu, gbuffer, has_open && moment_order(settings, wanted) > 0 ? seen.visibility.moments : nullptr);
   const Visibility visibility =
       shape(gpu, gbuffer, seen.visibility, shaping_of(settings), frame[RawPlane::material_ao], seen.matte);
   FrameOutputs out = with_transfer(gpu, frame, gbuffer, seen.visibility, wanted, counts_of(seen));
@@ -163,8 +162,7 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& se
   if (wanted.has(&FrameOutputs::specular_occlusion))
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, open, *visibility.ao, settings.roughness);
   if (wanted.needs_curvature()) {
-    const Curvature made =
-        curvature(gpu, gbuffer, seen.visibility, radii_of(settings).size(), wanted, seen.matte);
+    const Curvature made = curvature(gpu, gbuffer, seen.visibility, radii_of(settings).size(), wanted, seen.matte);
     out.convexity = made.convexity;
     out.cavity = made.cavity;
     out.curvature = made.curvature;

@@ -321,8 +321,9 @@ class OwnSurface {
       onward_ = scene_.orthographic() ? Vector{0, 0, -1} : normalized(line[last].position);
     else if (!falls(place_))
       return arcs_;
-    block(angle_of(side_, crossing(place_, place_ + 2 * settings_.radius / length(onward_) * onward_, settings_.radius)),
-          settings_.radius);
+    block(
+        angle_of(side_, crossing(place_, place_ + 2 * settings_.radius / length(onward_) * onward_, settings_.radius)),
+        0.5 * (length(place_) + settings_.radius));
     return arcs_;
   }
 
@@ -331,8 +332,7 @@ class OwnSurface {
 
   /// Whether what is seen beside the last sample lies behind it and below the receiver's plane.
   bool is_behind(const Sample& last, const Sample& next) const {
-    if (next.depth > 0)
-      return next.depth > last.depth && dot(receiver_.normal, next.position - receiver_.position) < 0;
+    if (next.depth > 0) return next.depth > last.depth && dot(receiver_.normal, next.position - receiver_.position) < 0;
     const Vector far = scene_.position(next.x, next.y, 1) - scene_.position(next.x, next.y, 0);
     return dot(receiver_.normal, scene_.orthographic() ? Vector{0, 0, -1} : far) < 0;
   }
@@ -340,11 +340,13 @@ class OwnSurface {
   void take(Vector offset) {
     const double radius = settings_.radius, distance = length(offset);
     const bool is_within = distance < radius, was_within = length(place_) < radius;
-    if (length(place_) > 0 && is_within != was_within && angle_of(side_, offset) < limit_ && angle_of(side_, place_) < limit_)
+    if (length(place_) > 0 && is_within != was_within && angle_of(side_, offset) < limit_ &&
+        angle_of(side_, place_) < limit_)
       rise(angle_of(side_, was_within ? crossing(place_, offset, radius) : crossing(offset, place_, radius)), radius);
     if (is_within && angle_of(side_, offset) > 0) rise(angle_of(side_, offset), distance);
     if (is_inside_ && falls(offset))
-      block(angle_of(side_, is_within ? offset : crossing(place_, offset, radius)), std::min(distance, radius));
+      block(angle_of(side_, is_within ? offset : crossing(place_, offset, radius)),
+            is_within ? distance : 0.5 * (length(place_) + radius));
     is_inside_ = is_inside_ && is_within;
     onward_ = offset - place_;
     place_ = offset;
@@ -359,7 +361,8 @@ class OwnSurface {
   void rise(double angle, double distance) {
     const double high = std::min(high_.value_or(limit_ - std::asin(settings_.bias)), angle);
     if (high < limit_)
-      arcs_.outside += weight_of(settings_, distance) * (arc(high_.value_or(limit_), side_.gamma) - arc(high, side_.gamma));
+      arcs_.outside +=
+          weight_of(settings_, distance) * (arc(high_.value_or(limit_), side_.gamma) - arc(high, side_.gamma));
     high_ = high;
   }
 
@@ -505,7 +508,8 @@ void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, Besid
 
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings) {
   std::vector<float> ao(frame.data.pixels(), 1.0f);
-  for_pixels(frame, settings, Besides::nothing, [&](std::size_t i, const Openness& open) { ao[i] = float(open.visibility); });
+  for_pixels(frame, settings, Besides::nothing,
+             [&](std::size_t i, const Openness& open) { ao[i] = float(open.visibility); });
   return ao;
 }
 

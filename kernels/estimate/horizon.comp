@@ -266,16 +266,29 @@ float add_faded(inout Found found, Side side, Reach reach, Draw draw, vec2 place
   return added[0].x;
 }
 
+/// With falloff: adds the new part of what the own surface blocks, weighed by a distance.
+void add_faded(inout OwnSurface own, Side side, Reach reach, float distance_to_it) {
+  const vec2 arcs = arcs_of(own, side);
+  own.sum += falloff_weight(kFalloff, distance_to_it, reach.falloff_start, reach.radius) * (arcs - own.last);
+  own.last = arcs;
+}
+
 /// With kCurved: follows the receiver's own surface to the next sample.
-void follow(inout Found found, Receiver r, Side side, Reach reach, Sample s, Sample last, vec2 beside,
-            bool connected, float rises) {
+void follow(inout Found found, Receiver r, Side side, Reach reach, Sample s, Sample last, vec2 beside, bool connected,
+            float rises) {
   if (!kCurved) return;
   follow(found.own, r, reach, s, last, beside, connected, rises);
-  if (kHard) return;
-  const vec2 arcs = arcs_of(found.own, r, side, reach);
-  found.own.sum +=
-      falloff_weight(kFalloff, length(s.place), reach.falloff_start, reach.radius) * (arcs - found.own.last);
-  found.own.last = arcs;
+  if (!kHard) add_faded(found.own, side, reach, length(s.place));
+}
+
+/// What it blocks of a side, inside and outside.
+vec2 ended(OwnSurface own, Receiver r, Side side, Reach reach) {
+  if (!kCurved) return vec2(0);
+  end(own, r, reach);
+  if (kHard) return arcs_of(own, side);
+  // What it goes on to lies as far away as its end, or farther.
+  add_faded(own, side, reach, 0.5 * (length(own.place) + reach.radius));
+  return own.sum;
 }
 
 /// 7. Adds what a completed surface blocks.
@@ -696,7 +709,7 @@ mat2x3 search(Receiver r, Side side, Reach reach, Draw draw, out vec2 curved) {
   else
     search_runs(found, r, side, reach, draw, count);
   if (kBeyondBorder && side.reach < side.whole_reach) complete_beyond(found, r, side, reach, draw);
-  curved = !kCurved ? vec2(0) : kHard ? arcs_of(found.own, r, side, reach) : found.own.sum;
+  curved = ended(found.own, r, side, reach);
   if (!kHard) {
     found.sum[1].z = found.completed_sum;
     return found.sum;
@@ -761,7 +774,8 @@ void estimate(ivec2 pixel, uint slices) {
     do {
       const Side side = side_of(view, r, slice, float(sign), reach);  // 3.
       vec2 curved;
-      const mat2x3 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)), curved);
+      const mat2x3 arcs =
+          slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)), curved);
       curvature += slice.share * slice.weight * curved;
       blocked += arcs[0].x;
       if (kTellsCompleted) completed_arcs += arcs[1].z;

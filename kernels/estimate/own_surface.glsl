@@ -46,13 +46,18 @@ void follow(inout OwnSurface own, Receiver r, Reach reach, Sample s, Sample last
   own.high = greater(own.is_linked ? rises : -1.0, own.high);
 }
 
-/// The arc integrals of what it blocks, inside and outside. It goes on straight to the sphere of the radius.
-vec2 arcs_of(OwnSurface own, Receiver r, Side side, Reach reach) {
-  const float length_sq = dot(own.onward, own.onward), plane = slope_of(side.ahead);
+/// The arc integrals of what it blocks, inside and outside.
+vec2 arcs_of(OwnSurface own, Side side) {
+  const float plane = slope_of(side.ahead);
+  return vec2(own.low < plane ? whole_arc(side) - arc_to(side, place_at(own.low)) : 0.0,
+              own.high > plane ? whole_arc(side) - arc_to(side, place_at(own.high)) : 0.0);
+}
+
+/// Lets it go on straight to the sphere of the radius from where it ends inside.
+void end(inout OwnSurface own, Receiver r, Reach reach) {
+  const float length_sq = dot(own.onward, own.onward);
   const vec2 d = length_sq > 0.0 ? own.onward * inversesqrt(length_sq) : away_from_eye(r, own.place);
   const float along = dot(own.place, d), beside_sq = reach.radius_sq - dot(own.place, own.place);
-  const float end = slope_of(own.place + (sqrt(max(along * along + beside_sq, 0.0)) - along) * d);
-  const float low = min(own.low, own.falls ? end : 1.0);
-  return vec2(low < plane ? whole_arc(side) - arc_to(side, place_at(low)) : 0.0,
-              own.high > plane ? whole_arc(side) - arc_to(side, place_at(own.high)) : 0.0);
+  const float low = slope_of(own.place + (sqrt(max(along * along + beside_sq, 0.0)) - along) * d);
+  own.low = min(own.low, own.falls ? low : 1.0);
 }

@@ -13,11 +13,11 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kMode = 0;  // bits of kCurvature*
 layout(constant_id = 1) const int kRadii = 1;
 layout(scalar, push_constant) uniform Push { CurvatureParams params; };
-readonly buffer Open { float open[]; };              // planes of floats in [0, 1], 1 on sky; from `first` on two a radius
-readonly buffer Matte { float matte[]; };            // one float per pixel, from matte; not read without
-writeonly buffer Convexity { float convexity[]; };   // planes of floats in [0, 1]
-writeonly buffer Cavity { float cavity[]; };         // the same
-writeonly buffer Curvature { float curvature[]; };   // the same, 1/2 where all is flat
+readonly buffer Open { float open[]; };    // planes of floats in [0, 1], 1 on sky; from `first` on two a radius
+readonly buffer Matte { float matte[]; };  // one float per pixel, from matte; not read without
+writeonly buffer Convexity { float convexity[]; };  // planes of floats in [0, 1]
+writeonly buffer Cavity { float cavity[]; };        // the same
+writeonly buffer Curvature { float curvature[]; };  // the same, 1/2 where all is flat
 
 /// Writes what is blocked inside and outside.
 void write(int index, vec2 blocked) {

@@ -22,9 +22,9 @@
 #include "kernels/time/sight.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = 0) const int kPlanes = 1;  // of values
-layout(constant_id = 1) const int kListed = 0;  // frames that the buffer lists, 0 to kMostTaken
-layout(constant_id = 2) const uint kOrder = 0;  // of the moments among the planes, 0 to 2
+layout(constant_id = 0) const int kPlanes = 1;     // of values
+layout(constant_id = 1) const int kListed = 0;     // frames that the buffer lists, 0 to kMostTaken
+layout(constant_id = 2) const uint kOrder = 0;     // of the moments among the planes, 0 to 2
 layout(constant_id = 3) const int kCurvature = 0;  // planes of curvature, after the moments
 layout(scalar, push_constant) uniform Push { AccumulateParams params; };
 readonly buffer Depth { float depth[]; };    // one float per pixel of the part, planar depth

@@ -183,8 +183,7 @@ Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame
 }
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
-                  const EstimatorSettings& settings, uint order, bool with_completed,
-                  bool with_curvature) {
+                  const EstimatorSettings& settings, uint order, bool with_completed, bool with_curvature) {
   const std::size_t plane = plane_bytes(gbuffer.view), radii = radii_of(settings).size();
   Estimate result{&gpu.buffer("ao", radii * plane)};
   const std::size_t further = moments_in(order) + (with_curvature ? 2 * radii : 0);
@@ -287,9 +286,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   gpu.clear(*list.counts);
   const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (out.order > 0 ? kClassifyWithFirst : 0) |
                     (out.order > 1 ? kClassifyWithSecond : 0) | (out.completed ? kClassifyWithCompleted : 0) |
-                    (out.curvature ? kClassifyWithCurvature : 0) |
-                    (skipping.changes ? kClassifyReuses : 0) | (selects ? kClassifySelects : 0) |
-                    (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
+                    (out.curvature ? kClassifyWithCurvature : 0) | (skipping.changes ? kClassifyReuses : 0) |
+                    (selects ? kClassifySelects : 0) | (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
   // Where pixels tell how far back they are solid, a known back says otherwise wherever that may reach into the sphere.
   const bool has_backs = reach.told > reach.radius;
   const float front = has_backs ? std::max(reach.front, (1 + kMostBack) * reach.radius) : reach.front;

@@ -58,10 +58,10 @@ gpu::Extent estimate_extent(const TileList& list);
 
 /// The result of an estimator for the sites of a G-buffer.
 struct Estimate {
-  gpu::Buffer* ao = nullptr;          // a plane of visibility for each radius, from the smallest on
-  uint plane = 0;                     // of `ao`: that of the radius that an estimator writes
-  gpu::Buffer* moments = nullptr;     // of the largest radius: see Visibility
-  uint order = 0;                     // of the moments
+  gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on
+  uint plane = 0;                  // of `ao`: that of the radius that an estimator writes
+  gpu::Buffer* moments = nullptr;  // of the largest radius: see Visibility
+  uint order = 0;                  // of the moments
   // The first of two planes of `moments` for each radius, or of those of the radius that an estimator writes: see
   // Visibility; none: not asked for, or left to estimate_curvature().
   std::optional<uint> curvature{};

@@ -54,8 +54,8 @@ struct FrameOutputs {
   gpu::Buffer* convexity = nullptr;
   gpu::Buffer* cavity = nullptr;
   gpu::Buffer* curvature = nullptr;
-  gpu::Buffer* color_ao = nullptr;            // planes r, g, b: the visibility with multi-bounce
-  gpu::Buffer* composite = nullptr;           // the beauty's planes
+  gpu::Buffer* color_ao = nullptr;   // planes r, g, b: the visibility with multi-bounce
+  gpu::Buffer* composite = nullptr;  // the beauty's planes
   gpu::Buffer* count = nullptr;      // a plane and more: of how many frames' estimates it is the mean; null: its own
   bool is_quick = false;             // its visibility is of the quick search
   std::optional<OwnEstimate> own{};  // with wanted.only_own: then nothing else is made of it

@@ -63,8 +63,7 @@ void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& gr
 }
 
 Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimateSet& estimates,
-                        const EstimatorSettings& settings, std::size_t scales, uint order,
-                        bool with_curvature) {
+                        const EstimatorSettings& settings, std::size_t scales, uint order, bool with_curvature) {
   const float radius = reach_of(settings, radii_of(settings).back()).radius;
   const gpu::Buffer& near = gpu.buffer("moved near", kMovedCells * sizeof(uint));
   if (!estimates.is_further_part) {
