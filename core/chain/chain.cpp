@@ -142,12 +142,13 @@ FrameOutputs with_transfer(gpu::Recorder& gpu, const FrameInputs& frame, const G
 FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen, const EstimatorSettings& settings,
                     const Wanted& wanted) {
   const GBuffer& gbuffer = seen.surfaces.frame;
-  const bool has_open = wanted.has(&FrameOutputs::bent_normal) || wanted.has(&FrameOutputs::specular_occlusion);
-  const gpu::Buffer& open =
-      bent_normal(gpu, gbuffer, has_open && moment_order(settings, wanted) > 0 ? seen.visibility.moments : nullptr);
+  const bool has_open = moment_order(settings, wanted) > 0 &&
+                        (wanted.has(&FrameOutputs::bent_normal) || wanted.has(&FrameOutputs::specular_occlusion));
+  const gpu::Buffer& open = bent_normal(gpu, gbuffer, has_open ? seen.visibility.moments : nullptr);
   const Visibility visibility =
       shape(gpu, gbuffer, seen.visibility, shaping_of(settings), frame[RawPlane::material_ao], seen.matte);
   FrameOutputs out = with_transfer(gpu, frame, gbuffer, seen.visibility, wanted, counts_of(seen));
+  out = curvature(gpu, gbuffer, seen.visibility, 1 + settings.further_radii.size(), wanted, seen.matte, out);
   out.ao = visibility.ao;
   out.error = seen.error;
   if (wanted.has(&FrameOutputs::scales)) out.scales = visibility.scales ? visibility.scales : visibility.ao;
@@ -161,12 +162,6 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& se
     out.confidence = cut(gpu, frame, &confidence(gpu, seen.surfaces.wide, with_margin(frame), settings), "confidence");
   if (wanted.has(&FrameOutputs::specular_occlusion))
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, open, *visibility.ao, settings.roughness);
-  if (wanted.needs_curvature()) {
-    const Curvature made = curvature(gpu, gbuffer, seen.visibility, radii_of(settings).size(), wanted, seen.matte);
-    out.convexity = made.convexity;
-    out.cavity = made.cavity;
-    out.curvature = made.curvature;
-  }
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
   out = reduce(gpu, frame, wanted.filter, out);
   out.composite = composite(gpu, gbuffer, out.color_ao ? out.color_ao : out.ao, frame, wanted.look, settings.least);

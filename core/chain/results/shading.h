@@ -39,13 +39,10 @@ gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::
 gpu::Buffer& transfer(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
                       const Matrix3& space_from_view, const std::string& name, const Environment* light = nullptr);
 
-/// Convexity, cavity and curvature, those that are wanted, of so many radii. Of the visibility's moments the last two
-/// planes for each radius are what they are made of.
-struct Curvature {
-  gpu::Buffer *convexity, *cavity, *curvature;
-};
-Curvature curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, std::size_t radii,
-                    const Wanted& wanted, const Matte& matte);
+/// The outputs with convexity, cavity and curvature of so many radii, those that are wanted. They are made of the
+/// visibility's moments, whose last planes are two for each radius.
+FrameOutputs curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, std::size_t radii,
+                       const Wanted& wanted, const Matte& matte, FrameOutputs out);
 
 /// Packed directions as planes x, y, z of that name, for the host. aov_from_view rotates them.
 gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,
