@@ -31,7 +31,7 @@ writeonly buffer Result { float result[]; };  // as many planes, in [0, 1]
 readonly buffer List { uint list[]; };        // one uint per run, from dilate; only if listed
 readonly buffer Counts { RunCounts counts; };
 
-#include "kernels/filters/likeness.glsl"
+#include "kernels/filters/taps.glsl"
 
 /// Pixels that one invocation looks at.
 const int kCount = kDenoiseRun + 2 * kRadius;
@@ -52,11 +52,11 @@ void main() {
   if (any(greaterThanEqual(first, params.view.size))) return;
 
   const int plane = params.view.size.x * params.view.size.y;
-  Tap taps[kCount];
+  Plane taps[kCount];
   float whole[kCount], values[kPlanes * kCount], change[kPlanes * kCount];  // plane by plane
   for (int i = 0; i < kCount; i++) {
     const ivec2 here = first + (i - kRadius) * params.axis;
-    taps[i] = tap_at(here);
+    taps[i] = plane_at(params.view, here);
     whole[i] = params.weight[0];
     for (int p = 0; p < kPlanes; p++) {
       values[p * kCount + i] = value_at(here, p * plane);
@@ -66,7 +66,9 @@ void main() {
       const int j = i - apart;
       if (j < 0 || i < kRadius || j >= kDenoiseRun + kRadius) continue;
       // 1.
-      const float weight = params.weight[apart] * similarity(taps[j], taps[i], float(apart), 0.0);
+      const float alike = kByDepth != 0u ? similarity_of_depths(taps[j], taps[i], params.depth_sigma, 0.0)
+                                         : similarity(taps[j], taps[i], float(apart) * vec2(params.axis), 0.0);
+      const float weight = params.weight[apart] * alike;
       // 2.
       for (int p = 0; p < kPlanes * kCount; p += kCount) {
         change[p + j] += weight * (values[p + i] - values[p + j]);

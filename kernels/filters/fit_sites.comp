@@ -29,7 +29,8 @@ const int kReach = kFitReach / kLatticeStep;
 /// The slopes of the plane are held back by this, px^2: a spread of the sites this wide halves them.
 const float kLeastSpread = 4.0;
 
-#include "kernels/filters/likeness_of_sites.glsl"
+const uint kByDepth = 0u;
+#include "kernels/filters/taps.glsl"
 
 /// Sums over the sites about one: of their weights, times the distance, and times its products; of what they block, and
 /// of that times the distance.
@@ -60,11 +61,11 @@ void main() {
   if (any(greaterThanEqual(site, sites))) return;
   const ivec2 pixel = site * kLatticeStep + params.first, most = view.size - 1;
   const int plane = view.size.x * view.size.y;
-  Tap here[kFitRun];
+  Plane here[kFitRun];
   float narrowness[kFitRun];
   Sums sums[kFitRun];
   for (int i = 0; i < kFitRun; i++) {
-    here[i] = tap_at(view, clamp(pixel + ivec2(i * kLatticeStep, 0), ivec2(0), most));
+    here[i] = plane_at(view, pixel + ivec2(i * kLatticeStep, 0));
     const float end = min(float(kFitReach), params.reach / here[i].scale) + 0.5 * float(kLatticeStep);
     narrowness[i] = 1.0 / (end * end);
     sums[i].whole = sums[i].xx = sums[i].xy = sums[i].yy = 0.0;
@@ -79,15 +80,15 @@ void main() {
     int x = -kReach;
     do {
       const ivec2 other = pixel + kLatticeStep * ivec2(x, y), nearest = clamp(other, ivec2(0), most);
-      const Tap tap = tap_at(view, nearest);
-      const bool is_site = other == nearest ? tap.z < kSkyDepth : false;
+      const Plane plane_there = plane_at(view, other);
+      const bool is_site = plane_there.z < kSkyDepth;
       const float exists = is_site ? 1.0 : 0.0;
       float blocked[kPlanes];  // what is no site was never written: 0 times it need not be 0
       for (int p = 0; p < kPlanes; p++) blocked[p] = is_site ? 1.0 - ao[index_of(view, nearest) + p * plane] : 0.0;
       for (int i = 0; i < kFitRun; i++) {
         const vec2 away = float(kLatticeStep) * vec2(x - i, y);
         precise const float window = greater(exists - narrowness[i] * dot(away, away), 0.0);
-        const float share = window * similarity(here[i], tap, away);
+        const float share = window * similarity(here[i], plane_there, away, 0.0);
         sums[i].whole += share;
         sums[i].along += share * away;
         sums[i].xx += share * away.x * away.x;

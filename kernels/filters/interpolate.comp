@@ -44,7 +44,7 @@ buffer Runs { uint runs[]; };
 readonly buffer Fitted { float fitted[]; };  // planes of the lattice's pixels, from fit_sites; only where fitted
 readonly buffer Sites { uint rows[]; };      // 8 words per tile, see tiles.glsl; not read along columns
 
-#include "kernels/filters/likeness.glsl"
+#include "kernels/filters/taps.glsl"
 
 /// Pixels that one invocation looks at.
 const int kCount = kDenoiseRun + 2 * kRadius;
@@ -98,7 +98,7 @@ float window_at(float away, float narrowness) {
 
 /// The narrowness of a pixel's parabola, which is 0 a pixel beyond its reach: no contact is smeared over more than a
 /// part of the radius.
-float narrowness_of(Tap tap) {
+float narrowness_of(Plane tap) {
   const float end = 1.0 + clamp(params.reach / (params.view.orthographic != 0 ? 1.0 : tap.z),
                                 min(float(kLeastReach), params.most), params.most);
   return 1.0 / (end * end);
@@ -106,12 +106,12 @@ float narrowness_of(Tap tap) {
 
 /// Makes the pixels of a run from these bits of those that the invocation looks at.
 void interpolate(ivec2 first, uint sites, int plane) {
-  Tap taps[kDenoiseRun];
+  Plane taps[kDenoiseRun];
   Sums sums[kDenoiseRun];
   float narrowness[kDenoiseRun];
   float value[kPlanes * kDenoiseRun], slope[kPlanes * kDenoiseRun];  // sums of what is blocked, and times the distance
   for (int i = 0; i < kDenoiseRun; i++) {
-    taps[i] = tap_at(first + i * params.axis);
+    taps[i] = plane_at(params.view, first + i * params.axis);
     sums[i] = Sums(0.0, 0.0, 0.0);
     narrowness[i] = narrowness_of(taps[i]);
     for (int p = 0; p < kPlanes; p++) value[p * kDenoiseRun + i] = slope[p * kDenoiseRun + i] = 0.0;
@@ -125,7 +125,7 @@ void interpolate(ivec2 first, uint sites, int plane) {
     const bool is_of_lattice = kFitted && ((beside.x | beside.y) & (kLatticeStep - 1)) == 0;
     const int of_lattice = (beside.y / kLatticeStep) * params.sites.x + beside.x / kLatticeStep;
     const float weight = kColumns ? square(unpackUnorm2x16(ao[index]).y) : kFitted && !is_of_lattice ? kNoisySite : 1.0;
-    const Tap tap = tap_at(site);
+    const Plane tap = plane_at(params.view, site);
     float blocked[kPlanes];
     for (int p = 0; p < kPlanes; p++) {
       const uint word = ao[index + p * plane];
@@ -135,7 +135,8 @@ void interpolate(ivec2 first, uint sites, int plane) {
     for (int i = 0; i < kDenoiseRun; i++) {
       const float away = float(j - i);
       const float at = window_at(away, narrowness[i]);
-      const float alike = similarity(taps[i], tap, away, kLeastSimilarity);
+      const float alike = kByDepth != 0u ? similarity_of_depths(taps[i], tap, params.depth_sigma, kLeastSimilarity)
+                                         : similarity(taps[i], tap, away * vec2(params.axis), kLeastSimilarity);
       const float share = abs(away) <= float(kRadius) ? weight * at * alike : 0.0;
       // 3.
       sums[i].whole += share;

@@ -27,7 +27,8 @@ readonly buffer Fitted { float fitted[]; };    // planes of the lattice's pixels
 readonly buffer Sites { uint rows[]; };        // 8 words per tile, see tiles.glsl
 writeonly buffer Result { float result[]; };   // as many planes of all pixels
 
-#include "kernels/filters/likeness_of_sites.glsl"
+const uint kByDepth = 0u;
+#include "kernels/filters/taps.glsl"
 
 const int kCell = kLatticeStep * kLatticeStep;  // pixels
 
@@ -39,9 +40,6 @@ const float kTent = float(kSpreadReach) + 0.5;
 
 /// A site that was not smoothed weighs so much beside one that was.
 const float kNoisySite = 0.4;
-
-/// Where no site in reach is alike, the least unlike count: by this over their height squared.
-const float kLeastSimilarity = 1e-4;
 
 /// The sites among the pixels of a row from this one on, as bits.
 uint sites_of_row(ivec2 first) {
@@ -60,14 +58,14 @@ uint sites_of_row(ivec2 first) {
 
 void main() {
   const View view = params.view;
-  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy), most = view.size - 1;
+  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(cell, params.sites))) return;
   const ivec2 corner = params.first + kLatticeStep * cell;
   const int plane = view.size.x * view.size.y;
-  Tap here[kCell];
+  Plane here[kCell];
   float whole[kCell], sum[kCell * kPlanes];
   for (int i = 0; i < kCell; i++) {
-    here[i] = tap_at(view, clamp(corner + ivec2(i % kLatticeStep, i / kLatticeStep), ivec2(0), most));
+    here[i] = plane_at(view, corner + ivec2(i % kLatticeStep, i / kLatticeStep));
     whole[i] = 0.0;
     for (int p = 0; p < kPlanes; p++) sum[i * kPlanes + p] = 0.0;
   }
@@ -84,8 +82,8 @@ void main() {
       const int index = index_of(view, site);
       const bool is_smooth = kFitted != 0u && ((beside.x | beside.y) & (kLatticeStep - 1)) == 0;
       const ivec2 of_lattice = min(cell + beside / kLatticeStep, params.sites - 1);
-      const Tap tap = tap_at(view, site);
-      const float weight = tap.z >= kSkyDepth ? 0.0 : kFitted == 0u || is_smooth ? 1.0 : kNoisySite;
+      const Plane there = plane_at(view, site);
+      const float weight = there.z >= kSkyDepth ? 0.0 : kFitted == 0u || is_smooth ? 1.0 : kNoisySite;
       float value[kPlanes];
       for (int p = 0; p < kPlanes; p++) {
         value[p] = moments[index + p * plane];
@@ -94,7 +92,7 @@ void main() {
       for (int i = 0; i < kCell; i++) {
         const vec2 away = vec2(beside - ivec2(i % kLatticeStep, i / kLatticeStep));
         const vec2 tent = max(1.0 - abs(away) * (1.0 / kTent), 0.0);
-        const float share = weight * tent.x * tent.y * max(similarity(here[i], tap, away), kLeastSimilarity);
+        const float share = weight * tent.x * tent.y * similarity(here[i], there, away, kLeastSimilarity);
         whole[i] += share;
         for (int p = 0; p < kPlanes; p++) sum[i * kPlanes + p] += share * value[p];
       }

@@ -28,7 +28,7 @@ writeonly buffer List { uint list[]; };      // the sites' numbers, in no order
 buffer Counts { SiteCounts counts; };        // zeros before
 
 /// A pixel lies in a site's plane by this many pixels' widths. Error and time hardly change from .25 to .7.
-const float kCovered = 0.6;
+const float kCovered = 0.64;
 
 const int kPixels = kBlock * kBlock;
 
@@ -56,7 +56,6 @@ void list_sites(int number, uint count) {
 
 void main() {
   const View view = params.view;
-  const bool perspective = view.orthographic == 0;
   const ivec2 block = ivec2(gl_GlobalInvocationID.xy), first = block * kBlock - params.overhang;
   const int number = block.y * params.blocks.x + block.x, stride = view.size.x + 2 * kDepthMargin;
   if (block == ivec2(0)) counts.groups.z = 1u;
@@ -86,13 +85,17 @@ void main() {
       site.ahead = is ? pixels[k].ahead : site.ahead;
       site.across.x = is ? pixels[k].across.x : site.across.x;
       site.across.y = is ? pixels[k].across.y : site.across.y;
+      site.scale = is ? pixels[k].scale : site.scale;
+      site.n.x = is ? pixels[k].n.x : site.n.x;
+      site.n.y = is ? pixels[k].n.y : site.n.y;
+      site.n.z = is ? pixels[k].n.z : site.n.z;
       place = is ? kOrder[k] : place;
     }
     const bool exists = at < uint(kPixels);
     uint covered = exists ? 1u << at : 0u;
     [[unroll]] for (int k = 0; k < kPixels; k++) {
       const vec2 px = vec2(place_in_block(kOrder[k]) - place_in_block(place));
-      covered |= apart_sq(site, pixels[k], px, perspective) < kCovered * kCovered ? 1u << k : 0u;
+      covered |= similarity(site, pixels[k], px, 0.0) > kCovered ? 1u << k : 0u;
     }
     if (exists) planes[number * kBlockSites + s] = pack_plane(site);
     word |= exists ? place << (4 + 4 * s) : 0u;

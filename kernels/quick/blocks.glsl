@@ -1,35 +1,19 @@
-// Blocks of pixels, their sites, and how alike two pixels are. Pure: no bindings.
+// Blocks of pixels, and their sites. Pure: no bindings; to be included after view.glsl.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Blocks are counted from the display window's corner, so that a crop has those of the whole. The word of a block has,
 // from the lowest bits on, the number of its sites in 4 bits, and for each of them 4 bits with its place, row by row.
 // A site has the number of its block times kBlockSites, and its own in the block.
+#include "kernels/base/likeness.glsl"
 
-/// A pixel's plane, by the height of others above it, in pixels' widths.
-struct Plane {
-  float z;      // planar depth of the pixel
-  float ahead;  // height of what is a unit further away
-  vec2 across;  // height of what is a pixel aside, at unit depth (orthographic: at any)
-};
-
-Plane plane_of(View view, ivec2 pixel, float z, vec3 n) {
-  const bool perspective = view.orthographic == 0;
-  const float per_width = 1.0 / (view.tangent_per_pixel.x * (perspective ? z : 1.0));
-  const float toward = perspective ? dot(n.xy, tangent_of(view, vec2(pixel) + 0.5)) : 0.0;
-  return Plane(z, (toward - n.z) * per_width, n.xy * view.tangent_per_pixel * per_width);
+/// The normal's z follows from its x and y, since it faces the eye.
+vec4 pack_plane(Plane plane) { return vec4(plane.z, plane.ahead, plane.n.xy); }
+Plane plane_of_site(View view, vec4 packed) {
+  const vec2 xy = packed.zw, pixel = view.tangent_per_pixel;
+  const float scale = view.orthographic == 0 ? packed.x : 1.0;
+  const vec3 n = vec3(xy, sqrt(max(1.0 - dot(xy, xy), 0.0)));
+  return Plane(packed.x, scale, packed.y, xy * (pixel / (abs(pixel.x) * scale)), n);
 }
-
-/// The square of how far two pixels lie from each other's planes, the larger of both, in pixels' widths. px: from a
-/// to b.
-float apart_sq(Plane a, Plane b, vec2 px, bool perspective) {
-  const float further = b.z - a.z;
-  const float above_a = a.ahead * further + dot(a.across, px) * (perspective ? b.z : 1.0);
-  const float above_b = b.ahead * further + dot(b.across, px) * (perspective ? a.z : 1.0);
-  return greater(above_a * above_a, above_b * above_b);
-}
-
-Plane plane_of_site(vec4 packed) { return Plane(packed.x, packed.y, packed.zw); }
-vec4 pack_plane(Plane plane) { return vec4(plane.z, plane.ahead, plane.across); }
 
 uint sites_in(uint word) { return word & 15u; }
 

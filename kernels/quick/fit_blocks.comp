@@ -71,7 +71,7 @@ void main() {
   const uint site = list[at];
   const int number = int(site) / kBlockSites;
   const ivec2 block = block_of(number, blocks), place = place_of_site(words[number], site % uint(kBlockSites));
-  const Plane here = plane_of_site(planes[site]);
+  const Plane here = plane_of_site(params.view, planes[site]);
   const float reach = clamp(params.reach / (perspective ? here.z : 1.0), kLeastReach, kMostReach);
   const float narrow = 1.0 / (reach * reach);
   Sums sums = Sums(0.0, 0.0, vec2(0), vec2(0), 0.0, 0.0, 0.0);
@@ -87,9 +87,9 @@ void main() {
       uint j = 0u;
       if (count > 0u) do {
           const uint from = uint(o * kBlockSites) + j;
-          const Plane plane = plane_of_site(planes[from]);
+          const Plane plane = plane_of_site(params.view, planes[from]);
           const vec2 px = vec2(ivec2(x, y) * kBlock + place_of_site(word, j) - place);
-          const float alike = greater(1.0 - apart_sq(here, plane, px, perspective), 0.0);
+          const float alike = similarity(here, plane, px, 0.0);
           add(sums, greater(1.0 - narrow * dot(px, px), 0.0) * alike, 1.0 - seen[from], px);
         } while (++j < count);
     } while (++x <= around);

@@ -44,7 +44,6 @@ float nearness(vec2 px) {
 void main() {
   const View view = params.view;
   const ivec2 blocks = params.blocks;  // a copy, since lavapipe reads parameters anew in each round of a loop
-  const bool perspective = view.orthographic == 0;
   const ivec2 quarter = ivec2(gl_GlobalInvocationID.xy), block = quarter / 2;
   const ivec2 first = quarter * kQuarter - params.overhang;
   if (any(greaterThanEqual(first, view.size))) return;
@@ -65,13 +64,12 @@ void main() {
     uint j = 0u;
     if (count > 0u) do {
         const uint site = uint(o * kBlockSites) + j;
-        const Plane plane = plane_of_site(planes[site]);
+        const Plane plane = plane_of_site(view, planes[site]);
         const vec4 fit = fitted[site];
         const vec2 at = vec2(other * kBlock - quarter * kQuarter + place_of_site(word, j));
         [[unroll]] for (int i = 0; i < kQuarterPixels; i++) {
           const vec2 px = at - vec2(place_in_quarter(i));
-          const float apart = apart_sq(pixels[i], plane, px, perspective);
-          const float weight = nearness(px) * greater(1.0 - apart, kLeastAlike / (1.0 + apart));
+          const float weight = nearness(px) * similarity(pixels[i], plane, px, kLeastAlike);
           whole[i] += weight;
           blocked[i] += weight * clamp(fit.x - kSlope * dot(fit.yz, px), 0.0, 1.0);
         }

@@ -133,24 +133,7 @@ double similarity(const Geometry& geometry, const Denoiser& denoiser, int x, int
     const double steps = std::abs(other - z) / (denoiser.depth_sigma * std::min(z, other));
     return std::max(1e-4 / (1 + steps * steps), std::exp(-steps));
   }
-  const Vec3 away = geometry.point(u, v) - geometry.point(x, y);
-  const double width = std::abs(v == y ? geometry.view.tangent_per_pixel.x : geometry.view.tangent_per_pixel.y);
-  const double own_width = width * (geometry.view.orthographic ? 1 : z);
-  const double other_width = width * (geometry.view.orthographic ? 1 : other);
-  const double apart = std::max(std::abs(dot(geometry.normal_of(x, y), away)) / own_width,
-                                std::abs(dot(geometry.normal_of(u, v), away)) / other_width);
-  return std::max(1e-4 / (1 + apart * apart), 1 - apart * apart);
-}
-
-/// How far a site shows the surface of a pixel, whichever way it lies.
-double similarity_around(const Geometry& geometry, int x, int y, int u, int v) {
-  const Vec3 away = geometry.point(u, v) - geometry.point(x, y);
-  const double width = std::abs(geometry.view.tangent_per_pixel.x);
-  const double own = width * (geometry.view.orthographic ? 1 : geometry.depth[geometry.index(x, y)]);
-  const double other = width * (geometry.view.orthographic ? 1 : geometry.depth[geometry.index(u, v)]);
-  const double apart = std::max(std::abs(dot(geometry.normal_of(x, y), away)) / own,
-                                std::abs(dot(geometry.normal_of(u, v), away)) / other);
-  return std::max(0.0, 1 - apart * apart);
+  return std::max(1e-4 / (1 + geometry.apart_sq(x, y, u, v)), geometry.likeness(x, y, u, v));
 }
 
 /// How far filters reach at a pixel: a part of the radius, in pixels.
@@ -173,7 +156,7 @@ double fitted_site(const Geometry& geometry, const Denoiser& denoiser, const std
     for (int u = -12; u <= 12; u += 4) {
       if (x + u < 0 || y + v < 0 || !geometry.is_surface(x + u, y + v)) continue;
       const double weight =
-          std::max(0.0, 1 - (u * u + v * v) / (end * end)) * similarity_around(geometry, x, y, x + u, y + v);
+          std::max(0.0, 1 - (u * u + v * v) / (end * end)) * std::max(0.0, geometry.likeness(x, y, x + u, y + v));
       if (weight == 0) continue;
       sites.push_back({double(u), double(v), 1.0 - ao[geometry.index(x + u, y + v)], weight});
       whole += weight;
@@ -333,6 +316,16 @@ TEST(Interpolate, keeps_a_ramp_up_to_an_edge) {
                                            << slope_y << " pixel " << d.worst % 80 << " " << d.worst / 80;
             }
         }
+}
+
+// On both sides of a crease pixels lie in both planes: the normals tell them apart.
+TEST(Interpolate, mixes_nothing_across_a_crease) {
+  const Crease crease;
+  const std::vector<float> sides = crease.sides();
+  for (const EstimatorSettings& settings : {filter(16, 8), filter(8, 8), filter(4, 8), filter(2, 8)}) {
+    const Difference d = difference(Sparse(crease.rendering.frame, settings).interpolated(sides, settings), sides);
+    EXPECT_LT(d.max, 1e-3) << name_of(settings) << " pixel " << d.worst % 80 << " " << d.worst / 80;
+  }
 }
 
 /// A thin line and a far wall, in which no plane of the one is anywhere near the other.

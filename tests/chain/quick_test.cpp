@@ -62,7 +62,7 @@ struct Chosen {
 
 /// The pixels of a block in the order of the rule.
 constexpr int kOrder[] = {5, 10, 6, 9, 0, 15, 3, 12, 1, 14, 2, 13, 4, 11, 7, 8};
-constexpr double kCovered = 0.6;  // px
+constexpr double kCovered = 0.64;
 
 /// The sites of the block that begins at this pixel; `is_doubtful` where floats may decide otherwise.
 std::set<std::pair<int, int>> sites_slowly(const Geometry& geometry, int x, int y, bool& is_doubtful) {
@@ -76,9 +76,9 @@ std::set<std::pair<int, int>> sites_slowly(const Geometry& geometry, int x, int 
     const auto site = left.front();
     sites.insert(site);
     std::erase_if(left, [&](const auto& pixel) {
-      const double apart = geometry.apart(site.first, site.second, pixel.first, pixel.second) / kCovered;
-      is_doubtful = is_doubtful || std::abs(apart - 1) < 1e-3;
-      return pixel == site || apart < 1;
+      const double likeness = geometry.likeness(site.first, site.second, pixel.first, pixel.second);
+      is_doubtful = is_doubtful || std::abs(likeness - kCovered) < 1e-3;
+      return pixel == site || likeness > kCovered;
     });
   }
   return sites;
@@ -239,6 +239,14 @@ TEST(Blocks, mix_no_surfaces) {
   for (int y = 0; y < 48; y++)
     for (int x = 0; x < 64; x++)
       ASSERT_NEAR(ao[std::size_t(y * 64 + x)], is_near(x, y) ? 0.2 : 0.9, 2e-3) << x << " " << y;
+}
+
+TEST(Blocks, mix_nothing_across_a_crease) {
+  const Crease crease;
+  const std::vector<float> sides = crease.sides();
+  const auto ao = Chosen(crease.rendering.frame).filtered([&](int x, int y) { return sides[std::size_t(y * 80 + x)]; });
+  const Difference d = difference(ao, sides);
+  EXPECT_LT(d.max, 1e-3) << d.worst % 80 << " " << d.worst / 80;
 }
 
 // The search.

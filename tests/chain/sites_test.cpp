@@ -43,8 +43,8 @@ void expect_same_sites(const Picture& picture, const Picture& expected, const st
           << what << ", pixel " << x << " " << y << " of " << picture.width << " x " << picture.height;
 }
 
-constexpr double kLinked = 0.3;  // px: of links.comp
-constexpr double kFlat = 0.33;   // of kLinked: the same
+constexpr double kLinked = 0.9;                  // of links.comp
+constexpr double kFlat = 1 - (1 - kLinked) / 9;  // the same
 
 /// What the kernel says of two neighbours, against the geometry.
 struct LinkCounts {
@@ -52,14 +52,15 @@ struct LinkCounts {
 
   void compare(const Geometry& geometry, int x, int y, int u, int v, bool is_linked, double bound) {
     const bool surfaces = geometry.is_surface(x, y) && geometry.is_surface(u, v);
-    const double apart = surfaces ? geometry.apart(x, y, u, v) / bound : 2;
+    const double likeness = surfaces ? geometry.likeness(x, y, u, v) : 0;
     // Floats may decide otherwise so near to the bound.
-    if (std::abs(apart - 1) < 1e-3) {
+    if (std::abs(likeness - bound) < 2e-4) {
       doubtful++;
       return;
     }
     (is_linked ? linked : parted)++;
-    ASSERT_EQ(is_linked, apart < 1) << "pixels " << x << " " << y << " and " << u << " " << v << ", " << apart;
+    ASSERT_EQ(is_linked, likeness > bound)
+        << "pixels " << x << " " << y << " and " << u << " " << v << ", " << likeness;
   }
 };
 
@@ -77,8 +78,8 @@ TEST(Links, join_neighbours_that_lie_in_each_others_planes) {
         ASSERT_EQ(pixel.is_surface, geometry.is_surface(x, y));
         counts.compare(geometry, x, y, x + 1, y, pixel.linked.right, kLinked);
         counts.compare(geometry, x, y, x, y + 1, pixel.linked.below, kLinked);
-        flat.compare(geometry, x, y, x + 1, y, pixel.flat.right, kFlat * kLinked);
-        flat.compare(geometry, x, y, x, y + 1, pixel.flat.below, kFlat * kLinked);
+        flat.compare(geometry, x, y, x + 1, y, pixel.flat.right, kFlat);
+        flat.compare(geometry, x, y, x, y + 1, pixel.flat.below, kFlat);
       }
   }
   EXPECT_GT(counts.linked, 20000);

@@ -62,4 +62,18 @@ inline HostFrame wall_at(int x, int y, int width, int height, Vec3 normal, bool 
   return render({{Plane{.point = {5, 0, 0}, .normal = normal}}}, shot).frame;
 }
 
+/// Two planes that meet at right angles towards the eye, along a slanting line; pixels beside it lie in both.
+struct Crease {
+  Rendering rendering = render({{Plane{.point = {5, 0, 0}, .normal = unit({-1, 0.8, 0.6})},
+                                 Plane{.point = {5, 0, 0}, .normal = unit({-1, -0.8, -0.6})}}},
+                               Shot::perspective({}, {1, 0, 0}, 60, 80, 60));
+
+  /// 0 on the one plane, 1 on the other.
+  std::vector<float> sides() const {
+    std::vector<float> sides;
+    for (const Hit& hit : rendering.hits) sides.push_back(float(hit.primitive));
+    return sides;
+  }
+};
+
 }  // namespace alcove::test

@@ -153,13 +153,18 @@ struct Geometry {
     return unit(n);
   }
   bool is_surface(int x, int y) const { return x < view.size.x && y < view.size.y && depth[index(x, y)] < kSkyDepth; }
-  /// The larger of both distances from the other's plane, in widths of the pixel there.
-  double apart(int x, int y, int u, int v) const {
+  /// The larger of both distances from the other's plane, in widths of the pixel there, squared.
+  double apart_sq(int x, int y, int u, int v) const {
     const Vec3 away = point(u, v) - point(x, y);
-    const double width = std::abs(u > x ? view.tangent_per_pixel.x : view.tangent_per_pixel.y);
+    const double width = std::abs(view.tangent_per_pixel.x);
     const auto width_at = [&](int i, int j) { return width * (view.orthographic ? 1 : depth[index(i, j)]); };
-    return std::max(std::abs(dot(normal_of(x, y), away)) / width_at(x, y),
-                    std::abs(dot(normal_of(u, v), away)) / width_at(u, v));
+    return std::pow(std::max(std::abs(dot(normal_of(x, y), away)) / width_at(x, y),
+                             std::abs(dot(normal_of(u, v), away)) / width_at(u, v)),
+                    2);
+  }
+  /// How far two pixels show one surface, 1 at most, as likeness.glsl has it.
+  double likeness(int x, int y, int u, int v) const {
+    return dot(normal_of(x, y), normal_of(u, v)) - apart_sq(x, y, u, v);
   }
 };
 
