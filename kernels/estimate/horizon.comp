@@ -776,7 +776,7 @@ void estimate(ivec2 pixel, uint slices) {
       vec2 curved;
       const mat2x3 arcs =
           slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)), curved);
-      curvature += slice.share * slice.weight * curved;
+      if (kCurved) curvature += slice.share * slice.weight * curved;
       blocked += arcs[0].x;
       if (kTellsCompleted) completed_arcs += arcs[1].z;
       if (kOrder > 0u) blocked_moments += moments_of(arcs, float(sign) * slice.t, r.eye);
