@@ -61,13 +61,13 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   Seen seen;
   const GBuffer work = work_of(gpu, frame, inputs, surfaces, settings, seen.matte);
   const uint order = moment_order(settings, wanted);
-  if (searches_quickly(settings, work, order)) {
+  if (searches_quickly(settings, work, order) && !wanted.needs_curvature()) {
     see_quickly(gpu, work, inputs, settings, wanted, seen);
     return seen;
   }
   const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn));
   const bool with_completed = wanted.completed && completes_anywhere(settings);
-  seen.estimate = estimate(gpu, work, chosen, inputs, settings, order, with_completed);
+  seen.estimate = estimate(gpu, work, chosen, inputs, settings, order, with_completed, wanted.needs_curvature());
   seen.completion = completion(gpu, work, seen.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
   const Visibility noisy = combine(gpu, work, seen.estimate, wanted.needs_scales());
@@ -75,7 +75,7 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   const Visibility fitted = fit_sites(gpu, work, noisy, chosen, denoiser);
   const Visibility smooth = chosen.rows ? interpolate(gpu, work, noisy, fitted, chosen, denoiser, runs)
                                         : denoise(gpu, work, noisy, denoiser, runs);
-  const Visibility whole = spread(gpu, work, noisy, fitted, chosen, smooth);
+  const Visibility whole = spread(gpu, work, noisy, fitted, chosen, smooth, order);
   seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, whole, runs));
   if (wanted.has(&FrameOutputs::error)) seen.error = cut(gpu, frame, seen.estimate.error, "error");
   seen.stages = {work, noisy.ao, chosen, smooth.ao, seen.estimate.completed, seen.estimate.listed.kinds};
@@ -89,8 +89,8 @@ Seen mean_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surface
   const std::size_t scales = wanted.needs_scales() && radii > 1 ? radii : 0;
   Seen seen;
   seen.matte = matte(gpu, frame);
-  const Accumulation mean =
-      accumulate(gpu, surfaces.frame, frame.estimates, settings, scales, moment_order(settings, wanted));
+  const Accumulation mean = accumulate(gpu, surfaces.frame, frame.estimates, settings, scales,
+                                       moment_order(settings, wanted), wanted.needs_curvature());
   seen.visibility = mean.visibility;
   seen.count = mean.count;
   seen.stages.count = mean.count;
@@ -142,11 +142,13 @@ FrameOutputs with_transfer(gpu::Recorder& gpu, const FrameInputs& frame, const G
 FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen, const EstimatorSettings& settings,
                     const Wanted& wanted) {
   const GBuffer& gbuffer = seen.surfaces.frame;
-  const bool has_open = wanted.has(&FrameOutputs::bent_normal) || wanted.has(&FrameOutputs::specular_occlusion);
+  const bool has_open = moment_order(settings, wanted) > 0 &&
+                        (wanted.has(&FrameOutputs::bent_normal) || wanted.has(&FrameOutputs::specular_occlusion));
   const gpu::Buffer& open = bent_normal(gpu, gbuffer, has_open ? seen.visibility.moments : nullptr);
   const Visibility visibility =
       shape(gpu, gbuffer, seen.visibility, shaping_of(settings), frame[RawPlane::material_ao], seen.matte);
   FrameOutputs out = with_transfer(gpu, frame, gbuffer, seen.visibility, wanted, counts_of(seen));
+  out = curvature(gpu, gbuffer, seen.visibility, 1 + settings.further_radii.size(), wanted, seen.matte, out);
   out.ao = visibility.ao;
   out.error = seen.error;
   if (wanted.has(&FrameOutputs::scales)) out.scales = visibility.scales ? visibility.scales : visibility.ao;

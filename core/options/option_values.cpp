@@ -241,6 +241,19 @@ void check_search(const Settings& settings) {
          searches_exactly(e) ? "an exact" : "a quick");
 }
 
+/// Shapes are made of the surfaces that block, those of receivers among them.
+void check_curvature(const Settings& settings) {
+  const InputSettings& input = settings.input;
+  const bool has_all = (input.occluders + input.occluder_objects + input.ignore + input.ignored_objects).empty();
+  for (const Aov& aov : aovs_of(settings.output))
+    if (is_of_curvature(aov) && !has_all)
+      fail(
+          ErrorKind::usage,
+          "--aov {}: it is the shape of all surfaces, and with --set occluders or --set ignore some are left out: make "
+          "it in a run without",
+          aov.name);
+}
+
 /// A view of completed surfaces needs some.
 void check_completion(const Settings& settings) {
   const auto& e = settings.estimator;
@@ -354,6 +367,7 @@ void check_settings(const Settings& settings) {
     fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
   require_effects(settings);
   check_search(settings);
+  check_curvature(settings);
   check_completion(settings);
   check_accumulation(settings);
   check_hidden(settings);

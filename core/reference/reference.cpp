@@ -300,13 +300,95 @@ class Blocking {
   Blocked blocked_;
 };
 
+/// What the receiver's own surface blocks of the arcs of a slice's side.
+struct OwnArcs {
+  double inside = 0, outside = 0;
+};
+
+/// Follows the receiver's own surface along one side of a slice.
+class OwnSurface {
+ public:
+  OwnSurface(const Scene& scene, const Receiver& receiver, const Side& side, const ReferenceSettings& settings)
+      : scene_(scene), receiver_(receiver), side_(side), settings_(settings), limit_(side.gamma + kPi / 2) {}
+
+  OwnArcs arcs() {
+    const ReferenceLine line = line_of(scene_, receiver_, side_, settings_);
+    int last = 0;
+    for (int i = line[0].farther; i >= 0; last = i, i = line[i].farther) take(line[i].position - receiver_.position);
+    if (!is_inside_) return arcs_;
+    const int next = (line.step_of(last) + 1) * line.surfaces;
+    if (next < int(line.samples.size()) && is_behind(line[last], line[next]))
+      onward_ = scene_.orthographic() ? Vector{0, 0, -1} : normalized(line[last].position);
+    else if (!falls(place_))
+      return arcs_;
+    block(
+        angle_of(side_, crossing(place_, place_ + 2 * settings_.radius / length(onward_) * onward_, settings_.radius)),
+        0.5 * (length(place_) + settings_.radius));
+    return arcs_;
+  }
+
+ private:
+  bool falls(Vector offset) const { return angle_of(side_, offset) > limit_ + std::asin(settings_.bias); }
+
+  /// Whether what is seen beside the last sample lies behind it and below the receiver's plane.
+  bool is_behind(const Sample& last, const Sample& next) const {
+    if (next.depth > 0) return next.depth > last.depth && dot(receiver_.normal, next.position - receiver_.position) < 0;
+    const Vector far = scene_.position(next.x, next.y, 1) - scene_.position(next.x, next.y, 0);
+    return dot(receiver_.normal, scene_.orthographic() ? Vector{0, 0, -1} : far) < 0;
+  }
+
+  void take(Vector offset) {
+    const double radius = settings_.radius, distance = length(offset);
+    const bool is_within = distance < radius, was_within = length(place_) < radius;
+    if (length(place_) > 0 && is_within != was_within && angle_of(side_, offset) < limit_ &&
+        angle_of(side_, place_) < limit_)
+      rise(angle_of(side_, was_within ? crossing(place_, offset, radius) : crossing(offset, place_, radius)), radius);
+    if (is_within && angle_of(side_, offset) > 0) rise(angle_of(side_, offset), distance);
+    if (is_inside_ && falls(offset))
+      block(angle_of(side_, is_within ? offset : crossing(place_, offset, radius)),
+            is_within ? distance : 0.5 * (length(place_) + radius));
+    is_inside_ = is_inside_ && is_within;
+    onward_ = offset - place_;
+    place_ = offset;
+  }
+
+  void block(double angle, double distance) {
+    const double low = std::max(low_.value_or(limit_), angle);
+    arcs_.inside += weight_of(settings_, distance) * (arc(low_.value_or(limit_), side_.gamma) - arc(low, side_.gamma));
+    low_ = low;
+  }
+
+  void rise(double angle, double distance) {
+    const double high = std::min(high_.value_or(limit_ - std::asin(settings_.bias)), angle);
+    if (high < limit_)
+      arcs_.outside +=
+          weight_of(settings_, distance) * (arc(high_.value_or(limit_), side_.gamma) - arc(high, side_.gamma));
+    high_ = high;
+  }
+
+  const Scene& scene_;
+  const Receiver& receiver_;
+  const Side& side_;
+  const ReferenceSettings& settings_;
+  double limit_;                      // the tangent plane
+  std::optional<double> low_, high_;  // the largest and smallest angle of the surface within the radius
+  bool is_inside_ = true;             // so were all samples
+  Vector place_, onward_;             // the last sample, and the way to it
+  OwnArcs arcs_;
+};
+
 struct Openness {
   double visibility = 1;
   double completed = 0;                            // the visibility that completed surfaces take
   std::array<double, kTransferPlanes> transfer{};  // see reference_transfer()
+  OwnArcs own;                                     // see reference_curvature()
 };
 
-Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceSettings& settings, bool with_transfer) {
+/// What is asked for beside the visibility.
+enum class Besides { nothing, transfer, curvature };
+
+Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceSettings& settings, Besides besides) {
+  const bool with_transfer = besides == Besides::transfer;
   const Vector v = receiver.eye;
   const double a = 1 / (1 + v.z);
   const double b = -v.x * v.y * a;
@@ -315,6 +397,7 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
   double seen = 0;
   double completed = 0;
   double whole = 0;
+  OwnArcs own;
   Integrals open;
   for (int s = 0; s < settings.slices; s++) {
     const double azimuth = kPi * (s + 0.5) / settings.slices;
@@ -347,6 +430,12 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
       const Side side{
           tangent, tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels,
           reach};
+      if (besides == Besides::curvature) {
+        const OwnArcs arcs = OwnSurface(scene, receiver, side, settings).arcs();
+        own.inside += weight * arcs.inside;
+        own.outside += weight * arcs.outside;
+        continue;
+      }
       Blocked::Transfer transfer;
       if (with_transfer)
         transfer = [&](double from, double to) { return transfer_between(from, to, side.gamma, tangent, v); };
@@ -359,7 +448,8 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
   }
   if (!(whole > 0)) return {};
   const double visibility = std::clamp(1 - (seen + completed) / whole, 0.0, 1.0);
-  return {visibility, std::clamp(1 - seen / whole, 0.0, 1.0) - visibility, ((1 / whole) * open).transfer};
+  return {visibility, std::clamp(1 - seen / whole, 0.0, 1.0) - visibility, ((1 / whole) * open).transfer,
+          OwnArcs{std::min(own.inside / whole, 1.0), std::min(own.outside / whole, 1.0)}};
 }
 
 }  // namespace
@@ -388,7 +478,7 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings, bool 
 namespace {
 
 /// Calls `take` with the index and the openness of every pixel that was asked for and is not sky, from several threads.
-void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool with_transfer,
+void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, Besides besides,
                 const std::function<void(std::size_t, const Openness&)>& take) {
   const Scene scene(frame, settings.hidden, settings.separation);
   constexpr std::size_t kChunk = 64;  // pixels that a thread takes at a time
@@ -404,7 +494,7 @@ void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool 
         if (z == 0) continue;
         const Vector position = scene.position(x, y, z);
         const Vector eye = scene.toward_eye(position);
-        take(index, openness(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings, with_transfer));
+        take(index, openness(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings, besides));
       }
   };
   const int count = settings.threads > 0 ? settings.threads : int(std::max(1u, std::thread::hardware_concurrency()));
@@ -418,13 +508,14 @@ void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, bool 
 
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings) {
   std::vector<float> ao(frame.data.pixels(), 1.0f);
-  for_pixels(frame, settings, false, [&](std::size_t i, const Openness& open) { ao[i] = float(open.visibility); });
+  for_pixels(frame, settings, Besides::nothing,
+             [&](std::size_t i, const Openness& open) { ao[i] = float(open.visibility); });
   return ao;
 }
 
 std::vector<float> reference_completed(const HostFrame& frame, const ReferenceSettings& settings) {
   std::vector<float> completed(frame.data.pixels(), 0.0f);
-  for_pixels(frame, settings, false,
+  for_pixels(frame, settings, Besides::nothing,
              [&](std::size_t i, const Openness& open) { completed[i] = float(open.completed); });
   return completed;
 }
@@ -432,10 +523,20 @@ std::vector<float> reference_completed(const HostFrame& frame, const ReferenceSe
 std::vector<float> reference_transfer(const HostFrame& frame, const ReferenceSettings& settings) {
   const std::size_t pixels = frame.data.pixels();
   std::vector<float> transfer(kTransferPlanes * pixels, 0.0f);
-  for_pixels(frame, settings, true, [&](std::size_t i, const Openness& open) {
+  for_pixels(frame, settings, Besides::transfer, [&](std::size_t i, const Openness& open) {
     for (std::size_t k = 0; k < kTransferPlanes; k++) transfer[i + k * pixels] = float(open.transfer[k]);
   });
   return transfer;
+}
+
+std::vector<float> reference_curvature(const HostFrame& frame, const ReferenceSettings& settings) {
+  const std::size_t pixels = frame.data.pixels();
+  std::vector<float> planes(2 * pixels, 0.0f);
+  for_pixels(frame, settings, Besides::curvature, [&](std::size_t i, const Openness& open) {
+    planes[i] = float(open.own.inside);
+    planes[i + pixels] = float(open.own.outside);
+  });
+  return planes;
 }
 
 }  // namespace alcove

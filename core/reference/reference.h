@@ -61,6 +61,10 @@ std::vector<float> reference_completed(const HostFrame& frame, const ReferenceSe
 inline constexpr std::size_t kTransferPlanes = 9;
 std::vector<float> reference_transfer(const HostFrame& frame, const ReferenceSettings& settings);
 
+/// Gives a plane of what the receiver's own surface blocks of the hemisphere below each pixel's tangent plane, and one
+/// of what it blocks above, in [0, 1]; 0 on sky and at pixels that were not asked for. See own_surface.glsl.
+std::vector<float> reference_curvature(const HostFrame& frame, const ReferenceSettings& settings);
+
 /// Gives the visibility in [0, 1] of each pixel by the settings' estimator (gtao, hbao, crytek) with its radius, bias,
 /// falloff and kernel, intensity and power. That is its result at full resolution with so many directions and samples
 /// that nothing is left to smooth; slices, steps, resolution, denoiser and seed are ignored. `pixels` are the indices

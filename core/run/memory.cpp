@@ -227,7 +227,9 @@ constexpr std::size_t kPlanesPrepared = 5;  // that passes make of it: depth, no
 /// Planes of values of an estimate: see EstimateSet.
 std::size_t values_of(const Settings& settings) {
   const std::size_t further = settings.estimator.further_radii.size();
-  return 1 + (further > 0 ? 1 + further : 0) + moments_in(moment_order(settings.estimator, settings.output));
+  const Wanted wanted(settings.output);
+  return 1 + (further > 0 ? 1 + further : 0) + moments_in(moment_order(settings.estimator, wanted)) +
+         (wanted.needs_curvature() ? 2 * (1 + further) : 0);
 }
 
 /// The most estimates that so many lanes keep at once: those that the frames take which they compute, and the next one.

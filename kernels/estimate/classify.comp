@@ -164,6 +164,8 @@ void write_open(View view, ivec2 tile) {
     ao[index + int(params.plane) * plane] = 1.0;
     if ((kMode & kClassifyWithCompleted) != 0u) completed[index] = 0.0;
     for (int k = 0; k < moments_in(kOrder); k++) moments[index + k * plane] = stored_moment(0.0);
+    for (int k = 0; k < 2 && (kMode & kClassifyWithCurvature) != 0u; k++)
+      moments[index + (int(params.curvature) + k) * plane] = 1.0;
   }
 }
 

@@ -36,6 +36,7 @@ ALCOVE_CONSTANT uint kClassifyReuses = 8;
 ALCOVE_CONSTANT uint kClassifySelects = 16;  // with kClassifySkips: other tiles count as sky
 ALCOVE_CONSTANT uint kClassifyLayered = 32;  // surfaces may be hidden: listed tiles say where these may count
 ALCOVE_CONSTANT uint kClassifyWithSecond = 64;
+ALCOVE_CONSTANT uint kClassifyWithCurvature = 128;
 
 // px of the frame beyond the reach: their depths may decide a normal that was reconstructed, or which surface a pixel
 // of a smaller image shows; of hidden surfaces also which ends with the one before it, and closes its solid
@@ -50,6 +51,7 @@ struct ClassifyParams {
   float told;        // scene units: the farthest that may tell how far back that is solid
   float front;       // scene units: the farthest front of a surface that blocks within the radius
   uint plane;        // of the AO
+  uint curvature;    // plane of the moments from which those of curvature follow
   ivec2 frame_size;  // px; the frame is the image, or `factor` times as large
   ivec2 overhang;    // px of the first pixel of the image that are outside of the frame
   int factor;
@@ -61,6 +63,7 @@ struct ClassifyParams {
 ALCOVE_CONSTANT uint kWithFirst = 4;         // a bit beside kFalloff*: moments of first order too
 ALCOVE_CONSTANT uint kWithCompleted = 8;     // another one: what completed surfaces take, too
 ALCOVE_CONSTANT uint kWithSecond = 16;       // moments of second order, beside those of first
+ALCOVE_CONSTANT uint kWithCurvature = 32;    // what the own surface blocks inside and outside
 ALCOVE_CONSTANT uint kThicknessWidth = 0;    // as deep as wide
 ALCOVE_CONSTANT uint kThicknessLength = 1;   // as HorizonParams says
 ALCOVE_CONSTANT uint kThicknessEndless = 2;  // solid as far as the sphere of the radius
@@ -93,6 +96,7 @@ struct HorizonParams {
   float bias;            // sine of the elevation above the tangent plane below which nothing blocks
   float thickness;       // scene units, infinite allowed; 0: as deep as wide
   uint plane;            // of the output, which has one plane per radius
+  uint curvature;        // plane of the moments from which those of curvature follow
   vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
 };
 

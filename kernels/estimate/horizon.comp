@@ -3,8 +3,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals; how far back each pixel is solid.
-// Out: visibility, 1 = open; where they are asked for, the moments of the blocked directions (see moments.glsl), and
-// the visibility that completed surfaces took.
+// Out: visibility, 1 = open; where they are asked for, the moments of the blocked directions (see moments.glsl), what
+// the receiver's own surface blocks inside and outside (own_surface.glsl), and the visibility that completed surfaces
+// took.
 //
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016. Lines are those of the listing
 // of its algorithm in the edition of 2019 (Technical Memo ATVI-TR-19-01). The steps have their numbers at the code:
@@ -70,7 +71,8 @@ layout(binding = 4) readonly buffer List { uint list[]; };    // one uint per li
 layout(binding = 5) readonly buffer Sites { uint sites[]; };  // one uint per site, from list_sites; only if sparse
 layout(binding = 6) readonly buffer SiteCountsBuffer { SiteCounts site_counts; };  // only if sparse
 layout(binding = 7) readonly buffer Counts { TileCounts counts; };
-// planes of the moments of the blocked directions in view space, see stored_moment(); only with kWithFirst
+// planes of the moments of the blocked directions in view space, see stored_moment(), with kWithFirst; then for each
+// radius what the own surface leaves open inside and outside, with kWithCurvature
 layout(binding = 8) writeonly buffer Moments { float moments[]; };
 // one float per pixel, the visibility that completed surfaces took; only with kWithCompleted
 layout(binding = 9) writeonly buffer Completed { float completed[]; };
@@ -83,7 +85,8 @@ layout(binding = 11) readonly buffer Backs { uint backs[]; };
 // this file, since drivers take long over code that is left out by a specialization constant alone.
 const int kSurfaces = ALCOVE_SURFACES;
 
-const uint kFalloff = kMode & ~(kWithFirst | kWithSecond | kWithCompleted);
+const uint kFalloff = kMode & ~(kWithFirst | kWithSecond | kWithCompleted | kWithCurvature);
+const bool kCurved = (kMode & kWithCurvature) != 0u;
 const uint kOrder = (kMode & kWithSecond) != 0u ? 2u : (kMode & kWithFirst) != 0u ? 1u : 0u;
 const bool kTellsCompleted = (kMode & kWithCompleted) != 0u;
 const bool kHard = kFalloff == kFalloffNone;
@@ -105,6 +108,7 @@ const float kSameSurface = 1.44;
 
 #include "kernels/estimate/pieces.glsl"
 #include "kernels/estimate/surfaces.glsl"
+#include "kernels/estimate/own_surface.glsl"
 
 // 5. and 6. Runs, and what they block.
 
@@ -237,6 +241,7 @@ struct Found {
   Blocked completed;      // without falloff: by completed surfaces
   mat2x3 sum, last_arcs;  // with falloff: the weighed integrals, and those of all that is blocked so far
   float completed_sum;    // with falloff: what completed surfaces added to the sum
+  OwnSurface own;         // with kCurved
 };
 
 /// Adds what lies between two slopes, the larger one first, to what is blocked.
@@ -259,6 +264,31 @@ float add_faded(inout Found found, Side side, Reach reach, Draw draw, vec2 place
   found.sum += added;
   found.last_arcs = arcs;
   return added[0].x;
+}
+
+/// With falloff: adds the new part of what the own surface blocks, weighed by a distance.
+void add_faded(inout OwnSurface own, Side side, Reach reach, float distance_to_it) {
+  const vec2 arcs = arcs_of(own, side);
+  own.sum += falloff_weight(kFalloff, distance_to_it, reach.falloff_start, reach.radius) * (arcs - own.last);
+  own.last = arcs;
+}
+
+/// With kCurved: follows the receiver's own surface to the next sample.
+void follow(inout Found found, Receiver r, Side side, Reach reach, Sample s, Sample last, vec2 beside, bool connected,
+            float rises) {
+  if (!kCurved) return;
+  follow(found.own, r, reach, s, last, beside, connected, rises);
+  if (!kHard) add_faded(found.own, side, reach, length(s.place));
+}
+
+/// What it blocks of a side, inside and outside.
+vec2 ended(OwnSurface own, Receiver r, Side side, Reach reach) {
+  if (!kCurved) return vec2(0);
+  end(own, r, reach);
+  if (kHard) return arcs_of(own, side);
+  // What it goes on to lies as far away as its end, or farther.
+  add_faded(own, side, reach, 0.5 * (length(own.place) + reach.radius));
+  return own.sum;
 }
 
 /// 7. Adds what a completed surface blocks.
@@ -379,6 +409,7 @@ void add_layers(inout Found found, inout Solids last, Receiver r, Side side, Rea
 void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
   const int plane = params.view.size.x * params.view.size.y;
   Sample last = receiver_sample(r);
+  ivec2 last_pixel = r.pixel;
   Solids solids;
   for (int i = 0; i < kSurfaces; i++) solids.z[i] = kNoLastSurface;
   for (int i = 0; i < kSurfaces; i++) solids.slopes[i] = vec2(-1, 1);
@@ -405,6 +436,13 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
                                                : both(s.above, s.within) ? min(slopes.y, back)
                                                                          : slopes.y);
     if (!kHard) add_faded(found, side, reach, draw, s.place);
+    if (kCurved) {
+      const ivec2 pixel = pixel_at(r, side, offset), middle = last_pixel + pixel >> 1;
+      const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
+      const bool is_one = is_through(r, reach, s.z, middle_z, last.z, offset - last.offset);
+      follow(found, r, side, reach, s, last, vec2(pixel - r.pixel), is_one, slopes.x);
+      last_pixel = pixel;
+    }
     last = s;
     last.distance_sq = s.above ? s.distance_sq : kBeyondSq;
   }
@@ -441,6 +479,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       // A run that crosses the sphere between two samples blocks half way to the one beyond.
       const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
       const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
+      follow(found, r, side, reach, s, last, beside, connected, slopes.x);
       if (kBehindOthers) take_down(interrupted, k, s, last, connected, connected, reach);
       const bool ends = both(connected, s.above) ? false : true;
       if (kHard) {
@@ -580,9 +619,15 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
         middle_z[i] = middle == last_pixel ? last_z[i] : depth_at(r, side, reach, middle, i, plane);
       last_pixel = pixel;
       const int from[kMostSurfaces] = links_of(r, reach, here, middle_z, last_z, gap);
+      const bool connected = is_through(r, reach, here.at[0].z, middle_z[0], last.z, gap);
+      if (kCurved) {
+        const Sample s = here.at[0];
+        const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
+        follow(found, r, side, reach, s, last, vec2(pixel - r.pixel), connected,
+               slopes_of(s, crosses, mix(s.slope, last.slope, 0.5)).x);
+      }
       if (kBehindOthers) {
         const bool goes_on = here.at[0].z > last.z ? from[0] >= 0 : is_taken(from, 0);
-        const bool connected = is_through(r, reach, here.at[0].z, middle_z[0], last.z, gap);
         take_down(interrupted, k, here.at[0], last, connected, goes_on, reach);
       }
       // Runs end that no surface continues, and those of surfaces that sink below the tangent plane.
@@ -652,11 +697,11 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
 }
 
 /// 4. to 9. The blocked part of a side's integrals; in the last row of the second column the part of its arc that
-/// completed surfaces block.
-mat2x3 search(Receiver r, Side side, Reach reach, Draw draw) {
+/// completed surfaces block. curved: what the own surface blocks of the arc, inside and outside.
+mat2x3 search(Receiver r, Side side, Reach reach, Draw draw, out vec2 curved) {
   const int count = min(int(kSteps), int(side.reach));
   const Blocked nothing = Blocked(-1.0, kThickness == kThicknessEndless ? 1.0 : -1.0, 0u);
-  Found found = Found(nothing, nothing, mat2x3(0), mat2x3(0), 0.0);
+  Found found = Found(nothing, nothing, mat2x3(0), mat2x3(0), 0.0, own_surface());
   if (kThickness == kThicknessEndless)
     search_endless(found, r, side, reach, draw, count);
   else if (kSurfaces > 1)
@@ -664,6 +709,7 @@ mat2x3 search(Receiver r, Side side, Reach reach, Draw draw) {
   else
     search_runs(found, r, side, reach, draw, count);
   if (kBeyondBorder && side.reach < side.whole_reach) complete_beyond(found, r, side, reach, draw);
+  curved = ended(found.own, r, side, reach);
   if (!kHard) {
     found.sum[1].z = found.completed_sum;
     return found.sum;
@@ -690,6 +736,13 @@ void write_moments(int index, int plane, mat3 blocked) {
   for (int k = 0; k < moments_in(kOrder); k++) moments[index + k * plane] = stored_moment(moment(blocked, k));
 }
 
+/// Writes what of the hemispheres inside and outside the receiver's own surface leaves open.
+void write_curvature(int index, int plane, vec2 blocked) {
+  if (!kCurved) return;
+  moments[index + int(params.curvature) * plane] = clamp(1.0 - blocked.x, 0.0, 1.0);
+  moments[index + (int(params.curvature) + 1) * plane] = clamp(1.0 - blocked.y, 0.0, 1.0);
+}
+
 /// Writes the visibility of a pixel and, where they are asked for, the moments of what is blocked.
 void estimate(ivec2 pixel, uint slices) {
   const View view = params.view;
@@ -701,6 +754,7 @@ void estimate(ivec2 pixel, uint slices) {
     ao[ao_index] = 1.0;
     if (kTellsCompleted) completed[index] = 0.0;
     write_moments(index, plane, mat3(0));
+    write_curvature(index, plane, vec2(0));
     return;
   }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.radius, params.depth_precision);
@@ -710,6 +764,7 @@ void estimate(ivec2 pixel, uint slices) {
   float whole = 0.0;
   float completed_arcs = 0.0;
   mat3 blocked_moments = mat3(0);
+  vec2 curvature = vec2(0);
   uint s = 0u;
   do {
     const Slice slice = slice_at(view, r, s, slices, noise.x);  // 1. and 2.
@@ -718,7 +773,10 @@ void estimate(ivec2 pixel, uint slices) {
     int sign = -1;
     do {
       const Side side = side_of(view, r, slice, float(sign), reach);  // 3.
-      const mat2x3 arcs = slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)));
+      vec2 curved;
+      const mat2x3 arcs =
+          slice.share * slice.weight * search(r, side, reach, draw_of(noise, s, uint(sign > 0)), curved);
+      if (kCurved) curvature += slice.share * slice.weight * curved;
       blocked += arcs[0].x;
       if (kTellsCompleted) completed_arcs += arcs[1].z;
       if (kOrder > 0u) blocked_moments += moments_of(arcs, float(sign) * slice.t, r.eye);
@@ -730,6 +788,7 @@ void estimate(ivec2 pixel, uint slices) {
   ao[ao_index] = visibility;
   if (kTellsCompleted) completed[index] = whole > 0.0 ? clamp(completed_arcs / whole, 0.0, 1.0 - visibility) : 0.0;
   write_moments(index, plane, whole > 0.0 ? blocked_moments / whole : mat3(0));
+  write_curvature(index, plane, whole > 0.0 ? curvature / whole : vec2(0));
 }
 
 void main() {

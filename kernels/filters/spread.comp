@@ -18,6 +18,7 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const int kPlanes = 3;    // how many planes
+layout(constant_id = 2) const int kMoments = 3;   // those of them that are moments: the first ones
 layout(constant_id = 1) const uint kFitted = 0u;  // 1: those of the lattice were smoothed
 layout(scalar, push_constant) uniform Push { SpreadParams params; };
 readonly buffer Moments { float moments[]; };  // planes of floats in [0, 1], see moments.glsl, at sites
@@ -103,6 +104,6 @@ void main() {
     if (!inside(view, pixel)) continue;
     const bool is_known = whole[i] > 0.0 && here[i].z < kSkyDepth;
     for (int p = 0; p < kPlanes; p++)
-      result[index_of(view, pixel) + p * plane] = is_known ? sum[i * kPlanes + p] / whole[i] : 0.5;
+      result[index_of(view, pixel) + p * plane] = is_known ? sum[i * kPlanes + p] / whole[i] : p < kMoments ? 0.5 : 1.0;
   }
 }

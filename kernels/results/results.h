@@ -9,6 +9,16 @@ struct BentNormalParams {
   ivec2 size;  // px
 };
 
+ALCOVE_CONSTANT uint kCurvatureConvexity = 1;  // what is wanted
+ALCOVE_CONSTANT uint kCurvatureCavity = 2;
+ALCOVE_CONSTANT uint kCurvatureBoth = 4;
+ALCOVE_CONSTANT uint kCurvatureByMatte = 8;
+
+struct CurvatureParams {
+  ivec2 size;  // px
+  uint first;  // plane of what is open inside at the smallest radius
+};
+
 ALCOVE_CONSTANT uint kShapeByIntensity = 1;  // what is not asked for leaves every bit as it is
 ALCOVE_CONSTANT uint kShapeByPower = 2;
 ALCOVE_CONSTANT uint kShapeByFade = 4;

@@ -22,9 +22,10 @@
 #include "kernels/time/sight.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = 0) const int kPlanes = 1;  // of values
-layout(constant_id = 1) const int kListed = 0;  // frames that the buffer lists, 0 to kMostTaken
-layout(constant_id = 2) const uint kOrder = 0;  // of the moments among the planes, 0 to 2
+layout(constant_id = 0) const int kPlanes = 1;     // of values
+layout(constant_id = 1) const int kListed = 0;     // frames that the buffer lists, 0 to kMostTaken
+layout(constant_id = 2) const uint kOrder = 0;     // of the moments among the planes, 0 to 2
+layout(constant_id = 3) const int kCurvature = 0;  // planes of curvature, after the moments
 layout(scalar, push_constant) uniform Push { AccumulateParams params; };
 readonly buffer Depth { float depth[]; };    // one float per pixel of the part, planar depth
 readonly buffer Normal { uint normal[]; };   // one uint per pixel of the part, see normal.glsl
@@ -37,7 +38,7 @@ readonly buffer Near { uint near[]; };  // words of cells, from moved
 buffer Sums { float sums[]; };
 writeonly buffer Ao { float ao[]; };            // where the sums end: the first plane of values
 writeonly buffer Scales { float scales[]; };    // those of radii, which follow it
-writeonly buffer Moments { float moments[]; };  // those of moments, which are the last ones
+writeonly buffer Moments { float moments[]; };  // those of moments and curvature, which are the last ones
 
 /// Normals of one point differ by rounding and by how files filter them: as the cosine between them.
 const float kLeastAgreement = 0.9;
@@ -122,7 +123,7 @@ void main() {
     }
     // Moments are of the other frame's view space.
     mat3 turns = mat3(0);
-    const int first = kPlanes - moments_in(kOrder);
+    const int first = kPlanes - moments_in(kOrder) - kCurvature;
     for (int k = 0; k < moments_in(kOrder); k++) turns[k / 3][k % 3] = blocked_moment(theirs[first + k]);
     turns = turned(mat3(other.row_x, other.row_y, other.row_z), turns);
     for (int k = 0; k < moments_in(kOrder); k++) theirs[first + k] = stored_moment(moment(turns, k));

@@ -11,14 +11,14 @@ using namespace test;
 
 constexpr Estimator kLayered[] = {Estimator::gtao, Estimator::bitmask};
 
-/// AO and bent normals, and how many tiles were searched, with hidden surfaces and without.
+/// AO, bent normals, the shape of the own surface, and how many tiles were searched, with hidden surfaces and without.
 struct Outcome {
   std::vector<float> values;
   TileCounts tiles;
 };
 Outcome outcome_of(const HostFrame& frame, const EstimatorSettings& settings) {
-  Planes planes = planes_of(frame, settings, "ao,bent-normal,transfer");
-  for (const auto* more : {&planes.bent, &planes.transfer})
+  Planes planes = planes_of(frame, settings, "ao,bent-normal,transfer,convexity,cavity");
+  for (const auto* more : {&planes.bent, &planes.transfer, &planes.convexity, &planes.cavity})
     planes.ao.insert(planes.ao.end(), more->begin(), more->end());
   return {planes.ao, planes.tiles};
 }

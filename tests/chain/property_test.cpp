@@ -172,9 +172,11 @@ TEST(Scale, changes_no_bit_of_what_is_hidden_or_made_of_the_ao) {
           EstimatorSettings there = settings;
           there.radius = std::ldexp(0.6, exponent);
           there.thickness_length = std::ldexp(0.2, exponent);
-          const Planes planes = planes_of(scaled(room.frame, exponent), there,
-                                          "ao,bent-normal,transfer,confidence,specular-occlusion", !is_exact);
-          return std::array{planes.ao, planes.bent, planes.transfer, planes.confidence, planes.specular};
+          const Planes planes =
+              planes_of(scaled(room.frame, exponent), there,
+                        "ao,bent-normal,transfer,confidence,specular-occlusion,convexity,cavity", !is_exact);
+          return std::array{planes.ao,       planes.bent,      planes.transfer, planes.confidence,
+                            planes.specular, planes.convexity, planes.cavity};
         };
         const auto expected = of(0);
         EXPECT_LT(*std::ranges::min_element(expected[0]), 0.8f) << name_of(settings);

@@ -17,7 +17,7 @@ using namespace test;
 std::vector<float> values_of(const FrameOutputs& outputs) {
   std::vector<float> values;
   for (const auto* planes : {outputs.ao, outputs.scales, outputs.bent_normal, outputs.transfer, outputs.confidence,
-                             outputs.specular_occlusion}) {
+                             outputs.specular_occlusion, outputs.curvature, outputs.convexity}) {
     const std::vector<float> plane = test::values_of(planes);
     values.insert(values.end(), plane.begin(), plane.end());
   }
@@ -28,7 +28,7 @@ std::vector<float> values_of(const FrameOutputs& outputs) {
 OutputSettings outputs_for(const EstimatorSettings& settings, bool all) {
   OutputSettings output;
   output.aovs = searches_slices(settings) ? "ao,bent-normal,transfer,ao-scales" : "ao,ao-scales";
-  if (all) output.aovs += ",confidence,specular-occlusion";
+  if (all) output.aovs += ",confidence,specular-occlusion,curvature,convexity";
   return output;
 }
 

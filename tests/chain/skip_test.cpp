@@ -13,7 +13,8 @@ using namespace test;
 /// AO of all scales and, where the estimator has them, bent normals; computed with what may be skipped, or without.
 Planes run(const HostFrame& frame, EstimatorSettings settings, bool no_skip) {
   settings.no_skip = no_skip;
-  return planes_of(frame, settings, searches_slices(settings) ? "ao,bent-normal,transfer,ao-scales" : "ao,ao-scales");
+  return planes_of(frame, settings,
+                   searches_slices(settings) ? "ao,bent-normal,transfer,ao-scales,cavity" : "ao,ao-scales,cavity");
 }
 
 /// A room with strands before it, whose upper part is sky, with a border of single pixels.
@@ -41,6 +42,7 @@ void expect_same(const HostFrame& frame, const EstimatorSettings& settings) {
   EXPECT_TRUE(same_bits(skipped.scales, whole.scales));
   EXPECT_TRUE(same_bits(skipped.bent, whole.bent));
   EXPECT_TRUE(same_bits(skipped.transfer, whole.transfer));
+  EXPECT_TRUE(same_bits(skipped.cavity, whole.cavity));
 }
 
 TEST(Skip, sky_is_left_out_for_any_estimator_density_and_resolution) {

@@ -97,7 +97,7 @@ EstimatorSettings few_samples() {
 
 OutputSettings everything() {
   OutputSettings output;
-  output.aovs = "ao,ao-scales,normal,bent-normal,transfer,depth,specular-occlusion,confidence,hidden";
+  output.aovs = "ao,ao-scales,normal,bent-normal,transfer,depth,specular-occlusion,confidence,hidden,curvature";
   output.composite = "composite.exr";
   output.multi_bounce = true;
   output.look.fog_density = 0.1;

@@ -65,6 +65,9 @@ Planes planes_of(const HostFrame& frame, const EstimatorSettings& settings, cons
                 values_of(outputs.error),
                 values_of(outputs.specular_occlusion),
                 values_of(outputs.completed),
+                values_of(outputs.convexity),
+                values_of(outputs.cavity),
+                values_of(outputs.curvature),
                 {},
                 {}};
   if (outputs.tiles) planes.tiles = outputs.tiles->as<TileCounts>()[0];

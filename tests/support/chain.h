@@ -29,7 +29,8 @@ std::vector<float> ao_of(const HostFrame& frame, const EstimatorSettings& settin
 
 /// What the chain makes of a frame for a list of AOVs, and what of it completed surfaces took.
 struct Planes {
-  std::vector<float> ao, scales, normal, bent, transfer, confidence, error, specular, completed;
+  std::vector<float> ao, scales, normal, bent, transfer, confidence, error, specular, completed, convexity, cavity,
+      curvature;
   TileCounts tiles{};
   std::vector<std::string> passes;
 };

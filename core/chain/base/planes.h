@@ -23,11 +23,15 @@ inline vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float
 /// The planes of moments up to an order: see moments.glsl.
 inline constexpr std::size_t moments_in(uint order) { return order == 0 ? 0 : order == 1 ? 3 : 8; }
 
+/// The planes of an AOV of curvature: that of the only radius, or the mean and one for each.
+inline constexpr std::size_t planes_of_curvature(std::size_t radii) { return radii > 1 ? 1 + radii : 1; }
+
 /// The visibility on its way.
 struct Visibility {
   gpu::Buffer* ao = nullptr;      // a plane; of several radii the mean
   gpu::Buffer* scales = nullptr;  // a plane for each radius; null: there is one radius, or nobody asked for them
-  // planes of what is blocked, of the largest radius: see moments.glsl; null: nobody asked for them
+  // planes of what is blocked, of the largest radius: see moments.glsl; then with curvature two for each radius, of
+  // what the own surface leaves open inside and outside; null: nobody asked for them
   gpu::Buffer* moments = nullptr;
 };
 

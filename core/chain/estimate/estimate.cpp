@@ -92,6 +92,9 @@ std::vector<gpu::Binding> buffers_of(const GBuffer& gbuffer, const Estimate& out
           {"SiteCountsBuffer", gpu::Optional(out.listed.site_counts)}};
 }
 
+// Steps at least of the search for curvature alone, and slices where no filter smooths it.
+constexpr int kCurvatureSteps = 16, kUnfilteredSlices = 8;
+
 double samples_of_a_radius(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
 }
@@ -180,23 +183,28 @@ Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame
 }
 
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
-                  const EstimatorSettings& settings, uint order, bool with_completed) {
-  const std::size_t plane = plane_bytes(gbuffer.view);
-  Estimate result{&gpu.buffer("ao", radii_of(settings).size() * plane)};
-  if (order > 0) result.moments = &gpu.buffer("moments", moments_in(order) * plane);
+                  const EstimatorSettings& settings, uint order, bool with_completed, bool with_curvature) {
+  const std::size_t plane = plane_bytes(gbuffer.view), radii = radii_of(settings).size();
+  Estimate result{&gpu.buffer("ao", radii * plane)};
+  const std::size_t further = moments_in(order) + (with_curvature ? 2 * radii : 0);
+  if (further > 0) result.moments = &gpu.buffer("moments", further * plane);
   result.order = order;
+  const bool has_own = with_curvature && (searches_exactly(settings) || !searches_slices(settings));
+  if (with_curvature && !has_own) result.curvature = uint(moments_in(order));
   if (with_completed) result.completed = &gpu.buffer("completed", plane);
   if (!searches_exactly(settings))
     estimate_sampled(gpu, gbuffer, sites, frame, settings, result);
   else
     estimate_exact(gpu, gbuffer, settings, result);
+  if (has_own) estimate_curvature(gpu, gbuffer, sites, frame, settings, result, uint(moments_in(order)));
   return result;
 }
 
 Estimate of_radius(const Estimate& all, uint plane, std::size_t radii) {
   const bool is_largest = plane + 1 == radii;
   Estimate out{all.ao, plane};
-  if (is_largest) out.moments = all.moments;
+  if (is_largest || all.curvature) out.moments = all.moments;
+  if (all.curvature) out.curvature = *all.curvature + 2 * plane;
   if (is_largest) out.order = all.order;
   if (is_largest) out.completed = all.completed;
   return out;
@@ -233,6 +241,29 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
   result.listed.skips_surfaces = result.listed.skips_surfaces && radii.size() == 1;
 }
 
+void estimate_curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
+                        const EstimatorSettings& settings, const Estimate& result, uint first) {
+  EstimatorSettings sampled = settings;
+  sampled.estimator = Estimator::gtao;
+  sampled.search = SliceSearch::steps;
+  sampled.thickness = ThicknessKind::infinite;  // what is not the own surface does not matter
+  sampled.complete = Completion::none;
+  sampled.tolerance = 0;
+  Sampling sampling = sampling_of(settings, frame.frame);
+  if (denoiser_of(settings).weights.empty()) sampling.slices = std::max(sampling.slices, kUnfilteredSlices);
+  sampling.steps = std::max(sampling.steps, kCurvatureSteps);
+  const auto radii = radii_of(settings);
+  for (uint plane = 0; plane < radii.size(); plane++) {
+    const Reach reach = reach_of(sampled, radii[plane]);
+    Estimate out{&gpu.buffer("curvature ao", plane_bytes(gbuffer.view))};
+    out.moments = result.moments;
+    out.curvature = first + 2 * plane;
+    out.listed = classify(gpu, gbuffer, {false, nullptr}, reach, sites, out, "curvature ");
+    list_sites(gpu, gbuffer, sites, out.listed, "curvature ");
+    horizon(gpu, gbuffer, reach, sampling, out);
+  }
+}
+
 const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping) {
   if (!skipping.skips_sky || !gbuffer.hidden) return nullptr;
   const gpu::Extent blocks = block_extent(gbuffer.view);
@@ -255,8 +286,8 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   gpu.clear(*list.counts);
   const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (out.order > 0 ? kClassifyWithFirst : 0) |
                     (out.order > 1 ? kClassifyWithSecond : 0) | (out.completed ? kClassifyWithCompleted : 0) |
-                    (skipping.changes ? kClassifyReuses : 0) | (selects ? kClassifySelects : 0) |
-                    (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
+                    (out.curvature ? kClassifyWithCurvature : 0) | (skipping.changes ? kClassifyReuses : 0) |
+                    (selects ? kClassifySelects : 0) | (gbuffer.surfaces > 1 ? kClassifyLayered : 0);
   // Where pixels tell how far back they are solid, a known back says otherwise wherever that may reach into the sphere.
   const bool has_backs = reach.told > reach.radius;
   const float front = has_backs ? std::max(reach.front, (1 + kMostBack) * reach.radius) : reach.front;
@@ -265,6 +296,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                               reach.told,
                               front,
                               out.plane,
+                              out.curvature.value_or(0),
                               gbuffer.grid.frame_size,
                               gbuffer.grid.overhang,
                               gbuffer.grid.factor,
@@ -329,13 +361,14 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
   params.thickness = reach.thickness;
   params.bias = reach.bias;
   params.plane = out.plane;
+  params.curvature = out.curvature.value_or(0);
   params.depth_precision = gbuffer.depth_precision;
   std::vector<gpu::Binding> buffers = buffers_of(gbuffer, out);
   buffers.insert(buffers.end(), {{"Moments", gpu::Optional(out.moments)},
                                  {"Completed", gpu::Optional(out.completed)},
                                  {"Backs", gpu::Optional(out.told)}});
   const uint mode = uint(reach.falloff) | (out.order > 0 ? kWithFirst : 0) | (out.order > 1 ? kWithSecond : 0) |
-                    (out.completed ? kWithCompleted : 0);
+                    (out.completed ? kWithCompleted : 0) | (out.curvature ? kWithCurvature : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0) |
                      (out.told ? kTellsBacks : 0);
   const uint sites = out.listed.sites ? uint(sampling.wide_slices) : 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/base/settings.h"
@@ -57,10 +58,13 @@ gpu::Extent estimate_extent(const TileList& list);
 
 /// The result of an estimator for the sites of a G-buffer.
 struct Estimate {
-  gpu::Buffer* ao = nullptr;          // a plane of visibility for each radius, from the smallest on
-  uint plane = 0;                     // of `ao`: that of the radius that an estimator writes
-  gpu::Buffer* moments = nullptr;     // of the largest radius: see Visibility
-  uint order = 0;                     // of the moments
+  gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on
+  uint plane = 0;                  // of `ao`: that of the radius that an estimator writes
+  gpu::Buffer* moments = nullptr;  // of the largest radius: see Visibility
+  uint order = 0;                  // of the moments
+  // The first of two planes of `moments` for each radius, or of those of the radius that an estimator writes: see
+  // Visibility; none: not asked for, or left to estimate_curvature().
+  std::optional<uint> curvature{};
   TileList listed{};                  // of the largest radius
   const gpu::Buffer* told = nullptr;  // how far back pixels are solid, from backs(); null: the settings say it
   gpu::Buffer* error = nullptr;       // with a tolerance, of the mean over the radii: see refine.comp
@@ -73,11 +77,16 @@ struct Estimate {
 /// Runs the estimator of the settings for each of their radii. The frame gives the number that animates the noise, and
 /// what has changed.
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
-                  const EstimatorSettings& settings, uint order = 0, bool with_completed = false);
+                  const EstimatorSettings& settings, uint order = 0, bool with_completed = false,
+                  bool with_curvature = false);
 
 /// Runs an estimator that takes samples for each radius of the settings, into the buffers of `result`.
 void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
                       const EstimatorSettings& settings, Estimate& result);
+/// Follows the receivers' own surfaces where the estimator of the settings does not: by a search that takes samples and
+/// whose AO nobody reads, into the planes of `result` from that one on.
+void estimate_curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
+                        const EstimatorSettings& settings, const Estimate& result, uint first);
 /// The buffers of an estimate of so many radii into which an estimator writes one of them: moments, and what
 /// completed surfaces took, only with the largest.
 Estimate of_radius(const Estimate& all, uint plane, std::size_t radii);

@@ -308,7 +308,7 @@ Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibil
 }
 
 Visibility spread(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& noisy, const Visibility& fitted,
-                  const Sites& sites, Visibility smooth) {
+                  const Sites& sites, Visibility smooth, uint order) {
   if (!noisy.moments || !sites.rows) return smooth;
   const Lattice lattice = lattice_of(gbuffer, sites);
   smooth.moments = &denoised(gpu, kMomentsPrefix, noisy.moments->bytes());
@@ -320,7 +320,7 @@ Visibility spread(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& 
                 {"Sites", sites.rows},
                 {"Result", smooth.moments}},
                {uint(lattice.sites.x), uint(lattice.sites.y)},
-               {planes_in(*noisy.moments, gbuffer.view), fitted.moments ? 1u : 0u});
+               {planes_in(*noisy.moments, gbuffer.view), fitted.moments ? 1u : 0u, uint(moments_in(order))});
   return smooth;
 }
 

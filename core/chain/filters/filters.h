@@ -72,10 +72,10 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
                          const Sites& sites, const Denoiser& denoiser, const std::string& prefix = "",
                          const FilterRuns& runs = {});
 
-/// `smooth` with the moments of every pixel, from those of the sites about it; without moments, or where every pixel is
-/// a site, it stays as it is.
+/// `smooth` with the moments of that order, and curvature, of every pixel, from those of the sites about it; without
+/// moments, or where every pixel is a site, it stays as it is.
 Visibility spread(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& noisy, const Visibility& fitted,
-                  const Sites& sites, Visibility smooth);
+                  const Sites& sites, Visibility smooth, uint order);
 
 /// Brings any number of planes from the blocks of `low` to the pixels of `gbuffer`, or returns the input where both are
 /// the same.

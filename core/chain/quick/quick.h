@@ -10,7 +10,8 @@ namespace alcove {
 /// Whether settings ask for the quick search, and for nothing that it cannot do: several radii, a falloff, a given
 /// thickness, surfaces that are not completed everywhere, a smaller resolution, other densities and denoisers.
 bool may_search_quickly(const EstimatorSettings& settings);
-/// Whether a frame is searched so. With moments, hidden surfaces, or surfaces that are no occluders it is not.
+/// Whether a frame is searched so. With moments, hidden surfaces, or surfaces that are no occluders it is not. Nobody
+/// asks where curvature is wanted, which it does not find.
 bool searches_quickly(const EstimatorSettings& settings, const GBuffer& gbuffer, uint order);
 
 /// Blocks of pixels, and their sites.

@@ -47,6 +47,7 @@ std::vector<Aov> aovs_of(const OutputSettings& settings) {
 
 std::size_t planes_of(const Aov& aov, const EstimatorSettings& settings) {
   if (aov.planes == &FrameOutputs::scales) return 1 + settings.further_radii.size();
+  if (is_of_curvature(aov)) return planes_of_curvature(1 + settings.further_radii.size());
   return aov.planes == &FrameOutputs::hidden ? 2 * std::size_t(settings.hidden) : aov.channels.size();
 }
 
@@ -57,9 +58,19 @@ std::vector<std::string> channels_of(const Aov& aov, std::size_t planes) {
       channels.insert(channels.end(), {fmt::format("hidden{}.Z", i), fmt::format("hidden{}.back", i)});
     return channels;
   }
+  if (is_of_curvature(aov)) {
+    channels = aov.channels;
+    for (std::size_t i = 1; i < planes; i++) channels.push_back(fmt::format("{}{}.Y", aov.name, i));
+    return channels;
+  }
   if (aov.planes != &FrameOutputs::scales) return aov.channels;
   for (std::size_t i = 1; i <= planes; i++) channels.push_back(fmt::format("scale{}.Y", i));
   return channels;
+}
+
+bool is_of_curvature(const Aov& aov) {
+  return aov.planes == &FrameOutputs::convexity || aov.planes == &FrameOutputs::cavity ||
+         aov.planes == &FrameOutputs::curvature;
 }
 
 bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes) { return Wanted(settings).has(planes); }

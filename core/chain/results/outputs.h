@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -48,8 +49,13 @@ struct FrameOutputs {
   gpu::Buffer* confidence = nullptr;          // a plane, in [0, 1]
   gpu::Buffer* error = nullptr;               // a plane: with a tolerance, the estimated error of the visibility
   gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
-  gpu::Buffer* color_ao = nullptr;            // planes r, g, b: the visibility with multi-bounce
-  gpu::Buffer* composite = nullptr;           // the beauty's planes
+  // a plane, of several radii their mean and one for each: what the own surface blocks inside and outside, in [0, 1],
+  // and their difference, 0.5 = flat
+  gpu::Buffer* convexity = nullptr;
+  gpu::Buffer* cavity = nullptr;
+  gpu::Buffer* curvature = nullptr;
+  gpu::Buffer* color_ao = nullptr;   // planes r, g, b: the visibility with multi-bounce
+  gpu::Buffer* composite = nullptr;  // the beauty's planes
   gpu::Buffer* count = nullptr;      // a plane and more: of how many frames' estimates it is the mean; null: its own
   bool is_quick = false;             // its visibility is of the quick search
   std::optional<OwnEstimate> own{};  // with wanted.only_own: then nothing else is made of it
@@ -85,6 +91,9 @@ inline constexpr std::array kAovs{
     AovRow{"confidence", "confidence.Y", &FrameOutputs::confidence, AovSource::visibility},
     AovRow{"error", "error.Y", &FrameOutputs::error, AovSource::visibility},
     AovRow{"specular-occlusion", "specular.Y", &FrameOutputs::specular_occlusion, AovSource::open_directions},
+    AovRow{"convexity", "convexity.Y", &FrameOutputs::convexity, AovSource::visibility},
+    AovRow{"cavity", "cavity.Y", &FrameOutputs::cavity, AovSource::visibility},
+    AovRow{"curvature", "curvature.Y", &FrameOutputs::curvature, AovSource::visibility},
 };
 
 /// An AOV that a run asks for: a row of kAovs, with the channels and planes that the other outputs' settings give it.
@@ -106,6 +115,9 @@ std::size_t planes_of(const Aov& aov, const EstimatorSettings& settings);
 /// The channels of an AOV that has so many planes: scale1.Y of the smallest radius, hidden1.Z of the nearest surface.
 std::vector<std::string> channels_of(const Aov& aov, std::size_t planes);
 
+/// Whether it is made of the receiver's own surface: convexity, cavity or curvature.
+bool is_of_curvature(const Aov& aov);
+
 /// Whether an AOV that the settings ask for lies in these planes.
 bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes);
 
@@ -120,6 +132,8 @@ struct Wanted {
   bool has(gpu::Buffer* FrameOutputs::*planes) const;
   /// Whether the AO of each radius is asked for, or that of one.
   bool needs_scales() const { return has(&FrameOutputs::scales) || order > 1; }
+  /// Whether an AOV of the own surface's shape is asked for.
+  bool needs_curvature() const { return std::ranges::any_of(aovs, &is_of_curvature); }
   /// Whether nothing is asked for but AO that is made from depth and normals alone.
   bool is_only_visibility() const;
 

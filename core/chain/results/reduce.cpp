@@ -27,6 +27,9 @@ constexpr std::array kFiltered{Filtered{&FrameOutputs::ao, "reduced ao"},
                                Filtered{&FrameOutputs::relight_open, "reduced relight open"},
                                Filtered{&FrameOutputs::confidence, "reduced confidence"},
                                Filtered{&FrameOutputs::error, "reduced error"},
+                               Filtered{&FrameOutputs::convexity, "reduced convexity"},
+                               Filtered{&FrameOutputs::cavity, "reduced cavity"},
+                               Filtered{&FrameOutputs::curvature, "reduced curvature"},
                                Filtered{&FrameOutputs::specular_occlusion, "reduced specular occlusion"},
                                Filtered{&FrameOutputs::color_ao, "reduced color ao"}};
 

@@ -80,6 +80,28 @@ gpu::Buffer& transfer(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibili
   return planes;
 }
 
+FrameOutputs curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, std::size_t radii,
+                       const Wanted& wanted, const Matte& matte, FrameOutputs out) {
+  if (!wanted.needs_curvature()) return out;
+  const auto planes = [&](gpu::Buffer* FrameOutputs::*member, const char* name) {
+    return wanted.has(member) ? &gpu.buffer(name, planes_of_curvature(radii) * plane_bytes(gbuffer.view)) : nullptr;
+  };
+  out.convexity = planes(&FrameOutputs::convexity, "convexity");
+  out.cavity = planes(&FrameOutputs::cavity, "cavity");
+  out.curvature = planes(&FrameOutputs::curvature, "curvature");
+  const uint mode = (out.convexity ? kCurvatureConvexity : 0) | (out.cavity ? kCurvatureCavity : 0) |
+                    (out.curvature ? kCurvatureBoth : 0) | (matte.plane ? kCurvatureByMatte : 0);
+  gpu.dispatch("curvature",
+               CurvatureParams{gbuffer.view.size, planes_in(*visibility.moments, gbuffer.view) - 2 * uint(radii)},
+               {{"Open", visibility.moments},
+                {"Matte", gpu::Optional(matte.plane)},
+                {"Convexity", gpu::Optional(out.convexity)},
+                {"Cavity", gpu::Optional(out.cavity)},
+                {"Curvature", gpu::Optional(out.curvature)}},
+               extent_of(gbuffer.view), {mode, uint(radii)});
+  return out;
+}
+
 gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,
                         const Matrix3& aov_from_view) {
   gpu::Buffer& planes = gpu.buffer(name, 3 * plane_bytes(gbuffer.view));

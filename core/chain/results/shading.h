@@ -8,6 +8,7 @@
 #include "core/base/settings.h"
 #include "core/chain/base/planes.h"
 #include "core/chain/geometry/matte.h"
+#include "core/chain/results/outputs.h"
 
 namespace alcove {
 
@@ -37,6 +38,11 @@ gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::
 /// nothing is blocked. `name`: of the buffer.
 gpu::Buffer& transfer(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
                       const Matrix3& space_from_view, const std::string& name, const Environment* light = nullptr);
+
+/// The outputs with convexity, cavity and curvature of so many radii, those that are wanted. They are made of the
+/// visibility's moments, whose last planes are two for each radius.
+FrameOutputs curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, std::size_t radii,
+                       const Wanted& wanted, const Matte& matte, FrameOutputs out);
 
 /// Packed directions as planes x, y, z of that name, for the host. aov_from_view rotates them.
 gpu::Buffer& directions(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& packed, const std::string& name,

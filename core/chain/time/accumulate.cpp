@@ -63,7 +63,7 @@ void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& gr
 }
 
 Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimateSet& estimates,
-                        const EstimatorSettings& settings, std::size_t scales, uint order) {
+                        const EstimatorSettings& settings, std::size_t scales, uint order, bool with_curvature) {
   const float radius = reach_of(settings, radii_of(settings).back()).radius;
   const gpu::Buffer& near = gpu.buffer("moved near", kMovedCells * sizeof(uint));
   if (!estimates.is_further_part) {
@@ -75,11 +75,12 @@ Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
       place += group.count;
     }
   }
-  const std::size_t plane = plane_bytes(gbuffer.view), values = 1 + scales + moments_in(order);
+  const std::size_t curved = with_curvature ? 2 * radii_of(settings).size() : 0, further = moments_in(order) + curved;
+  const std::size_t plane = plane_bytes(gbuffer.view), values = 1 + scales + further;
   gpu::Buffer& sums = gpu.buffer("accumulated sums", (1 + values) * plane);
   Visibility mean{&gpu.buffer("accumulated", plane)};
   if (scales > 0) mean.scales = &gpu.buffer(fmt::format("{}accumulated", kScalesPrefix), scales * plane);
-  if (order > 0) mean.moments = &gpu.buffer(fmt::format("{}accumulated", kMomentsPrefix), moments_in(order) * plane);
+  if (further > 0) mean.moments = &gpu.buffer(fmt::format("{}accumulated", kMomentsPrefix), further * plane);
 
   AccumulateParams params{estimates.view, gbuffer.view.size, estimates.corner, radius, 0, int(scales), 0, 0};
   const std::vector<SeenGroup> none(1);
@@ -99,7 +100,7 @@ Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
                   {"Ao", mean.ao},
                   {"Scales", gpu::Optional(mean.scales)},
                   {"Moments", gpu::Optional(mean.moments)}},
-                 extent_of(gbuffer.view), {uint(values), group.listed, order});
+                 extent_of(gbuffer.view), {uint(values), group.listed, order, uint(curved)});
     params.place += group.count;
   }
   return {mean, &sums};

@@ -26,6 +26,6 @@ void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& gr
 /// it has moved, and in part about the border of where something has. They have planes of so many radii beside the
 /// visibility, and moments of that order.
 Accumulation accumulate(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimateSet& estimates,
-                        const EstimatorSettings& settings, std::size_t scales, uint order);
+                        const EstimatorSettings& settings, std::size_t scales, uint order, bool with_curvature = false);
 
 }  // namespace alcove
