@@ -339,7 +339,7 @@ TEST(Spread, mixes_nothing_across_a_crease) {
     recorder().upload(moments);
     const Visibility noisy{.moments = &moments};
     const Visibility fitted = fit_sites(recorder(), sparse.frame.gbuffer, noisy, sparse.sites, denoiser_of(settings));
-    const Visibility smooth = spread(recorder(), sparse.frame.gbuffer, noisy, fitted, sparse.sites, {});
+    const Visibility smooth = spread(recorder(), sparse.frame.gbuffer, noisy, fitted, sparse.sites, {}, 0);
     const Difference d = difference(downloaded<float>(*smooth.moments), sides);
     EXPECT_LT(d.max, 1e-3) << name_of(settings) << " pixel " << d.worst % 80 << " " << d.worst / 80;
   }
