@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/frame/pixels/radius.h"
+#include "core/frame/pixels/ramps.h"
 
 namespace alcove {
 namespace {
@@ -216,6 +217,7 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
     fail(ErrorKind::usage, "position: set --set position-space to world or view, since planes do not tell");
   reading.depth_scale = input.depth_scale;
   reading.sky = input.sky;
+  reading.cuts_ramps = input.ramps == "cut";
   reading.depth_is_half = first.is_half;
   read_normals(reading, settings);
   const auto& kinds = input.behind_kinds;
@@ -260,8 +262,11 @@ void Session::run(int frame) {
   if (all.output.multi_bounce && given("albedo").empty() && !all.input.albedo_value)
     fail(ErrorKind::usage, "--set multi-bounce needs the plane albedo, or a number for --set albedo");
   std::vector<float> behind;
-  const HostPlanes planes = planes_over(reading.data, behind);
+  HostPlanes planes = planes_over(reading.data, behind);
   Notes notes = check_planes(reading, planes, all.input);
+  std::vector<float> cut(planes[RawPlane::depth].begin(), planes[RawPlane::depth].end());
+  cut_ramps(reading, cut);
+  planes[RawPlane::depth] = cut;
   if (depends_on_depth(all.estimator)) {
     const auto radii = radii_by_depth(all.estimator, reading.camera, median_depth(reading, depth().values));
     take_radii(all.estimator, radii.empty() ? std::vector{1.0} : radii);  // without a surface there is no AO to compute

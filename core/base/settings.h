@@ -81,6 +81,7 @@ struct InputSettings {
   double depth_scale = 1;                       // scene units per unit of the depth channel, > 0
   // depth at or beyond it is sky, in the file's units, > 0; below every known sentinel
   double sky = 1e9;
+  std::string ramps = "keep";  // of depth that was blurred across outlines; cut: see core/frame/pixels/ramps.h
   NormalSpace normal_space = NormalSpace::automatic;  // automatic: as the camera file says, else world
   // automatic: as the camera file says, else signed or unorm by their values
   NormalEncoding normal_encoding = NormalEncoding::automatic;

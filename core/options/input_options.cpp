@@ -157,14 +157,16 @@ void add_file_rows(std::vector<SettingRow>& rows) {
       .idle(unless_multi_bounce);
 }
 
+std::string unless_plane_of_depth(const Settings& all) {
+  return unless_depth(all, {DepthKind::planar, DepthKind::ray, DepthKind::inverse, DepthKind::device,
+                            DepthKind::normalized, DepthKind::log, DepthKind::disparity});
+}
+
 void add_channel_rows(std::vector<SettingRow>& rows) {
   using S = InputSettings;
   OptionGroup pixels(rows, "Input", Effect::pixels, &Settings::input);
   pixels.text("--depth-channel", &S::depth_channel, "NAME", "of the depth; else found by its usual names")
-      .idle([](const Settings& all) {
-        return unless_depth(all, {DepthKind::planar, DepthKind::ray, DepthKind::inverse, DepthKind::device,
-                                  DepthKind::normalized, DepthKind::log, DepthKind::disparity});
-      });
+      .idle(unless_plane_of_depth);
   pixels.text("--normal-channels", &S::normal_channels, "LAYER|X,Y[,Z]", "of the normals; of two, z is rebuilt")
       .idle(if_without_normals);
   pixels.text("--position-channels", &S::position_channels, "LAYER|X,Y,Z", "of the positions, instead of a depth");
@@ -249,6 +251,10 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
               "b of disparity = a / z + b, the value of what is infinitely far; else found by the normals")
       .idle(unless_disparity);
   pixels.number("--depth-scale", &S::depth_scale, "", above(0), "scene units per unit of the depth channel");
+  pixels
+      .word("ramps", &S::ramps, {"cut", "keep"},
+            "of depth that was blurred across outlines; cut: their pixels go to the surfaces on both sides")
+      .others_idle(unless_plane_of_depth);
   pixels.number("--sky", &S::sky, "file units", above(0), "from this depth on it is sky, as are 0, infinity and NaN");
 }
 
