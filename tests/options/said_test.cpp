@@ -36,6 +36,7 @@ const std::vector<Case>& cases_without_effect() {
       {"--set albedo-channels=d", {"", "--set albedo=0.5 " + bounces}, bounces},
       {"--depth-kind planar", {"--position p.exr"}, ""},
       {"--depth-channel Z", {position}, ""},
+      {"--set ramps=cut", {position}, ""},
       {"--near 1", {"--depth-kind planar", "--source octane"}, "--source octane --camera says.json"},
       {"--far 9", {"--position-channels P"}, ""},
       {"--reversed-z", {"--depth-kind ray"}, "--depth-kind log"},

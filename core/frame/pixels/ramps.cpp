@@ -35,7 +35,8 @@ class RampCutter {
   RampCutter(const Reading& reading, std::span<float> raw)
       : map_(depth_map_of(reading)), view_(view_of(reading, reading.data)), raw_(raw), inverse_(raw.size()) {
     for (int y = 0; y < view_.size.y; y++)
-      for (int x = 0; x < view_.size.x; x++) inverse_[index_of(view_, x, y)] = inverse_of(raw_[index_of(view_, x, y)], x, y);
+      for (int x = 0; x < view_.size.x; x++)
+        inverse_[index_of(view_, x, y)] = inverse_of(raw_[index_of(view_, x, y)], x, y);
   }
 
   void cut() {
@@ -57,9 +58,8 @@ class RampCutter {
     std::vector<RampPixel> pixels;
     for (int y = 0; y < height; y++) take_line(std::size_t(y) * std::size_t(width), 1, std::size_t(width), pixels);
     for (int x = 0; x < width; x++) take_line(std::size_t(x), std::size_t(width), std::size_t(height), pixels);
-    std::ranges::stable_sort(pixels, [](const auto& a, const auto& b) {
-      return a.at != b.at ? a.at < b.at : a.steepest > b.steepest;
-    });
+    std::ranges::stable_sort(
+        pixels, [](const auto& a, const auto& b) { return a.at != b.at ? a.at < b.at : a.steepest > b.steepest; });
     pixels.erase(std::ranges::unique(pixels, {}, &RampPixel::at).begin(), pixels.end());
     return pixels;
   }
