@@ -69,7 +69,6 @@ class RampCutter {
     for (std::size_t i = 0; i < count; i++) u[i] = inverse_[first + i * stride];
     const auto place = [&](std::size_t i) { return first + i * stride; };
     for (Ramp ramp : ramps_in(u)) {
-      if (ramp.is_sharp) continue;
       const std::size_t middle = middle_of(ramp, place);
       // Before a rounded outline the surface itself turns away, and the step is the ramp's end.
       const double where = (double(middle - ramp.first) - 0.5) / double(ramp.last - ramp.first);
