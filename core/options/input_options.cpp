@@ -135,9 +135,9 @@ void add_file_rows(std::vector<SettingRow>& rows) {
   const auto file = [&](const char* name, std::string S::*path, const char* sentence) -> SettingRow& {
     return inputs.text(name, path, "FILE", sentence).names(FileRole::input);
   };
-  file("--depth", &S::depth, "of the depth alone: EXR, DDS, PNG of 16 bits, TIFF").is_common = true;
+  file("--depth", &S::depth, "of the depth alone: EXR, DDS, NumPy, PNG of 16 bits, TIFF").is_common = true;
   file("--position", &S::position, "a picture of the positions, instead of a depth");
-  inputs.text("--normal", &S::normal, "FILE|none", "of the normals alone: EXR, DDS, TIFF or PNG; none: made from depth")
+  inputs.text("--normal", &S::normal, "FILE|none", "of the normals alone: EXR, DDS, NumPy, TIFF or PNG; none: made from depth")
       .names(FileRole::input, [](const std::string& text) { return lower_case(text) != "none"; })
       .is_common = true;
   SettingRow& beauty = file("--beauty", &S::beauty, "a picture of the beauty, and of its parts of light");
