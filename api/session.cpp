@@ -162,11 +162,13 @@ Camera Session::camera_by(const Settings& settings, const Window& window, int fr
   const bool is_given = camera_json_ || !pinhole_.empty();
   if (is_given && names_a_camera(settings.input))
     fail(ErrorKind::usage,
-         "there is a camera, and --fov, --vertical-fov, --focal or --ortho-width gives another: give only one of them");
+         "there is a camera, and --fov, --vertical-fov, --focal-px, --focal or --ortho-width gives another: give only "
+         "one of them");
   if (camera_json_) return camera_of(*camera_json_, name, window, frame);
   if (pinhole_.empty() && !names_a_camera(settings.input))
     fail(ErrorKind::usage,
-         "there is no camera: give one, or set --fov or --vertical-fov (degrees), --focal with --aperture (mm), or "
+         "there is no camera: give one, or set --fov or --vertical-fov (degrees), --focal-px, --focal with --aperture "
+         "(mm), or "
          "--ortho-width (scene units)");
   if (pinhole_.empty()) return camera_for(settings.input, window, 1, frame);
   const auto& p = pinhole_;

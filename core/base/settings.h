@@ -94,6 +94,7 @@ struct InputSettings {
   std::string chan_rotation = "zxy";      // of a .chan file: the axes in the order of their turns
   std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive
   std::optional<double> vertical_fov;     // the same over the height
+  std::optional<double> focal_px;         // of the display window's width, > 0
   std::optional<double> focal, aperture;  // mm, > 0: focal length and width of the film back
   std::optional<double> ortho_width;      // scene units across the display window, > 0
   // options that presets set, by their long names, and the presets; without effect, they are ignored

@@ -137,7 +137,9 @@ void add_file_rows(std::vector<SettingRow>& rows) {
   };
   file("--depth", &S::depth, "of the depth alone: EXR, DDS, NumPy, PNG of 16 bits, TIFF").is_common = true;
   file("--position", &S::position, "a picture of the positions, instead of a depth");
-  inputs.text("--normal", &S::normal, "FILE|none", "of the normals alone: EXR, DDS, NumPy, TIFF or PNG; none: made from depth")
+  inputs
+      .text("--normal", &S::normal, "FILE|none",
+            "of the normals alone: EXR, DDS, NumPy, TIFF or PNG; none: made from depth")
       .names(FileRole::input, [](const std::string& text) { return lower_case(text) != "none"; })
       .is_common = true;
   SettingRow& beauty = file("--beauty", &S::beauty, "a picture of the beauty, and of its parts of light");
@@ -297,6 +299,8 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
   pixels.number("--fov", &S::fov, "degrees", strictly_between(0, 180), "field of view over the width").is_common = true;
   pixels.number("--vertical-fov", &S::vertical_fov, "degrees", strictly_between(0, 180),
                 "over the height, as Unity, Godot and glTF have it");
+  pixels.number("--focal-px", &S::focal_px, "px", above(0),
+                "focal length in pixels of the display window, as networks say it");
   pixels.number("--focal", &S::focal, "mm", above(0), "focal length").idle([](const Settings& all) {
     return unless_given(all.input.aperture.has_value(), "--aperture: add it, the film back's width in mm");
   });

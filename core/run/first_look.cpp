@@ -242,7 +242,8 @@ std::vector<std::string> MissingOptions::sentences() const {
   if (camera && turns_normals)
     sentences.push_back(fmt::format(
         "a camera: {}--camera FILE.json with world_to_camera, since the normals are in world space; or --fov DEGREES "
-        "(--vertical-fov), or --focal MM with --aperture MM, or --ortho-width UNITS, each with --normal none",
+        "(--vertical-fov), or --focal-px PIXELS, or --focal MM with --aperture MM, or --ortho-width UNITS, each with "
+        "--normal none",
         why));
   else if (camera)
     sentences.push_back(fmt::format("a camera: {}{}", why, kCameraOptions));

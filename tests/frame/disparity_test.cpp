@@ -126,6 +126,9 @@ TEST_F(Disparity, of_8_bits_says_what_that_does_to_ao) {
   for (const auto& note : source.suspicious) text += note.text;
   EXPECT_THAT(text, AllOf(HasSubstr("in steps of 0.0039"), HasSubstr("off by about"), HasSubstr("(RMS)")));
   EXPECT_NEAR(*source.reading.depth_range.disparity_shift, 0.2, source.reading.depth_range.disparity_error);
+  settings.depth_range.disparity_shift = 0.2;
+  EXPECT_THAT(said(), ElementsAre()) << "nor do they where the shift is said";
+  settings.depth_range = {};
   settings.depth_kind = DepthKind::inverse;
   expect(Reply::refused, {"8 bits"});
 }

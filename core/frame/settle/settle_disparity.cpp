@@ -135,7 +135,11 @@ class DisparitySettlement : private DepthSettlement {
     error = kFarthest * median_above(shift);
     const auto found = scores();
     if (found.empty() || found[0].agreement < kLeastAgreement) return;
-    if (is_near(shift, found[0])) return void(error = std::max(error, found[0].error));
+    if (is_near(shift, found[0])) {
+      if (reading_.depth_is_coarse) seen_.space_by_shift = found[0].space;
+      error = std::max(error, found[0].error);
+      return;
+    }
     note(NoteCode::said_otherwise,
          fmt::format("disparity's shift is {:.5g} by the options, and by the normals another: {}", shift,
                      text_of(found[0])));
