@@ -29,7 +29,8 @@ class DisparityRun : public SequenceFolder {
 
 TEST_F(DisparityRun, has_the_ao_of_the_depth_that_it_stands_for) {
   write_frames(1, 1, file_of(rendering(), kSky, planar, normal));
-  done(typed("--depth-kind planar --normal-space world --radius 20%"));
+  EXPECT_THAT(done(typed("--depth-kind planar --normal-space world --radius 20%")).err,
+              testing::ContainsRegex("--radius 20% takes [0-9.]+, of a median depth of [0-9.]+ for all frames"));
   const auto by_depth = ao(1);
   write_disparities(1, 1);
   done(said("--radius 20%"));

@@ -9,6 +9,7 @@
 #include "core/base/option_words.h"
 #include "core/base/ranks.h"
 #include "core/frame/pixels/disparity.h"
+#include "core/frame/pixels/right_angles.h"
 #include "core/frame/settle/depth_settlement.h"
 
 namespace alcove {
@@ -76,8 +77,8 @@ class DisparitySettlement : private DepthSettlement {
   ShiftScore found_shift() const {
     const auto found = scores();
     if (found.empty())
-      fail(ErrorKind::input, "{}: disparity is a / z + b, and nothing tells b: give normals, by --normal, or {}", path_,
-           kOptions);
+      fail(ErrorKind::input, "{}: disparity is a / z + b, and nothing tells b: give normals, by --normal, or {}{}",
+           path_, kOptions, hint_of_planes());
     const ShiftScore& best = found[0];
     refuse_turned(best);
     if (best.agreement < kLeastAgreement || uncertainty(best) > kMostUncertain)
@@ -129,12 +130,32 @@ class DisparitySettlement : private DepthSettlement {
               "--set disparity-shift", true, part < kProven);
   }
 
+  static std::string text_of(const RightAngles& found) {
+    return fmt::format("with b = {:.5g} +- {:.2g} most of the planes in the picture meet at right angles", found.shift,
+                       found.error);
+  }
+
+  std::string hint_of_planes() const {
+    const auto found = shift_by_right_angles(view_, raw_.depth, seen_.grain);
+    return found ? fmt::format("; {}: where they do, give --set disparity-shift={:.5g}", text_of(*found), found->shift)
+                 : "";
+  }
+
+  /// Notes where the planes alone give another shift than the options.
+  void doubt_by_planes(double shift) {
+    const auto found = shift_by_right_angles(view_, raw_.depth, seen_.grain);
+    if (!found || std::abs(found->shift - shift) <= 2 * found->error) return;
+    note(NoteCode::said_otherwise,
+         fmt::format("disparity's shift is {:.5g} by the options, and {}", shift, text_of(*found)));
+  }
+
   /// Notes where the normals give another shift than the options.
   void doubt_shift(double shift) {
     double& error = reading_.depth_range.disparity_error;
     error = kFarthest * median_above(shift);
     const auto found = scores();
-    if (found.empty() || found[0].agreement < kLeastAgreement) return;
+    if (found.empty()) return doubt_by_planes(shift);
+    if (found[0].agreement < kLeastAgreement) return;
     if (is_near(shift, found[0])) {
       if (reading_.depth_is_coarse) seen_.space_by_shift = found[0].space;
       error = std::max(error, found[0].error);
