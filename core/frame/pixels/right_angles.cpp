@@ -15,22 +15,23 @@
 namespace alcove {
 namespace {
 
-constexpr int kArm = 5;                 // px from the middle of a flat place to its sides
-constexpr std::size_t kPlanes = 400;    // that are paired
-constexpr double kLeastPairs = 0.05;    // of them that agree
-constexpr double kWidth = 0.02;         // of the median value above a shift: shifts within it are one
-constexpr double kAlone = 0.5;          // of those: no other shift has more
-constexpr double kPerpendicular = 0.05; // cosine
+constexpr int kArm = 5;                  // px from the middle of a flat place to its sides
+constexpr std::size_t kPlanes = 400;     // that are paired
+constexpr double kLeastPairs = 0.05;     // of them that agree
+constexpr double kWidth = 0.02;          // of the median value above a shift: shifts within it are one
+constexpr double kPerpendicular = 0.05;  // cosine
 
 /// The p, q and r of a place, if it is flat and slanted.
 std::optional<Vector3> plane_at(const View& view, std::span<const float> raw, int x, int y, double step) {
   constexpr double kBend = 0.002, kLeastSteps = 20, kLeastSlope = 1e-6;  // of the slope; steps; of the value
   std::array<double, 9> d;
   for (int i = 0; i < 9; i++) d[std::size_t(i)] = raw[index_of(view, x + (i % 3 - 1) * kArm, y + (i / 3 - 1) * kArm)];
-  const double across = (d[2] + d[5] + d[8] - d[0] - d[3] - d[6]) / 6, down = (d[6] + d[7] + d[8] - d[0] - d[1] - d[2]) / 6;
+  const double across = (d[2] + d[5] + d[8] - d[0] - d[3] - d[6]) / 6,
+               down = (d[6] + d[7] + d[8] - d[0] - d[1] - d[2]) / 6;
   double middle = 0, bend = 0;
   for (const double value : d) middle += value / 9;
-  for (int i = 0; i < 9; i++) bend = std::max(bend, std::abs(d[std::size_t(i)] - middle - (i % 3 - 1) * across - (i / 3 - 1) * down));
+  for (int i = 0; i < 9; i++)
+    bend = std::max(bend, std::abs(d[std::size_t(i)] - middle - (i % 3 - 1) * across - (i / 3 - 1) * down));
   const double slope = std::hypot(across, down);
   if (!(bend <= std::max(kBend * slope, step)) || slope < std::max(kLeastSteps * step, kLeastSlope * std::abs(middle)))
     return std::nullopt;
@@ -88,10 +89,10 @@ std::optional<RightAngles> shift_by_right_angles(const View& view, std::span<con
     return std::ranges::upper_bound(shifts, shift + width) - std::ranges::lower_bound(shifts, shift - width);
   };
   const auto best = std::ranges::max_element(shifts, {}, within);
-  if (best == shifts.end() || double(within(*best)) < kLeastPairs * 0.5 * std::pow(double(planes.size()), 2)) return std::nullopt;
+  if (best == shifts.end() || double(within(*best)) < kLeastPairs * 0.5 * std::pow(double(planes.size()), 2))
+    return std::nullopt;
   const double shift = *best, error = kWidth * (median - shift);
-  const auto is_other = [&](double other) { return std::abs(other - shift) > 2 * error && double(within(other)) > kAlone * double(within(shift)); };
-  if (std::ranges::any_of(shifts, is_other) || !has_corner(planes, shift)) return std::nullopt;
+  if (!has_corner(planes, shift)) return std::nullopt;
   return RightAngles{shift, error};
 }
 

@@ -13,8 +13,8 @@ namespace alcove {
 struct RightAngles {
   double shift = 0, error = 0;
 };
-/// Gives it where one shift makes many more pairs of planes perpendicular than any other, with three directions that
-/// are perpendicular to each other. Planes are planes with any shift, so nothing else of them tells it; and a scene
+/// Gives the shift that makes the most pairs of planes perpendicular, where these are many and three planes are
+/// perpendicular to each other. Planes are planes with any shift, so nothing else of them tells it; and a scene
 /// without right angles may still have such a shift, so that this proves nothing.
 ///
 /// Over a plane's picture disparity is affine: d = p X + q Y + r of the ray (X, Y, -1). With the shift b its normal is

@@ -25,6 +25,8 @@ constexpr double kFarthest = 1e-4;                       // what is less above t
 /// RMS of the AO for each part of the median value by which the shift is off. Measured on six rendered scenes: 0.2 to
 /// 0.7 at 1 %, 0.2 to 0.4 at 5 %.
 constexpr double kAoOfShift = 0.7;
+/// The same for the part of the slopes that the normals do not explain. With smooth errors of 1 and 3 %: 0.4 to 1.2.
+constexpr double kAoOfMisfit = 1.2, kLittleAo = 0.03;
 
 class DisparitySettlement : private DepthSettlement {
  public:
@@ -123,11 +125,12 @@ class DisparitySettlement : private DepthSettlement {
     reading_.depth_range.disparity_shift = score.shift;
     reading_.depth_range.disparity_error = std::max(score.error, kFarthest * median_above(score.shift));
     if (reading_.depth_is_coarse) seen_.space_by_shift = score.space;
-    const double part = uncertainty(score);
+    const double part = uncertainty(score), ao = std::max(kAoOfShift * part, kAoOfMisfit * (1 - score.agreement));
     take_down("disparity's shift", fmt::format("{:.5g}", score.shift),
-              fmt::format("{}; the error is {:.2g} % of the median value above it, by which AO is off by up to {:.1g}",
-                          text_of(score), 100 * part, kAoOfShift * part),
-              "--set disparity-shift", true, part < kProven);
+              fmt::format("{}; the error is {:.2g} % of the median value above it, and by this and what does not fit "
+                          "AO is off by up to {:.1g}",
+                          text_of(score), 100 * part, ao),
+              "--set disparity-shift", true, part < kProven && ao < kLittleAo);
   }
 
   static std::string text_of(const RightAngles& found) {
