@@ -95,7 +95,6 @@ void add_depth(Command& command, const FrameSource& source, const InputSettings&
   if (is_log && settings.depth_range.log_constant != defaults.depth_range.log_constant)
     command.add("--set log-constant", std::optional(settings.depth_range.log_constant));
   if (settings.depth_scale != defaults.depth_scale) command.add("--depth-scale", std::optional(settings.depth_scale));
-  if (settings.ramps != defaults.ramps) command.add("--set ramps=" + settings.ramps);
   if (settings.sky != defaults.sky) command.add("--sky", std::optional(settings.sky));
 }
 
