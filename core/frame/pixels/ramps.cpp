@@ -60,7 +60,8 @@ class RampCutter {
     for (int x = 0; x < width; x++) take_line(std::size_t(x), std::size_t(width), std::size_t(height), pixels);
     std::ranges::stable_sort(
         pixels, [](const auto& a, const auto& b) { return a.at != b.at ? a.at < b.at : a.steepest > b.steepest; });
-    pixels.erase(std::ranges::unique(pixels, {}, &RampPixel::at).begin(), pixels.end());
+    const auto are_one = [](const auto& a, const auto& b) { return a.at == b.at; };
+    pixels.erase(std::unique(pixels.begin(), pixels.end(), are_one), pixels.end());
     return pixels;
   }
 
