@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/frame/pixels/radius.h"
+#include "core/frame/pixels/ramps.h"
 
 namespace alcove {
 namespace {
@@ -161,11 +162,13 @@ Camera Session::camera_by(const Settings& settings, const Window& window, int fr
   const bool is_given = camera_json_ || !pinhole_.empty();
   if (is_given && names_a_camera(settings.input))
     fail(ErrorKind::usage,
-         "there is a camera, and --fov, --vertical-fov, --focal or --ortho-width gives another: give only one of them");
+         "there is a camera, and --fov, --vertical-fov, --focal-px, --focal or --ortho-width gives another: give only "
+         "one of them");
   if (camera_json_) return camera_of(*camera_json_, name, window, frame);
   if (pinhole_.empty() && !names_a_camera(settings.input))
     fail(ErrorKind::usage,
-         "there is no camera: give one, or set --fov or --vertical-fov (degrees), --focal with --aperture (mm), or "
+         "there is no camera: give one, or set --fov or --vertical-fov (degrees), --focal-px, --focal with --aperture "
+         "(mm), or "
          "--ortho-width (scene units)");
   if (pinhole_.empty()) return camera_for(settings.input, window, 1, frame);
   const auto& p = pinhole_;
@@ -216,6 +219,7 @@ Reading Session::reading_by(const Settings& settings, int frame) const {
     fail(ErrorKind::usage, "position: set --set position-space to world or view, since planes do not tell");
   reading.depth_scale = input.depth_scale;
   reading.sky = input.sky;
+  reading.cuts_ramps = input.ramps == "cut";
   reading.depth_is_half = first.is_half;
   read_normals(reading, settings);
   const auto& kinds = input.behind_kinds;
@@ -260,8 +264,11 @@ void Session::run(int frame) {
   if (all.output.multi_bounce && given("albedo").empty() && !all.input.albedo_value)
     fail(ErrorKind::usage, "--set multi-bounce needs the plane albedo, or a number for --set albedo");
   std::vector<float> behind;
-  const HostPlanes planes = planes_over(reading.data, behind);
+  HostPlanes planes = planes_over(reading.data, behind);
   Notes notes = check_planes(reading, planes, all.input);
+  std::vector<float> cut(planes[RawPlane::depth].begin(), planes[RawPlane::depth].end());
+  cut_ramps(reading, cut);
+  planes[RawPlane::depth] = cut;
   if (depends_on_depth(all.estimator)) {
     const auto radii = radii_by_depth(all.estimator, reading.camera, median_depth(reading, depth().values));
     take_radii(all.estimator, radii.empty() ? std::vector{1.0} : radii);  // without a surface there is no AO to compute

@@ -167,7 +167,7 @@ void with_help(const Command& command, const std::function<void()>& call) {
 namespace {
 
 /// The endings of what a frame may be read from.
-constexpr std::array<std::string_view, 12> kEndings = {".exr", ".sxr", ".mxr", ".dds", ".tif", ".tiff",
+constexpr std::array<std::string_view, 13> kEndings = {".exr", ".sxr", ".mxr", ".dds", ".npy", ".tif", ".tiff",
                                                        ".png", ".tga", ".bmp", ".hdr", ".pic", ".rgbe"};
 
 bool is_pattern(const std::string& word) {

@@ -81,6 +81,7 @@ struct InputSettings {
   double depth_scale = 1;                       // scene units per unit of the depth channel, > 0
   // depth at or beyond it is sky, in the file's units, > 0; below every known sentinel
   double sky = 1e9;
+  std::string ramps = "keep";  // of depth that was blurred across outlines; cut: see core/frame/pixels/ramps.h
   NormalSpace normal_space = NormalSpace::automatic;  // automatic: as the camera file says, else world
   // automatic: as the camera file says, else signed or unorm by their values
   NormalEncoding normal_encoding = NormalEncoding::automatic;
@@ -93,6 +94,7 @@ struct InputSettings {
   std::string chan_rotation = "zxy";      // of a .chan file: the axes in the order of their turns
   std::optional<double> fov;              // horizontal, degrees, 0 to 180 exclusive
   std::optional<double> vertical_fov;     // the same over the height
+  std::optional<double> focal_px;         // of the display window's width, > 0
   std::optional<double> focal, aperture;  // mm, > 0: focal length and width of the film back
   std::optional<double> ortho_width;      // scene units across the display window, > 0
   // options that presets set, by their long names, and the presets; without effect, they are ignored

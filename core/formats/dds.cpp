@@ -4,21 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <vector>
 
-#include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/base/half.h"
-#include "core/formats/image_io.h"
+#include "core/formats/row_reader.h"
 #include "core/formats/sample_loops.h"
 
 namespace alcove {
 namespace {
 
 constexpr std::size_t kHeaderWords = 32, kDx10Words = 5;  // the first with the four letters at the beginning
-constexpr std::uint32_t kMostPixels = 1u << 16;           // in width and in height
 constexpr std::uint32_t kDx10 = 0x30315844;               // "DX10"
 
 enum class Sample { single_float, half_float, unorm16, unorm8, unorm24, ten_ten_ten_two };
@@ -43,7 +37,7 @@ constexpr Format kFormats[] = {
 };
 
 /// Decodes one channel of a pixel.
-float sample_of(const Format& format, const char* pixel, std::size_t channel) {
+float decoded(const Format& format, const char* pixel, std::size_t channel) {
   switch (format.sample) {
     case Sample::single_float: return number_at<float>(pixel + 4 * channel);
     case Sample::half_float: return from_half(number_at<std::uint16_t>(pixel + 2 * channel));
@@ -57,59 +51,31 @@ float sample_of(const Format& format, const char* pixel, std::size_t channel) {
   return 0;
 }
 
-class DdsReader : public PictureReader {
+class DdsReader : public RowReader {
  public:
-  DdsReader(const std::string& path, const char* option) : path_(path), option_(option) {
-    require_readable(path, "DDS", option);
-    file_.open(path, std::ios::binary);
+  DdsReader(const std::string& path, const char* option) : RowReader(path, option, "DDS") {
     std::array<std::uint32_t, kHeaderWords + kDx10Words> words{};
-    read(words.data(), 4 * kHeaderWords);
-    const std::uint32_t height = words[3], width = words[4], letters = words[21];
+    next(words.data(), 4 * kHeaderWords);
+    const std::uint32_t letters = words[21];
     const bool has_dx10 = letters == kDx10;
-    if (has_dx10) read(words.data() + kHeaderWords, 4 * kDx10Words);
+    if (has_dx10) next(words.data() + kHeaderWords, 4 * kDx10Words);
     const std::uint32_t code = has_dx10 ? words[kHeaderWords] : letters;
+    if (words[1] != 124 || words[19] != 32) refuse("its header is damaged");
     format_ = std::ranges::find(kFormats, code, &Format::code);
-    if (words[1] != 124 || words[19] != 32 || width == 0 || height == 0 || width > kMostPixels || height > kMostPixels)
-      fail(ErrorKind::input,
-           "{}: the DDS header is damaged, or the texture is empty or wider or higher than {} pixels ({})", path,
-           kMostPixels, option);
     if (format_ == std::end(kFormats) || (!has_dx10 && code < 100))
-      fail(ErrorKind::input,
-           "{}: DDS format {} cannot be read: save depth as R32, D24 or R16 and normals as RGBA16F, RGBA8 or "
-           "R10G10B10A2, or as EXR ({})",
-           path, code, option);
-    pixels_ = 4 * (kHeaderWords + (has_dx10 ? kDx10Words : 0));
-    data = display = {0, 0, int(width), int(height)};
-    std::error_code error;
-    if (const auto size = std::filesystem::file_size(path, error);
-        error || size < pixels_ || (size - pixels_) / format_->bytes < data.pixels())
-      fail(ErrorKind::input, "{}: the DDS file ends too early: it should hold {} x {} pixels ({})", path, width, height,
-           option);
+      refuse(
+          fmt::format("it has the format {}: save depth as R32, D24 or R16 and normals as RGBA16F, RGBA8 or "
+                      "R10G10B10A2, or as EXR",
+                      code));
+    begin(words[4], words[3], format_->bytes);
     names = {"R", "G", "B", "A"};
     names.resize(std::size_t(format_->channels));
   }
 
-  void read(int first, int rows, std::span<const Channel> channels) override {
-    std::vector<char> row(std::size_t(data.width) * format_->bytes);
-    file_.seekg(std::streamoff(pixels_ + std::size_t(first) * row.size()));
-    for (std::size_t to = 0; to < std::size_t(rows) * std::size_t(data.width); to += std::size_t(data.width)) {
-      read(row.data(), row.size());
-      for (const Channel& channel : channels)
-        for (std::size_t x = 0; x < std::size_t(data.width); x++)
-          channel.to[to + x] = sample_of(*format_, row.data() + x * format_->bytes, channel.index);
-    }
-  }
-
  private:
-  void read(void* to, std::size_t bytes) {
-    if (!file_.read(static_cast<char*>(to), std::streamsize(bytes)))
-      fail(ErrorKind::input, "{}: the DDS file ends too early ({})", path_, option_);
-  }
+  float sample_of(const char* pixel, std::size_t channel) const override { return decoded(*format_, pixel, channel); }
 
-  const std::string path_, option_;
-  std::ifstream file_;
   const Format* format_ = nullptr;
-  std::size_t pixels_ = 0;  // their place in the file
 };
 
 }  // namespace

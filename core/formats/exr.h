@@ -127,7 +127,7 @@ enum class Formats {
 /// none of these; also if it is missing or damaged.
 ExrFile open_image(const std::string& path, const char* option, Formats formats);
 
-/// The text "OpenEXR, DDS, PNG, TIFF, TGA, BMP or Radiance HDR".
+/// The text "OpenEXR, DDS, PNG, NumPy, TIFF, TGA, BMP or Radiance HDR".
 const char* frame_formats();
 
 /// The name of a plane of depth made of deep samples: that of all pixels' first surfaces (`surface` 0), second surfaces

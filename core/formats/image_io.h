@@ -1,4 +1,4 @@
-// Readers of other picture formats: DDS by our own code, PNG by libpng, all others through OpenImageIO.
+// Readers of other picture formats: DDS and NumPy by our own code, PNG by libpng, all others through OpenImageIO.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -30,7 +30,7 @@ class PictureReader {
   virtual void read(int first, int rows, std::span<const Channel> channels) = 0;
 };
 
-/// The reason why pictures of other formats than EXR, DDS and PNG cannot be read; empty if they can.
+/// The reason why pictures of other formats than EXR, DDS, PNG and NumPy cannot be read; empty if they can.
 std::string why_no_image_io();
 
 /// Opens a DDS texture as RenderDoc saves it, and reads its first image. Its format must be R32_FLOAT, D32_FLOAT,
@@ -43,6 +43,11 @@ std::unique_ptr<PictureReader> open_dds(const std::string& path, const char* opt
 /// Opens a PNG: Y, or R, G, B, each with A if it has any, of 8 or 16 bits. Fails with ErrorKind::input as
 /// open_picture() does.
 std::unique_ptr<PictureReader> open_png(const std::string& path, const char* option);
+
+/// Opens an array of NumPy's, a .npy file: of height and width, or of up to four channels behind these. One channel is
+/// called Z, several R, G, B, A. u1 and u2 go from 0 to 1; f2, f4, f8 and i4 are as they are. Fails with
+/// ErrorKind::input on other types and shapes, on Fortran's order, and on files that are too short.
+std::unique_ptr<PictureReader> open_npy(const std::string& path, const char* option);
 
 /// Opens a picture of any format that OpenImageIO reads. Fails with ErrorKind::input, also if a header claims more
 /// pixels than its file can hold; `option` is for the message.

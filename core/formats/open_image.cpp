@@ -21,6 +21,7 @@ enum class Reader {
   exr,
   dds,
   png,
+  npy,
   picture,  // OpenImageIO, for frames too
   other,    // OpenImageIO, for no frame
 };
@@ -39,6 +40,8 @@ constexpr Signature kSignatures[] = {
     {"an OpenEXR", Reader::exr, "\x76\x2f\x31\x01"sv},
     {"a DDS", Reader::dds, "DDS "sv},
     {"a PNG", Reader::png, "\x89PNG\r\n\x1a\n"sv},
+    {"a NumPy", Reader::npy, "\x93NUMPY"sv},
+    {"a ZIP (as .npz is)", Reader::other, "PK\3\4"sv},
     {"a TIFF", Reader::picture, "II*\0"sv},
     {"a TIFF", Reader::picture, "MM\0*"sv},
     {"a BigTIFF", Reader::picture, "II+\0"sv},
@@ -94,7 +97,7 @@ const ImageIoModule& module(const std::string& path) {
     const ImageIoModule* found = load(why);
     if (!found)
       fail(ErrorKind::input,
-           "{}: to read a picture that is no EXR, DDS or PNG, Alcove needs {}, of the package "
+           "{}: to read a picture that is no EXR, DDS, PNG or NumPy array, Alcove needs {}, of the package "
            "alcove-pictures, which is built where OpenImageIO is installed (libopenimageio-dev): {}",
            path, kImageIoFile, why);
     return found;
@@ -108,7 +111,7 @@ const ImageIoModule& module(const std::string& path) {
 
 }  // namespace
 
-const char* frame_formats() { return "OpenEXR, DDS, PNG, TIFF, TGA, BMP or Radiance HDR"; }
+const char* frame_formats() { return "OpenEXR, DDS, PNG, NumPy, TIFF, TGA, BMP or Radiance HDR"; }
 
 std::string why_no_image_io() {
   std::string why;
@@ -132,6 +135,7 @@ ExrFile open_image(const std::string& path, const char* option, Formats formats)
   if (format && format->reader == Reader::exr) return ExrFile(path, option);
   if (format && format->reader == Reader::dds) return {path, option, open_dds(path, option)};
   if (format && format->reader == Reader::png) return {path, option, open_png(path, option)};
+  if (format && format->reader == Reader::npy) return {path, option, open_npy(path, option)};
   return {path, option, open_picture(path, option)};
 }
 

@@ -24,7 +24,7 @@ bool names_picture(const std::string& text) {
   const auto dot = text.rfind('.');
   if (dot == text.npos || text.find(',') != text.npos) return false;
   const std::string ending = lower_case(text.substr(dot + 1));
-  return std::ranges::any_of(std::array{"exr", "dds", "png", "tif", "tiff", "tga", "bmp", "hdr"},
+  return std::ranges::any_of(std::array{"exr", "dds", "npy", "png", "tif", "tiff", "tga", "bmp", "hdr"},
                              [&](const char* known) { return ending == known; });
 }
 

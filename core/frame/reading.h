@@ -159,6 +159,7 @@ struct Reading : Meaning {
   double depth_scale = 1;           // scene units per unit of the depth values
   double sky = 1e9;                 // depth at or beyond it is sky, in the file's units
   bool depth_is_half = false;       // the depth values were rounded to half floats
+  bool cuts_ramps = false;          // pixels of blurred outlines go to the surfaces on both sides: see cut_ramps()
   std::vector<BehindPlane> behind;  // of the planes of RawPlane::behind, one for each
   MatteReading matte, occluders;
   std::vector<AmbientReading> ambient;  // the lights that AO may dim; none: it dims the whole beauty

@@ -113,6 +113,7 @@ void add_camera(Command& command, const InputSettings& settings, bool has_camera
   if (is_chan_file(settings.camera)) command.add("--chan-rotation", settings.chan_rotation);
   command.add("--fov", settings.fov);
   command.add("--vertical-fov", settings.vertical_fov);
+  command.add("--focal-px", settings.focal_px);
   command.add("--focal", settings.focal);
   command.add("--aperture", settings.aperture);
   command.add("--ortho-width", settings.ortho_width);

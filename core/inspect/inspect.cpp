@@ -144,6 +144,7 @@ std::string options_of_camera(const InputSettings& settings) {
   if (!settings.camera.empty()) return "--camera";
   if (settings.fov) return "--fov";
   if (settings.vertical_fov) return "--vertical-fov";
+  if (settings.focal_px) return "--focal-px";
   return settings.focal ? "--focal and --aperture" : "--ortho-width";
 }
 

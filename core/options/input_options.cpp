@@ -135,9 +135,11 @@ void add_file_rows(std::vector<SettingRow>& rows) {
   const auto file = [&](const char* name, std::string S::*path, const char* sentence) -> SettingRow& {
     return inputs.text(name, path, "FILE", sentence).names(FileRole::input);
   };
-  file("--depth", &S::depth, "of the depth alone: EXR, DDS, PNG of 16 bits, TIFF").is_common = true;
+  file("--depth", &S::depth, "of the depth alone: EXR, DDS, NumPy, PNG of 16 bits, TIFF").is_common = true;
   file("--position", &S::position, "a picture of the positions, instead of a depth");
-  inputs.text("--normal", &S::normal, "FILE|none", "of the normals alone: EXR, DDS, TIFF or PNG; none: made from depth")
+  inputs
+      .text("--normal", &S::normal, "FILE|none",
+            "of the normals alone: EXR, DDS, NumPy, TIFF or PNG; none: made from depth")
       .names(FileRole::input, [](const std::string& text) { return lower_case(text) != "none"; })
       .is_common = true;
   SettingRow& beauty = file("--beauty", &S::beauty, "a picture of the beauty, and of its parts of light");
@@ -157,14 +159,16 @@ void add_file_rows(std::vector<SettingRow>& rows) {
       .idle(unless_multi_bounce);
 }
 
+std::string unless_plane_of_depth(const Settings& all) {
+  return unless_depth(all, {DepthKind::planar, DepthKind::ray, DepthKind::inverse, DepthKind::device,
+                            DepthKind::normalized, DepthKind::log, DepthKind::disparity});
+}
+
 void add_channel_rows(std::vector<SettingRow>& rows) {
   using S = InputSettings;
   OptionGroup pixels(rows, "Input", Effect::pixels, &Settings::input);
   pixels.text("--depth-channel", &S::depth_channel, "NAME", "of the depth; else found by its usual names")
-      .idle([](const Settings& all) {
-        return unless_depth(all, {DepthKind::planar, DepthKind::ray, DepthKind::inverse, DepthKind::device,
-                                  DepthKind::normalized, DepthKind::log, DepthKind::disparity});
-      });
+      .idle(unless_plane_of_depth);
   pixels.text("--normal-channels", &S::normal_channels, "LAYER|X,Y[,Z]", "of the normals; of two, z is rebuilt")
       .idle(if_without_normals);
   pixels.text("--position-channels", &S::position_channels, "LAYER|X,Y,Z", "of the positions, instead of a depth");
@@ -249,6 +253,10 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
               "b of disparity = a / z + b, the value of what is infinitely far; else found by the normals")
       .idle(unless_disparity);
   pixels.number("--depth-scale", &S::depth_scale, "", above(0), "scene units per unit of the depth channel");
+  pixels
+      .word("ramps", &S::ramps, {"cut", "keep"},
+            "of depth that was blurred across outlines; cut: their pixels go to the surfaces on both sides")
+      .others_idle(unless_plane_of_depth);
   pixels.number("--sky", &S::sky, "file units", above(0), "from this depth on it is sky, as are 0, infinity and NaN");
 }
 
@@ -291,6 +299,8 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
   pixels.number("--fov", &S::fov, "degrees", strictly_between(0, 180), "field of view over the width").is_common = true;
   pixels.number("--vertical-fov", &S::vertical_fov, "degrees", strictly_between(0, 180),
                 "over the height, as Unity, Godot and glTF have it");
+  pixels.number("--focal-px", &S::focal_px, "px", above(0),
+                "focal length in pixels of the display window, as networks say it");
   pixels.number("--focal", &S::focal, "mm", above(0), "focal length").idle([](const Settings& all) {
     return unless_given(all.input.aperture.has_value(), "--aperture: add it, the film back's width in mm");
   });

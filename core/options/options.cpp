@@ -184,9 +184,10 @@ const std::vector<Rivals>& rivals() {
   static const std::vector<Rivals> kRivals{
       {{"depth"}, {"position"}, "both say how far away surfaces are"},
       {{"depth-channel"}, {"position", "position-channels"}, "depth is read from one of them"},
-      {{"camera"}, {"fov", "vertical-fov", "focal", "aperture", "ortho-width"}, kCamera},
-      {{"fov"}, {"vertical-fov", "focal", "aperture", "ortho-width"}, kCamera},
-      {{"vertical-fov"}, {"focal", "aperture", "ortho-width"}, kCamera},
+      {{"camera"}, {"fov", "vertical-fov", "focal-px", "focal", "aperture", "ortho-width"}, kCamera},
+      {{"fov"}, {"vertical-fov", "focal-px", "focal", "aperture", "ortho-width"}, kCamera},
+      {{"vertical-fov"}, {"focal-px", "focal", "aperture", "ortho-width"}, kCamera},
+      {{"focal-px"}, {"focal", "aperture", "ortho-width"}, kCamera},
       {{"focal", "aperture"}, {"ortho-width"}, kCamera},
       {{"occluders"}, {"ignore"}, "each says what blocks"},
       {{"occluders", "ignore"},
@@ -243,7 +244,8 @@ namespace {
 
 /// Whether a setting is as good for other frames: no file, no frame, no camera, and nothing of this machine.
 bool is_shareable(const SettingRow& row) {
-  static const Words kCamera{"near", "far", "fov", "vertical-fov", "focal", "aperture", "ortho-width", "roi"};
+  static const Words kCamera{"near",  "far",      "fov",         "vertical-fov", "focal-px",
+                             "focal", "aperture", "ortho-width", "roi"};
   return row.role == FileRole::none && row.group != "Frames" && row.group != "Device" &&
          std::ranges::find(kCamera, row.key()) == kCamera.end();
 }

@@ -242,7 +242,8 @@ std::vector<std::string> MissingOptions::sentences() const {
   if (camera && turns_normals)
     sentences.push_back(fmt::format(
         "a camera: {}--camera FILE.json with world_to_camera, since the normals are in world space; or --fov DEGREES "
-        "(--vertical-fov), or --focal MM with --aperture MM, or --ortho-width UNITS, each with --normal none",
+        "(--vertical-fov), or --focal-px PIXELS, or --focal MM with --aperture MM, or --ortho-width UNITS, each with "
+        "--normal none",
         why));
   else if (camera)
     sentences.push_back(fmt::format("a camera: {}{}", why, kCameraOptions));
@@ -263,14 +264,18 @@ void FirstLook::take_radii_of_depth(Notes& notes) {
   std::optional<Error> error;
   const auto radii = radii_of_first(error, settings_.estimator);
   if (radii.empty() && error) throw *error;
-  const char* const option = settings_.estimator.radius_auto ? "--radius auto" : "--radius in percent";
+  const EstimatorSettings& said = settings_.estimator;
+  const std::string option = said.radius_auto ? "--radius auto" : fmt::format("--radius {:.4g}%", 100 * *said.radius);
   if (radii.empty())
     fail(ErrorKind::input, "{}: {} finds no surface in {}: give --radius NUMBER, in scene units",
          main_input(settings_.input), option,
          frames.is_sequence() ? "frames " + frames_text(frames.evidence()) : "the frame");
   plan_->set_radii(radii);
-  notes.push_back({NoteCode::automatic_radius, fmt::format("{} takes {}{}", option, fmt::join(radii, " "),
-                                                           frames.is_sequence() ? " for all frames" : "")});
+  notes.push_back(
+      {NoteCode::automatic_radius,
+       fmt::format("{} takes {}{}{}", option, fmt::join(radii, " "),
+                   said.radius_auto ? "" : fmt::format(", of a median depth of {:.4g}", radii.front() / *said.radius),
+                   frames.is_sequence() ? " for all frames" : "")});
 }
 
 Notes FirstLook::prepare() {

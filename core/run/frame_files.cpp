@@ -21,6 +21,7 @@
 #include "core/chain/results/outputs.h"
 #include "core/formats/png.h"
 #include "core/frame/find/behind.h"
+#include "core/frame/pixels/ramps.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/settle/settle.h"
 #include "core/run/tiles.h"
@@ -538,7 +539,8 @@ ReadPlanes kept_planes(const FrameInputs& inputs) {
 }
 
 void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& known, std::uint64_t most_bytes) {
-  if (!are_of(known, source)) {
+  const bool is_read = !are_of(known, source);
+  if (is_read) {
     known = {};  // where reading fails, there are none
     ReadPlanes planes;
     std::vector<PlaneRead> reads;
@@ -551,6 +553,7 @@ void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& k
   }
   if (!source.evidence)
     settle_by_planes(source, settings.input, known[RawPlane::depth], known[RawPlane::normal], most_bytes);
+  if (is_read) cut_ramps(source.reading, known[RawPlane::depth]);
 }
 
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& window, const Settings& settings,
@@ -578,6 +581,7 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& wi
   if (planes[RawPlane::beauty]) require_picture(source, window, values_of(RawPlane::beauty));
   if (!source.evidence)
     settle_by_planes(source, settings.input, values_of(RawPlane::depth), values_of(RawPlane::normal));
+  if (!is_known) cut_ramps(over(source.reading, window), values_of(RawPlane::depth));
   FrameInputs inputs = inputs_of(over(source.reading, window), planes, frame);
   inputs.margin = margin_of(window, whole);
   inputs.albedo_value = settings.input.albedo_value.value_or(0);

@@ -13,6 +13,7 @@
 #include "core/chain/geometry/geometry.h"
 #include "core/formats/exr.h"
 #include "core/frame/find/channels.h"
+#include "core/frame/pixels/ramps.h"
 #include "core/gpu/kernel.h"
 #include "core/run/frame_files.h"
 #include "core/run/shot.h"
@@ -112,6 +113,7 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.reading.data.width)};
   memory.fixed_bytes =
       exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output) + composite_bytes(source);
+  if (settings.input.ramps == "cut") memory.fixed_bytes += kRampBytes * source.reading.data.pixels();
   for (const auto& file : source.files) {
     memory.fixed_bytes += file.bytes_beside_pixels();
     if (file.codec_group() > 0) memory.codec_groups.push_back(file.codec_group());

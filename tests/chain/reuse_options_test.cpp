@@ -68,6 +68,7 @@ const std::map<std::string, Change> kChanges{
     {"disparity-shift",
      {"--depth-kind disparity --depth-channel u.q1 --set disparity-scale=1", "--set disparity-shift=0",
       "--set disparity-shift=-0.5"}},
+    {"ramps", {"--depth-channel u.q6", "--set ramps=keep", "--set ramps=cut"}},
     {"depth-scale", {"", "--depth-scale 1", "--depth-scale 1.5"}},
     {"sky", {"", "--sky 100", "--sky 5"}},
     {"normal-space", {"--camera G --normal-channels u.m0,u.m1,u.m2", "--normal-space world", "--normal-space view"}},
@@ -79,6 +80,7 @@ const std::map<std::string, Change> kChanges{
     {"chan-rotation", {"--camera K --aov ao,normal", "--chan-rotation zxy", "--chan-rotation xyz"}},
     {"fov", {"", "--fov 50", "--fov 60"}},
     {"vertical-fov", {"", "--vertical-fov 50", "--vertical-fov 60"}},
+    {"focal-px", {"", "--focal-px 50", "--focal-px 60"}},
     {"focal", {"--aperture 36", "--focal 35", "--focal 50"}},
     {"aperture", {"--focal 35", "--aperture 36", "--aperture 24"}},
     {"ortho-width", {"", "--ortho-width 4", "--ortho-width 8"}},
@@ -159,6 +161,8 @@ class ReuseOfOptions : public CommandLine {
     plane("q3", [&](std::size_t i) { return i % 64 < 30 ? 0.9 * z[i] : z[i]; });
     plane("q4", [&](std::size_t) { return 6.5 + number; });
     plane("q5", [&](std::size_t) { return 7.0 + number; });
+    plane("q6",
+          [&](std::size_t i) { return z[i] * (1 - 0.05 * double(std::clamp<std::size_t>(i % 64, 25, 31) - 25)); });
     plane("id", [&](std::size_t i) { return double((i / 8 + std::size_t(number)) % 3); });
     plane("jd", [&](std::size_t i) { return double((i / 4 + std::size_t(number)) % 3); });
     // They face the camera as vectors and, less plainly, as 0.5 + 0.5 n.

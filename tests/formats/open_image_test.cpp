@@ -75,11 +75,12 @@ TEST_F(OpenImage, pictures_are_known_under_any_name) {
 
 TEST_F(OpenImage, it_is_said_what_a_file_is_that_a_run_does_not_read_and_what_it_reads) {
   write_picture(folder / "x.jpg", OIIO::ImageSpec(64, 36, 1, OIIO::TypeUInt8), plane("ViewLayer.Depth.Z"));
-  const std::vector<std::string> formats{"OpenEXR", "DDS", "PNG", "TIFF", "TGA", "BMP", "Radiance HDR"};
+  const std::vector<std::string> formats{"OpenEXR", "DDS", "PNG", "NumPy", "TIFF", "TGA", "BMP", "Radiance HDR"};
   for (const auto& [name, bytes, word] :
        std::vector<std::tuple<std::string, std::string, std::string>>{{"x.jpg", read_bytes(folder / "x.jpg"), "JPEG"},
                                                                       {"x.exr", read_bytes(folder / "x.jpg"), "JPEG"},
                                                                       {"x.gif", "GIF89a and more", "GIF"},
+                                                                      {"x.npz", "PK\3\4 and more", ".npz"},
                                                                       {"x.psd", "8BPS and more", "Photoshop"},
                                                                       {"text.exr", "no picture", "not a picture"},
                                                                       {"text.png", "no picture", "not a picture"},

@@ -328,6 +328,11 @@ InputSettings with_vertical_fov(double degrees) {
   settings.vertical_fov = degrees;
   return settings;
 }
+InputSettings with_focal_px(double pixels) {
+  InputSettings settings;
+  settings.focal_px = pixels;
+  return settings;
+}
 InputSettings with_lens(double focal, double aperture) {
   InputSettings settings;
   settings.focal = focal;
@@ -352,6 +357,7 @@ TEST_F(CameraFiles, options_give_a_camera_over_the_width_of_the_display_window) 
         Case{with_fov(90), 2, 32, 64}, Case{with_lens(25, 36), 2, 64 * 25 / 36.0, 2 * 64 * 25 / 36.0},
         Case{with_fov(2 * std::atan(18.0 / 25) / degree), 2, 64 * 25 / 36.0, 2 * 64 * 25 / 36.0},
         Case{with_vertical_fov(90), 1, 18, 18}, Case{with_vertical_fov(90), 2, 9, 18},
+        Case{with_focal_px(50), 1, 50, 50}, Case{with_focal_px(50), 2, 50, 100},
         Case{with_ortho_width(16), 0.5, 4, 2}}) {
     const Camera camera = camera_for(by, kDisplay, pixel_aspect, 0);
     expect_near(camera, fx, fy, 32, 18);
@@ -384,9 +390,10 @@ TEST_F(CameraFiles, another_aspect_does_not_fit) {
 }
 
 TEST_F(CameraFiles, none_and_one_that_floats_cannot_hold_are_usage_errors) {
-  const std::vector<std::string> options{"--fov", "--vertical-fov", "--focal", "--aperture", "--ortho-width"};
-  for (const auto& by :
-       {with_fov(1e-300), with_vertical_fov(1e-300), with_lens(1e30, 1e-30), with_ortho_width(1e-200), InputSettings{}})
+  const std::vector<std::string> options{"--fov",   "--vertical-fov", "--focal-px",
+                                         "--focal", "--aperture",     "--ortho-width"};
+  for (const auto& by : {with_fov(1e-300), with_vertical_fov(1e-300), with_focal_px(1e-300), with_lens(1e30, 1e-30),
+                         with_ortho_width(1e-200), InputSettings{}})
     expect_error(ErrorKind::usage, options, [&] { camera_for(by, kDisplay, 1, 0); });
   expect_error(ErrorKind::usage, {"--camera"}, [] { camera_for(InputSettings{}, kDisplay, 1, 0); });
 }

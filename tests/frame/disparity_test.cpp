@@ -3,6 +3,7 @@
 #include <random>
 
 #include "core/frame/pixels/statistics.h"
+#include "tests/support/expect_error.h"
 #include "tests/support/source_frame.h"
 
 namespace alcove::disparity_test {
@@ -126,6 +127,9 @@ TEST_F(Disparity, of_8_bits_says_what_that_does_to_ao) {
   for (const auto& note : source.suspicious) text += note.text;
   EXPECT_THAT(text, AllOf(HasSubstr("in steps of 0.0039"), HasSubstr("off by about"), HasSubstr("(RMS)")));
   EXPECT_NEAR(*source.reading.depth_range.disparity_shift, 0.2, source.reading.depth_range.disparity_error);
+  settings.depth_range.disparity_shift = 0.2;
+  EXPECT_THAT(said(), ElementsAre()) << "nor do they where the shift is said";
+  settings.depth_range = {};
   settings.depth_kind = DepthKind::inverse;
   expect(Reply::refused, {"8 bits"});
 }
@@ -146,6 +150,26 @@ TEST_F(Disparity, is_refused_where_nothing_tells_its_shift) {
         .first->second;
   });
   expect(Reply::refused, options);
+}
+
+TEST_F(Disparity, alone_says_the_shift_by_which_its_planes_meet_at_right_angles) {
+  for (const double step : {0.0, 1.0 / 65535}) {
+    write(1, 0.3, step, nullptr);
+    expect(Reply::refused, {"right angles", "--set disparity-shift=0."});
+    settings.depth_range.disparity_shift = 0.3;
+    expect(Reply::silent);
+    for (const double wrong : {0.25, -0.2, 0.1}) {
+      settings.depth_range.disparity_shift = wrong;
+      EXPECT_THAT(said(),
+                  Contains(AllOf(HasSubstr("with b = 0."), HasSubstr("right angles"), HasSubstr("[said-otherwise]"))));
+    }
+    settings.depth_range = {};
+  }
+  // By another camera the same walls are still planes, and meet at other angles.
+  write(1, 0.3, 0, nullptr);
+  camera["fx"] = camera["fy"] = 1.6 * camera["fx"].get<double>();
+  give(camera);
+  EXPECT_THAT(error_of(ErrorKind::input, [&] { settled(); }), Not(HasSubstr("right angles")));
 }
 
 TEST_F(Disparity, that_is_largest_far_away_is_refused) {

@@ -298,9 +298,17 @@ TEST_F(Sources, a_matrix_for_another_depth_range_is_noted) {
 }
 
 TEST(InputRules, all_names_are_there_and_unknown_ones_name_the_nearest) {
-  for (const char* name : {"arnold", "vray",    "renderman", "cycles",    "blender5", "redshift", "karma",
-                           "mantra", "octane",  "corona",    "3delight",  "unreal",   "unity",    "nuke",
-                           "pbrt",   "mitsuba", "moge",      "renderdoc", "reshade",  "generic"})
+  for (const char* name : {"arnold",    "vray",
+                           "renderman", "cycles",
+                           "blender5",  "redshift",
+                           "karma",     "mantra",
+                           "octane",    "corona",
+                           "3delight",  "unreal",
+                           "unity",     "nuke",
+                           "pbrt",      "mitsuba",
+                           "moge",      "renderdoc",
+                           "reshade",   "generic",
+                           "depth-pro", "depth-anything-metric"})
     EXPECT_EQ(input_rules(name).name, name);
   expect_error(ErrorKind::usage, {"arnold"}, [] { input_rules("arnlod"); });
   EXPECT_THROW(parse_input_rules("x", "depth-kind = \"sideways\""), Error);

@@ -28,7 +28,7 @@ runs_of() {
   case $1 in
     exr) echo 9000 ;;
     deep) echo 2000 ;;
-    dds) echo 400000 ;;
+    dds | npy) echo 400000 ;;
     camera) echo 80000 ;;
     frames) echo 10000 ;;
     toml) echo 80000 ;;

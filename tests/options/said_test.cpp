@@ -36,6 +36,7 @@ const std::vector<Case>& cases_without_effect() {
       {"--set albedo-channels=d", {"", "--set albedo=0.5 " + bounces}, bounces},
       {"--depth-kind planar", {"--position p.exr"}, ""},
       {"--depth-channel Z", {position}, ""},
+      {"--set ramps=cut", {position}, ""},
       {"--near 1", {"--depth-kind planar", "--source octane"}, "--source octane --camera says.json"},
       {"--far 9", {"--position-channels P"}, ""},
       {"--reversed-z", {"--depth-kind ray"}, "--depth-kind log"},
@@ -121,7 +122,7 @@ struct Value {
 /// Settings that say something else of the same thing, so that neither has an effect beside the other.
 const std::vector<std::pair<Value, Value>>& pairs() {
   static const Value camera{"camera", "c.json"}, fov{"fov", "60"}, ortho{"ortho-width", "2"},
-      tall{"vertical-fov", "40"};
+      tall{"vertical-fov", "40"}, pixels{"focal-px", "900"};
   static const Value position{"position", "p.exr"}, depth_channel{"depth-channel", "Z"};
   static const Value occluders{"occluders", "Hero"}, ignore{"ignore", "Set*"}, around{"around", "2"};
   static const Value views{"other-views", "true"}, tolerance{"tolerance", "0.1"}, quiet{"quiet", "true"};
@@ -137,6 +138,8 @@ const std::vector<std::pair<Value, Value>>& pairs() {
                                                         {fov, tall},
                                                         {camera, tall},
                                                         {tall, ortho},
+                                                        {tall, pixels},
+                                                        {pixels, ortho},
                                                         {tolerance, half},
                                                         {tolerance, mean},
                                                         {kernel, reach},
@@ -298,8 +301,8 @@ TEST_F(Said, of_a_pair_what_is_typed_beats_a_preset_and_a_later_preset_an_earlie
 TEST_F(Said, a_lens_is_said_in_one_way) {
   const Words lens{"--focal", "35", "--aperture", "36"};
   EXPECT_EQ(refusal(lens), "");
-  for (const Value& other :
-       std::vector<Value>{{"camera", "c.json"}, {"fov", "60"}, {"vertical-fov", "40"}, {"ortho-width", "2"}}) {
+  for (const Value& other : std::vector<Value>{
+           {"camera", "c.json"}, {"fov", "60"}, {"vertical-fov", "40"}, {"focal-px", "900"}, {"ortho-width", "2"}}) {
     EXPECT_THAT(refusal(joined(lens, {"--" + other.key, other.value})),
                 AllOf(HasSubstr("--" + other.key), HasSubstr("only one of them")));
     const Words words = joined(preset("other.toml", {other}), lens);

@@ -22,13 +22,15 @@ class DisparityRun : public SequenceFolder {
   }
   std::vector<float> ao(int frame) const { return read_exr_image(output(frame)).pixels; }
 
+  static constexpr std::array<float, 5> kBinomial{1, 4, 6, 4, 1};
   static constexpr const char* kDisparity = "--depth-kind disparity --normal-space world ";
   static Options said(const std::string& more) { return typed(kDisparity + more); }
 };
 
 TEST_F(DisparityRun, has_the_ao_of_the_depth_that_it_stands_for) {
   write_frames(1, 1, file_of(rendering(), kSky, planar, normal));
-  done(typed("--depth-kind planar --normal-space world --radius 20%"));
+  EXPECT_THAT(done(typed("--depth-kind planar --normal-space world --radius 20%")).err,
+              testing::ContainsRegex("--radius 20% takes [0-9.]+, of a median depth of [0-9.]+ for all frames"));
   const auto by_depth = ao(1);
   write_disparities(1, 1);
   done(said("--radius 20%"));
@@ -45,6 +47,35 @@ TEST_F(DisparityRun, is_the_same_in_chunks_and_regions) {
   expect_same_outputs(outputs(), {said("--radius 20% --chunk 2/2"), said("--radius 20% --chunk 1/2")});
   done(said("--radius 20% --roi 60,40,50,30"));
   EXPECT_EQ(ao(2), cropped(whole, rendering().shot.data, {60, 40, 50, 30}));
+}
+
+TEST_F(DisparityRun, with_blurred_outlines_has_about_the_ao_of_sharp_ones_once_ramps_are_cut) {
+  const std::string example = ALCOVE_SOURCE_DIR "/examples/interior.";
+  const Image frame = read_exr_image(example + "gbuffer.exr", {"ViewLayer.Depth.Z"});
+  const Window& data = frame.data;
+  std::vector<float> sharp, soft(data.pixels());
+  for (const float z : frame.pixels) sharp.push_back(1 / z + 0.7f);
+  const auto width = std::size_t(data.width);
+  for (std::size_t i = 3 * width; i < soft.size() - 3 * width; i++)
+    for (std::size_t dy = 0; dy < 5; dy++)
+      for (std::size_t dx = 0; dx < 5; dx++)
+        soft[i] += kBinomial[dx] * kBinomial[dy] * sharp[i + dx - 2 + (dy - 2) * width] / 256;
+  const auto ao_with = [&](const std::vector<float>& values, const std::string& more, bool is_told) {
+    write_plane(input(1), "disparity", values, data, data);
+    const Finished finished = done(typed("--depth-kind disparity --set disparity-shift=0.7 --radius 10% --camera " +
+                                         example + "camera.json " + more));
+    EXPECT_EQ(finished.err.find("--set ramps=cut") != std::string::npos, is_told) << finished;
+    return ao(1);
+  };
+  const auto wanted = ao_with(sharp, "", false), kept = ao_with(soft, "", true),
+             cut = ao_with(soft, "--set ramps=cut", false);
+  const auto rms = [&](const std::vector<float>& values) {
+    double sum = 0;
+    for (std::size_t i = 0; i < values.size(); i++) sum += std::pow(values[i] - wanted[i], 2);
+    return std::sqrt(sum / double(values.size()));
+  };
+  EXPECT_LT(rms(cut), 0.85 * rms(kept));
+  EXPECT_EQ(ao_with(soft, "--set ramps=cut --roi 60,40,50,30", false), cropped(cut, data, {60, 40, 50, 30}));
 }
 
 TEST_F(DisparityRun, is_found_where_input_holds_nothing_else) {

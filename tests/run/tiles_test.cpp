@@ -101,6 +101,22 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
     expect_same(typed("--radius 0.06 " + more));
 }
 
+// Cards before the wall, whose outlines were blurred along rows.
+TEST_F(Tiles, give_the_bits_of_the_whole_where_ramps_are_cut) {
+  FrameFile cards = wall_frame(data, display);
+  std::vector<float>& depth = cards.planes.at("ViewLayer.Depth.Z");
+  for (std::size_t i = 0; i < depth.size(); i++) {
+    const std::size_t column = i % std::size_t(data.width) % 50;
+    depth[i] *= 1 - 0.05f * float(std::clamp<std::size_t>(column < 25 ? column : 50 - column, 8, 15) - 8);
+  }
+  cards.write(frame);
+  done_in_tiles(typed("--radius 0.06"));
+  const std::string kept = read_bytes(ao);
+  expect_same(typed("--radius 0.06 --set ramps=cut"));
+  EXPECT_NE(read_bytes(ao), kept);
+  expect_same(typed("--radius 0.06 --set ramps=cut --roi 13,5,410,230"));
+}
+
 TEST_F(Tiles, give_the_bits_of_the_whole_with_a_beauty_of_another_window) {
   const std::string beauty = folder / "beauty.exr";
   for (const Window& window : {Window{-20, -30, 530, 340}, Window{40, 60, 300, 150}, Window{100, -30, 20, 340}}) {

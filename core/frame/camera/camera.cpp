@@ -460,10 +460,11 @@ Camera centred_by_options(const Window& display, double fx, double aspect, bool 
   Camera camera = centred(display, fx, aspect);
   camera.orthographic = orthographic;
   if (!is_scale(camera.fx) || !is_scale(camera.fy))
-    fail(ErrorKind::usage,
-         "a camera of {:g} pixels per unit sees nothing: give another --fov or --vertical-fov, --focal with "
-         "--aperture, or --ortho-width",
-         fx);
+    fail(
+        ErrorKind::usage,
+        "a camera of {:g} pixels per unit sees nothing: give another --fov, --vertical-fov or --focal-px, --focal with "
+        "--aperture, or --ortho-width",
+        fx);
   return camera;
 }
 
@@ -540,7 +541,8 @@ Camera centred(const Window& display, double fx, double pixel_aspect) {
 }
 
 bool names_a_camera(const InputSettings& settings) {
-  return !settings.camera.empty() || settings.fov || settings.vertical_fov || settings.focal || settings.ortho_width;
+  return !settings.camera.empty() || settings.fov || settings.vertical_fov || settings.focal_px || settings.focal ||
+         settings.ortho_width;
 }
 
 Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame,
@@ -554,6 +556,7 @@ Camera camera_for(const InputSettings& settings, const Window& display, double p
   if (settings.vertical_fov)
     return centred_by_options(display, focal_over_height(display, *settings.vertical_fov) / pixel_aspect, pixel_aspect,
                               false);
+  if (settings.focal_px) return centred_by_options(display, *settings.focal_px, pixel_aspect, false);
   if (settings.focal && settings.aperture)
     return centred_by_options(display, 2 * half_width * *settings.focal / *settings.aperture, pixel_aspect, false);
   if (settings.ortho_width)

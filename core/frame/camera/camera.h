@@ -44,7 +44,8 @@ struct Camera {
 
 /// The options that give a camera.
 inline constexpr const char* kCameraOptions =
-    "--camera FILE.json, or --fov DEGREES (--vertical-fov), or --focal MM with --aperture MM, or --ortho-width UNITS";
+    "--camera FILE.json, or --fov DEGREES (--vertical-fov), or --focal-px PIXELS, or --focal MM with --aperture MM, or "
+    "--ortho-width UNITS";
 
 /// ErrorKind::usage: nothing gives a camera to the frame of this file. `why` says why the header or the positions do
 /// not.

@@ -549,6 +549,7 @@ void describe_pixels(FrameSource& source, const InputSettings& settings) {
   reading.depth_is_half = source.is_half(depth) || (source.channels.deep && source.channels.deep->depth_is_half);
   reading.depth_scale = settings.depth_scale;
   reading.sky = settings.sky;
+  reading.cuts_ramps = settings.ramps == "cut";
 }
 
 }  // namespace

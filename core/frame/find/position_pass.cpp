@@ -197,6 +197,7 @@ std::string name_of_lens(const FrameSource& source, const InputSettings& setting
   if (!settings.camera.empty()) return "the camera of " + settings.camera;
   if (settings.fov) return fmt::format("--fov {:g}", *settings.fov);
   if (settings.vertical_fov) return fmt::format("--vertical-fov {:g}", *settings.vertical_fov);
+  if (settings.focal_px) return fmt::format("--focal-px {:g}", *settings.focal_px);
   return settings.focal ? "--focal with --aperture" : "--ortho-width";
 }
 

@@ -72,19 +72,21 @@ Sentence enlarged_depth(const Findings& f) {
       across, down);
 }
 
+constexpr const char* kOrCut = ", or --set ramps=cut gives such pixels to the surfaces on both sides";
+
 Sentence smoothed_depth(const Findings& f) {
   constexpr std::size_t kLeast = 60;  // outlines of one direction
   constexpr double kMostSharp = 0.1;  // of them
   const auto is_soft = [](const Outlines& o) {
     return o.count >= kLeast && double(o.sharp) < kMostSharp * double(o.count);
   };
-  if (!std::ranges::any_of(f.outlines, is_soft)) return std::nullopt;
+  if (f.are_ramps_cut || !std::ranges::any_of(f.outlines, is_soft)) return std::nullopt;
   const Outlines& o = is_soft(f.outlines[0]) ? f.outlines[0] : f.outlines[1];
   return fmt::format(
       "{:.0f} % of the outlines are ramps over several pixels: depth was blurred, interpolated or "
       "filtered, and AO shows seams there; render it without filtering, one sample at each pixel's "
-      "centre{}",
-      percent(double(o.count - o.sharp), double(o.count)), hint_at_others(f));
+      "centre{}{}",
+      percent(double(o.count - o.sharp), double(o.count)), kOrCut, hint_at_others(f));
 }
 
 Sentence antialiased_depth(const Findings& f) {
@@ -92,11 +94,11 @@ Sentence antialiased_depth(const Findings& f) {
   constexpr std::size_t kLeastEdges = 100;
   const std::size_t steps = f.outlines[0].steps + f.outlines[1].steps;
   const std::size_t blended = f.outlines[0].blended + f.outlines[1].blended;
-  if (steps < kLeastEdges || double(blended) <= kMostBlended * double(steps)) return std::nullopt;
+  if (f.are_ramps_cut || steps < kLeastEdges || double(blended) <= kMostBlended * double(steps)) return std::nullopt;
   return fmt::format(
       "{:.0f} % of the depth's edges have a pixel in between: the depth is anti-aliased, and AO shows "
-      "seams there; render it without filtering{}",
-      percent(double(blended), double(steps)), hint_at_others(f));
+      "seams there; render it without filtering{}{}",
+      percent(double(blended), double(steps)), kOrCut, hint_at_others(f));
 }
 
 Sentence noisy_depth(const Findings& f) {
@@ -331,9 +333,11 @@ constexpr std::array kTable{
              "they stand in the same rows or columns all over the picture", "depth in its own resolution",
              enlarged_depth},
     Detector{NoteCode::smoothed_depth, "outlines", "hardly any is a step between two pixels",
-             "rendering depth without a filter; --depth-channel where the file has another depth", smoothed_depth},
+             "rendering depth without a filter; --set ramps=cut; --depth-channel where the file has another depth",
+             smoothed_depth},
     Detector{NoteCode::antialiased_depth, "steps between two smooth surfaces", "more than 30 % have a pixel in between",
-             "rendering depth without a filter; --depth-channel where the file has another depth", antialiased_depth},
+             "rendering depth without a filter; --set ramps=cut; --depth-channel where the file has another depth",
+             antialiased_depth},
     Detector{NoteCode::noisy_depth, "second differences of 1/z", "few are small and most alternate",
              "rendering without noise, or denoising depth", noisy_depth},
     Detector{NoteCode::jittered_depth, "residuals of flat surfaces", "all are the same part of their slope",

@@ -69,12 +69,6 @@ Repeats repeats_of(const BorderCounts& counts, std::size_t lines) {
 
 namespace {
 
-/// A stretch of pixels along which 1/z changes in one direction, by steps that are no less than a tenth of its largest.
-struct Ramp {
-  std::size_t first, last;  // pixels
-  double largest;           // step
-};
-
 Ramp ramp_about(std::span<const double> u, std::size_t step) {
   constexpr double kEnds = 0.1;
   const auto change = [&](std::size_t i) { return u[i + 1] - u[i]; };
@@ -88,23 +82,28 @@ Ramp ramp_about(std::span<const double> u, std::size_t step) {
   return {first, last, largest};
 }
 
-/// Outlines within a stretch of surfaces.
-void count_ramps(std::span<const double> u, Outlines& outlines) {
+}  // namespace
+
+std::vector<Ramp> ramps_in(std::span<const double> u) {
   constexpr double kLeastStep = 0.02, kLeastChange = 0.08;  // of 1/z
   constexpr double kSharp = 0.9;                            // of the change
   constexpr std::size_t kWidest = 24;                       // px; wider ones are slopes
+  std::vector<Ramp> ramps;
   for (std::size_t i = 0; i + 1 < u.size(); i++) {
-    if (std::abs(u[i + 1] - u[i]) < kLeastStep * std::max(u[i], u[i + 1])) continue;
-    const Ramp ramp = ramp_about(u, i);
+    if (!(std::abs(u[i + 1] - u[i]) >= kLeastStep * std::max(u[i], u[i + 1])) || u[i] == u[i + 1]) continue;
+    Ramp ramp = ramp_about(u, i);
     i = std::max(i, ramp.last - 1);
     const double change = std::abs(u[ramp.last] - u[ramp.first]);
     const bool is_whole = ramp.first > 0 && ramp.last + 1 < u.size();
     if (!is_whole || change < kLeastChange * std::max(u[ramp.first], u[ramp.last])) continue;
     if (ramp.last - ramp.first > kWidest) continue;
-    outlines.count++;
-    outlines.sharp += ramp.largest > kSharp * change;
+    ramp.is_sharp = ramp.largest > kSharp * change;
+    ramps.push_back(ramp);
   }
+  return ramps;
 }
+
+namespace {
 
 /// Steps from one smooth surface to another with a pixel in between, or none.
 void count_steps(std::span<const double> u, Outlines& outlines) {
@@ -130,7 +129,7 @@ void count_outlines(const Line& line, Outlines& outlines) {
     std::size_t end = first;
     while (end < line.size() && line.is_surface(end)) end++;
     const auto surfaces = std::span(line.inverse).subspan(first, end - first);
-    count_ramps(surfaces, outlines);
+    for (const Ramp& ramp : ramps_in(surfaces)) outlines.count++, outlines.sharp += ramp.is_sharp;
     count_steps(surfaces, outlines);
     first = end;
   }

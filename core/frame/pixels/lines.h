@@ -30,6 +30,15 @@ struct BorderCounts {
 void count_repeats(const Line& line, BorderCounts& counts);
 Repeats repeats_of(const BorderCounts& counts, std::size_t lines);
 
+/// A stretch of pixels along which 1/z changes in one direction, by steps that are no less than a tenth of its largest.
+struct Ramp {
+  std::size_t first, last;  // pixels
+  double largest;           // step
+  bool is_sharp = false;    // nearly all of the change is that step
+};
+/// Those across outlines: by much of 1/z over a few pixels, with others before and behind.
+std::vector<Ramp> ramps_in(std::span<const double> inverse);
+
 void count_outlines(const Line& line, Outlines& outlines);
 
 /// Marks what lies in each eighth of the line.

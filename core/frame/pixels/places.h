@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/frame/camera/camera.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 

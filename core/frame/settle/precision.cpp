@@ -91,6 +91,7 @@ Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& s
   Findings found{.depth_channel = name,
                  .depth_kind = reading.depth_kind,
                  .has_half_type = reading.depth_is_half,
+                 .are_ramps_cut = reading.cuts_ramps,
                  .grain = seen.grain,
                  .curve = seen.curve,
                  .begins_behind = begins_behind(reading, raw.depth),

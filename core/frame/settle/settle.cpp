@@ -14,6 +14,7 @@
 #include "core/frame/find/position_pass.h"
 #include "core/frame/pixels/detectors.h"
 #include "core/frame/pixels/radius.h"
+#include "core/frame/pixels/ramps.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/settle/depth_settlement.h"
 #include "core/frame/settle/faults.h"
@@ -135,6 +136,7 @@ HostFrame read_host_frame(const InputSettings& settings, int number) {
   require_host_room(source.depth_path(), data);
   RawFrame raw = read_raw_frame(source, data);
   settle(source, settings, raw);
+  cut_ramps(source.reading, raw.depth);
   return {source.reading, std::move(raw.depth), std::move(raw.normal), {}, number};
 }
 

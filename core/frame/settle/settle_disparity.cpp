@@ -9,6 +9,7 @@
 #include "core/base/option_words.h"
 #include "core/base/ranks.h"
 #include "core/frame/pixels/disparity.h"
+#include "core/frame/pixels/right_angles.h"
 #include "core/frame/settle/depth_settlement.h"
 
 namespace alcove {
@@ -24,6 +25,8 @@ constexpr double kFarthest = 1e-4;                       // what is less above t
 /// RMS of the AO for each part of the median value by which the shift is off. Measured on six rendered scenes: 0.2 to
 /// 0.7 at 1 %, 0.2 to 0.4 at 5 %.
 constexpr double kAoOfShift = 0.7;
+/// The same for the part of the slopes that the normals do not explain. With smooth errors of 1 and 3 %: 0.4 to 1.2.
+constexpr double kAoOfMisfit = 1.2, kLittleAo = 0.03;
 
 class DisparitySettlement : private DepthSettlement {
  public:
@@ -76,8 +79,8 @@ class DisparitySettlement : private DepthSettlement {
   ShiftScore found_shift() const {
     const auto found = scores();
     if (found.empty())
-      fail(ErrorKind::input, "{}: disparity is a / z + b, and nothing tells b: give normals, by --normal, or {}", path_,
-           kOptions);
+      fail(ErrorKind::input, "{}: disparity is a / z + b, and nothing tells b: give normals, by --normal, or {}{}",
+           path_, kOptions, hint_of_planes());
     const ShiftScore& best = found[0];
     refuse_turned(best);
     if (best.agreement < kLeastAgreement || uncertainty(best) > kMostUncertain)
@@ -122,11 +125,31 @@ class DisparitySettlement : private DepthSettlement {
     reading_.depth_range.disparity_shift = score.shift;
     reading_.depth_range.disparity_error = std::max(score.error, kFarthest * median_above(score.shift));
     if (reading_.depth_is_coarse) seen_.space_by_shift = score.space;
-    const double part = uncertainty(score);
+    const double part = uncertainty(score), ao = std::max(kAoOfShift * part, kAoOfMisfit * (1 - score.agreement));
     take_down("disparity's shift", fmt::format("{:.5g}", score.shift),
-              fmt::format("{}; the error is {:.2g} % of the median value above it, by which AO is off by up to {:.1g}",
-                          text_of(score), 100 * part, kAoOfShift * part),
-              "--set disparity-shift", true, part < kProven);
+              fmt::format("{}; the error is {:.2g} % of the median value above it, and by this and what does not fit "
+                          "AO is off by up to {:.1g}",
+                          text_of(score), 100 * part, ao),
+              "--set disparity-shift", true, part < kProven && ao < kLittleAo);
+  }
+
+  static std::string text_of(const RightAngles& found) {
+    return fmt::format("with b = {:.5g} +- {:.2g} most of the planes in the picture meet at right angles", found.shift,
+                       found.error);
+  }
+
+  std::string hint_of_planes() const {
+    const auto found = shift_by_right_angles(view_, raw_.depth, seen_.grain);
+    return found ? fmt::format("; {}: where they do, give --set disparity-shift={:.5g}", text_of(*found), found->shift)
+                 : "";
+  }
+
+  /// Notes where the planes alone give another shift than the options.
+  void doubt_by_planes(double shift) {
+    const auto found = shift_by_right_angles(view_, raw_.depth, seen_.grain);
+    if (!found || std::abs(found->shift - shift) <= 2 * found->error) return;
+    note(NoteCode::said_otherwise,
+         fmt::format("disparity's shift is {:.5g} by the options, and {}", shift, text_of(*found)));
   }
 
   /// Notes where the normals give another shift than the options.
@@ -134,8 +157,13 @@ class DisparitySettlement : private DepthSettlement {
     double& error = reading_.depth_range.disparity_error;
     error = kFarthest * median_above(shift);
     const auto found = scores();
-    if (found.empty() || found[0].agreement < kLeastAgreement) return;
-    if (is_near(shift, found[0])) return void(error = std::max(error, found[0].error));
+    if (found.empty()) return doubt_by_planes(shift);
+    if (found[0].agreement < kLeastAgreement) return;
+    if (is_near(shift, found[0])) {
+      if (reading_.depth_is_coarse) seen_.space_by_shift = found[0].space;
+      error = std::max(error, found[0].error);
+      return;
+    }
     note(NoteCode::said_otherwise,
          fmt::format("disparity's shift is {:.5g} by the options, and by the normals another: {}", shift,
                      text_of(found[0])));

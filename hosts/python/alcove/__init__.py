@@ -219,7 +219,7 @@ def compute(depth: Optional["numpy.ndarray"] = None, normal: Optional["numpy.nda
     normal: (H, W, 3), or (H, W, 2) by normal_encoding; None: reconstructed from depth. If the camera has a position,
         normal_space must be "world" or "view", here or in the camera. normal_encoding is "signed" by default.
     camera: the fields of a camera file as a dict (without resolution: that of the arrays), or its path, with the entry of
-        `frame`; or instead fov=DEGREES (horizontal), vertical_fov=DEGREES, focal=MM and aperture=MM, or ortho_width=UNITS.
+        `frame`; or instead fov=DEGREES (horizontal), vertical_fov=DEGREES, focal_px=PIXELS, focal=MM and aperture=MM, or ortho_width=UNITS.
     frame: the frame's number; noise="animated" depends on it.
     position: (H, W, 3) instead of depth. behind: an array of depth behind the first surface, or a list of them.
     material_ao, matte, occluders, ignore: (H, W), numbers or bool. albedo: (H, W, 3), or one number.

@@ -1,0 +1,21 @@
+// Ramps across outlines, which blurred depth has in the place of steps.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/frame/reading.h"
+
+namespace alcove {
+
+/// Where the reading cuts ramps, gives each of their pixels to the nearer or the farther surface: to the one whose
+/// value is nearer, along the row or the column in which that is steeper. The pixel then lies on the plane
+/// through those pixels about it that are of this surface and of no ramp. `depth` is over the whole data window, so
+/// that parts of a frame have the bits of the whole. Fails with ErrorKind::usage for positions.
+void cut_ramps(const Reading& reading, std::span<float> depth);
+
+/// The bytes that this takes for each pixel where a quarter of them is of ramps.
+constexpr std::uint64_t kRampBytes = 24;
+
+}  // namespace alcove
