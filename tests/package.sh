@@ -39,8 +39,8 @@ wanted() {
   wanted_dev
   printf 'share/%s\n' bash-completion/completions/alcove fish/vendor_completions.d/alcove.fish zsh/vendor-completions/_alcove man/man1/alcove.1.gz
   "$build/alcove" --help | sed -n 's,^  \([a-z][a-z]*\)   .*,share/man/man1/alcove-\1.1.gz,p'
-  printf 'share/alcove/hosts/%s\n' blender/alcove.py nuke/alcove_nuke.py nuke/menu.py maya/alcove_maya.py houdini/alcove_houdini.py \
-    max/alcove_max.py comfyui/__init__.py python/pyproject.toml python/alcove/__init__.py python/alcove/_arrays.py python/alcove/py.typed
+  printf 'share/alcove/hosts/%s\n' blender/alcove.py nuke/alcove_nuke.py nuke/menu.py comfyui/__init__.py \
+    python/pyproject.toml python/alcove/__init__.py python/alcove/_arrays.py python/alcove/py.typed
   find presets -name '*.toml' -printf 'share/alcove/%p\n'
   printf 'share/doc/alcove/%s\n' README.md CHANGELOG.md copyright examples/interior.{gbuffer.exr,beauty.exr,camera.json} \
     examples/farm/{README.md,Snakefile,alcove.flamenco.js,alcove.openjd.json,slurm.sh}

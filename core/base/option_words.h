@@ -26,7 +26,7 @@ enum class NormalEncoding { automatic, signed_float, unorm, octahedral, spherema
 enum class Falloff : std::uint32_t { none, linear, quadratic, smooth };
 enum class Estimator { gtao, bitmask, hbao, crytek };
 // samples of gtao along a slice: at so many steps; at all pixels, by their outlines; at each pixel by itself
-enum class SliceSearch { steps, quick, exact, every_pixel };
+enum class SliceSearch { steps, quick, exact };
 // the plane from which HBAO measures a horizon: the plane across the view ray, or the surface
 enum class Elevation { view, surface };
 // distribution of Crytek's samples in the hemisphere: more near the receiver, or even in volume
@@ -124,10 +124,8 @@ inline constexpr Word<Estimator> kWordsOf<Estimator>[] = {{"bitmask", Estimator:
                                                           {"gtao", Estimator::gtao},
                                                           {"hbao", Estimator::hbao}};
 template <>
-inline constexpr Word<SliceSearch> kWordsOf<SliceSearch>[] = {{"every-pixel", SliceSearch::every_pixel},
-                                                              {"exact", SliceSearch::exact},
-                                                              {"quick", SliceSearch::quick},
-                                                              {"steps", SliceSearch::steps}};
+inline constexpr Word<SliceSearch> kWordsOf<SliceSearch>[] = {
+    {"exact", SliceSearch::exact}, {"quick", SliceSearch::quick}, {"steps", SliceSearch::steps}};
 template <>
 inline constexpr Word<Elevation> kWordsOf<Elevation>[] = {{"surface", Elevation::surface}, {"view", Elevation::view}};
 template <>

@@ -121,8 +121,10 @@ struct EstimatorSettings {
   // of gtao: the RMS error of the visibility that an exact search may leave, 0 to 1. Each tile gets as many directions
   // as that takes; 0: as `slices` says
   double tolerance = 0;
-  // of estimator gtao; exact and every_pixel need falloff none and stride 1
+  // of estimator gtao; exact needs falloff none and stride 1
   SliceSearch search = SliceSearch::steps;
+  // of an exact search, for tests: it looks at each pixel, not at the outlines of runs of them
+  bool every_pixel = false;
   int samples = 16;  // of estimator crytek, in the hemisphere, 4 to 64
   // the least height that blocks, >= 0; crytek: scene units of depth; others: sine of the elevation above the tangent
   // plane, < 1

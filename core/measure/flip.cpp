@@ -182,12 +182,13 @@ struct Seen {
   Features features;
 };
 
-/// Makes the image that FLIP sees. `rgb` gives linear values in [0, 1], pixel by pixel.
-Seen see(int width, int height, const std::function<Triple(std::size_t)>& rgb, double pixels_per_degree) {
+/// Makes the image that FLIP sees. `linear` makes linear values in [0, 1] of those of the image.
+Seen see(int width, int height, const ColorPlanes& image, const std::function<double(float)>& linear,
+         double pixels_per_degree) {
   const std::size_t pixels = std::size_t(width) * std::size_t(height);
   Planes opponent{Plane(pixels), Plane(pixels), Plane(pixels)};
   for (std::size_t i = 0; i < pixels; i++) {
-    const Triple color = opponent_from_rgb(rgb(i));
+    const Triple color = opponent_from_rgb({linear(image[0][i]), linear(image[1][i]), linear(image[2][i])});
     for (std::size_t c = 0; c < 3; c++) opponent[c][i] = color[c];
   }
   Seen seen{seen_colors(width, height, opponent, pixels_per_degree), {}};
@@ -230,18 +231,9 @@ constexpr double kLeastLuminance = 1e-5;
 
 std::vector<float> ldr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference,
                             double pixels_per_degree) {
-  const auto see_display = [&](const ColorPlanes& image) {
-    const auto value = [&](std::size_t c, std::size_t i) {
-      return linear_from_srgb(std::clamp(double(image[c][i]), 0.0, 1.0));
-    };
-    return see(
-        width, height,
-        [&](std::size_t i) {
-          return Triple{value(0, i), value(1, i), value(2, i)};
-        },
-        pixels_per_degree);
-  };
-  const Seen a = see_display(result), b = see_display(reference);
+  const auto displayed = [](float value) { return linear_from_srgb(std::clamp(double(value), 0.0, 1.0)); };
+  const Seen a = see(width, height, result, displayed, pixels_per_degree),
+             b = see(width, height, reference, displayed, pixels_per_degree);
   std::vector<float> error(result[0].size());
   for (std::size_t i = 0; i < error.size(); i++) error[i] = float(flip_at(a, b, i));
   return error;
@@ -268,16 +260,9 @@ std::vector<float> hdr_flip(int width, int height, const ColorPlanes& result, co
   std::vector<float> error(result[0].size());
   for (int step = 0; step < range.count; step++) {
     const double gain = std::exp2(range.start + (range.stop - range.start) * step / (range.count - 1));
-    const auto see_exposed = [&](const ColorPlanes& image) {
-      const auto value = [&](std::size_t c, std::size_t i) { return tone_mapped(gain * light(image[c][i])); };
-      return see(
-          width, height,
-          [&](std::size_t i) {
-            return Triple{value(0, i), value(1, i), value(2, i)};
-          },
-          pixels_per_degree);
-    };
-    const Seen a = see_exposed(result), b = see_exposed(reference);
+    const auto exposed = [gain](float value) { return tone_mapped(gain * light(value)); };
+    const Seen a = see(width, height, result, exposed, pixels_per_degree),
+               b = see(width, height, reference, exposed, pixels_per_degree);
     for (std::size_t i = 0; i < error.size(); i++) error[i] = std::max(error[i], float(flip_at(a, b, i)));
   }
   return error;

@@ -126,7 +126,7 @@ void add_search_rows(std::vector<SettingRow>& rows) {
       .idle(if_exact_alone);
   pixels
       .choice("--search", &S::search,
-              "along a slice; steps: so many samples; quick: the same by fewer rules; exact, every-pixel: all pixels")
+              "along a slice; steps: so many samples; quick: the same by fewer rules; exact: all pixels")
       .idle([](const Settings& all) {
         const SliceSearch search = all.estimator.search;
         const std::string why = search == SliceSearch::steps ? "" : unless_estimator(all, {Estimator::gtao});

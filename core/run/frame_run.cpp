@@ -136,7 +136,7 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
 /// The search along slices that made the estimate, which the settings may only ask for; empty: there is none.
 static std::string search_of(const EstimatorSettings& settings, bool is_quick) {
   if (!searches_slices(settings)) return "";
-  if (settings.tolerance > 0 && settings.search != SliceSearch::every_pixel) return word_of(SliceSearch::exact);
+  if (settings.tolerance > 0) return word_of(SliceSearch::exact);
   return word_of(settings.search == SliceSearch::quick && !is_quick ? SliceSearch::steps : settings.search);
 }
 

@@ -6,7 +6,7 @@
 #include "core/run/frame_run.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
-#include "tests/support/sites_of.h"
+#include "tests/support/site_frames.h"
 
 namespace alcove::completion_test {
 namespace {

@@ -6,7 +6,6 @@
 #include "tests/support/chain.h"
 #include "tests/support/program.h"
 #include "tests/support/site_frames.h"
-#include "tests/support/sites_of.h"
 
 namespace alcove::noise_test {
 namespace {

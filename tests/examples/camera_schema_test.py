@@ -1,5 +1,5 @@
-# docs/camera.schema.json takes the camera files that the program takes, and refuses those that it refuses. Takes the program, the project's
-# folder, a frame and its camera.
+# docs/camera.schema.json takes the camera files that the program takes, and refuses those that it refuses; and the sample of docs/hosts.md
+# writes one. Takes the program, the project's folder, a frame and its camera.
 # SPDX-License-Identifier: BSD-3-Clause
 import copy
 import json
@@ -11,7 +11,7 @@ import tempfile
 
 import jsonschema
 
-PROGRAM, PROJECT, FRAME, CAMERA = sys.argv[1:5]
+PROGRAM, PROJECT, FRAME, CAMERA = (os.path.abspath(word) for word in sys.argv[1:5])
 SCHEMA = json.loads((pathlib.Path(PROJECT) / "docs/camera.schema.json").read_text(encoding="utf-8"))
 GOOD = json.loads(pathlib.Path(CAMERA).read_text(encoding="utf-8"))
 
@@ -82,10 +82,30 @@ def program_takes(camera, path):
     return not refused
 
 
+def sample_writes_the_example(folder):
+    """The page's sample, as it stands there, writes the example's camera from its matrix, whatever its scale."""
+    page = (pathlib.Path(PROJECT) / "docs/hosts.md").read_text(encoding="utf-8")
+    [sample] = [code for code in page.split("```python\n")[1:] if "matrix_at" in code]
+    os.chdir(folder)
+    exec(sample.split("```")[0], {"matrix_at": lambda frame: [[*(3 * x for x in row[:3]), row[3]] for row in GOOD["camera_to_world"]]})
+    cameras = json.loads(pathlib.Path("cameras.json").read_text(encoding="utf-8"))
+    schema.validate(cameras)
+    assert [entry.pop("frame") for entry in cameras["frames"]] == list(range(1001, 1011))
+    for entry in cameras["frames"]:
+        for name, value in entry.items():
+            difference = max(abs(a - b) for a, b in zip(numbers(value), numbers(GOOD[name]), strict=True))
+            assert difference < 1e-5, "%s is %s, not %s" % (name, value, GOOD[name])
+
+
+def numbers(value):
+    return [number for item in value for number in numbers(item)] if isinstance(value, list) else [value]
+
+
 jsonschema.Draft202012Validator.check_schema(SCHEMA)
 schema = jsonschema.Draft202012Validator(SCHEMA)
 taken = 0
 with tempfile.TemporaryDirectory() as folder:
+    sample_writes_the_example(folder)
     for name, camera in CASES.items():
         path = pathlib.Path(folder) / "camera.json"
         by_schema, by_program = schema.is_valid(camera), program_takes(camera, path)

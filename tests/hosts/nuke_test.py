@@ -1,23 +1,86 @@
 # The menu script of Nuke with the real program, against a stub of nuke. Takes the program, a frame and its camera.
 # SPDX-License-Identifier: BSD-3-Clause
+import importlib.util
 import json
+import math
 import os
 import pathlib
 import queue
 import shutil
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import types
 import unittest
 
-import camera_facts
-from camera_facts import applied, inverse, product, stand_at
+import jsonschema
 
+sys.dont_write_bytecode = True  # beside the scripts
 PROGRAM, FRAME, CAMERA = (os.path.abspath(word) for word in sys.argv[1:4])
 QUICK = "--slices 1 --steps 4 --denoise none"
 LONG_S = 200
+HOSTS = pathlib.Path(__file__).resolve().parents[2] / "hosts"
+SCHEMA = jsonschema.Draft202012Validator(json.loads((HOSTS.parent / "docs/camera.schema.json").read_text(encoding="utf-8")))
+
+# Points in front of cameras that stand_at() gives.
+POINTS = [(0.3, -0.2, 0.1), (-1.2, 0.7, 0.4), (0.9, 1.1, -0.6), (0, 0, 0)]
+
+
+def script(path):
+    """A script of hosts/ as a module; the stub of its host must be there."""
+    spec = importlib.util.spec_from_file_location(pathlib.Path(path).stem, HOSTS / path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def product(a, b):
+    return [[sum(a[i][k] * b[k][j] for k in range(4)) for j in range(4)] for i in range(4)]
+
+
+def inverse(matrix):
+    """By Gauss and Jordan: knows nothing of rotations."""
+    rows = [list(row) + [float(i == j) for j in range(4)] for i, row in enumerate(matrix)]
+    for i in range(4):
+        pivot = max(range(i, 4), key=lambda r: abs(rows[r][i]))
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        rows[i] = [x / rows[i][i] for x in rows[i]]
+        for r in range(4):
+            if r != i:
+                rows[r] = [x - rows[r][i] * y for x, y in zip(rows[r], rows[i])]
+    return [row[4:] for row in rows]
+
+
+def applied(matrix, point):
+    """The product with a column vector."""
+    return [sum(a * b for a, b in zip(row, [*point, 1])) for row in matrix]
+
+
+def stand_at(frame, scale=1.0):
+    """The transform of a camera to the world, for column vectors: some 5 units away from the origin, which it nearly looks at,
+    turned about all axes; it moves with the frame."""
+    yaw, pitch, roll = 0.4 + 0.1 * frame, -0.25, 0.15
+    turns = [
+        [[math.cos(yaw), 0, math.sin(yaw), 0], [0, 1, 0, 0], [-math.sin(yaw), 0, math.cos(yaw), 0], [0, 0, 0, 1]],
+        [[1, 0, 0, 0], [0, math.cos(pitch), -math.sin(pitch), 0], [0, math.sin(pitch), math.cos(pitch), 0], [0, 0, 0, 1]],
+        [[math.cos(roll), -math.sin(roll), 0, 0], [math.sin(roll), math.cos(roll), 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+        [[scale, 0, 0, 0], [0, scale, 0, 0], [0, 0, scale, 0], [0, 0, 0, 1]],
+    ]
+    matrix = [[float(i == j) for j in range(4)] for i in range(4)]
+    for turn in turns:
+        matrix = product(matrix, turn)
+    for i in range(3):
+        matrix[i][3] = 5 * matrix[i][2] / scale + (0.2, 0.1, -0.3)[i]
+    return matrix
+
+
+def pixel(camera, point):
+    """Where Alcove sees a point of the world: px from the left and the upper edge."""
+    x, y, z, _ = applied(camera["world_to_camera"], point)
+    divisor = 1 if camera["projection"] == "orthographic" else -z
+    return camera["cx"] + camera["fx"] * x / divisor, camera["cy"] - camera["fy"] * y / divisor
 
 
 class Knob:
@@ -178,12 +241,15 @@ class Nuke:
             call(*args, **kwargs)
 
 
-class Script(camera_facts.CameraFacts):
+class Script(unittest.TestCase):
     def setUp(self):
-        super().setUp()
+        folder = tempfile.TemporaryDirectory(prefix="alcove-hosts-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.path = str(self.folder / "cameras.json")
         self.nuke = Nuke()
         sys.modules["nuke"] = self.nuke.module
-        self.script = camera_facts.script("nuke/alcove_nuke.py")
+        self.script = script("nuke/alcove_nuke.py")
         self.script.POLL_S = 0.01  # frames of this size are quick
         os.environ["ALCOVE"] = PROGRAM
 
@@ -215,6 +281,48 @@ class Script(camera_facts.CameraFacts):
             x, y, _, _ = applied(product(product(to_format, scale), translation), (x / w, y / w, z / w))
             return x, height - y  # Nuke counts upwards
         return see
+
+    def assert_rigid(self, camera):
+        """Lengths and angles in the camera's space are those of the world, and right and left are not exchanged."""
+        rows = [row[:3] for row in camera["world_to_camera"][:3]]
+        for i in range(3):
+            for j in range(3):
+                self.assertAlmostEqual(sum(a * b for a, b in zip(rows[i], rows[j])), float(i == j), places=9)
+        (a, b, c), (d, e, f), (g, h, i) = rows
+        self.assertGreater(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g), 0)
+        self.assertEqual(camera["world_to_camera"][3], [0, 0, 0, 1])
+
+    def assert_sees(self, frame=4, **settings):
+        """With these settings, points of the world land where Nuke's own formulas put them."""
+        camera, host_pixel = self.camera(frame, **settings), self.host_pixel(frame)
+        self.assert_rigid(camera)
+        seen = [pixel(camera, point) for point in POINTS]
+        for point, (x, y) in zip(POINTS, seen):
+            host_x, host_y = host_pixel(point)
+            self.assertAlmostEqual(x, host_x, delta=1e-6, msg="x of %s" % (point,))
+            self.assertAlmostEqual(y, host_y, delta=1e-6, msg="y of %s" % (point,))
+        # What is compared must depend on the camera: points are well apart.
+        self.assertGreater(max(x for x, _ in seen) - min(x for x, _ in seen), 20)
+        self.assertGreater(max(y for _, y in seen) - min(y for _, y in seen), 20)
+        return camera
+
+    def assert_refused(self, words, **settings):
+        with self.subTest(words=words), self.assertRaisesRegex(ValueError, words):
+            self.camera(**settings)
+        self.assertFalse(pathlib.Path(self.path).exists())
+
+    def entries(self, path):
+        """The cameras of a file that the schema takes."""
+        written = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
+        SCHEMA.validate(written)
+        return written["frames"]
+
+    def entry(self, path, frame):
+        """The camera of a frame."""
+        [entry] = [entry for entry in self.entries(path) if entry["frame"] == frame]
+        for name in ("resolution", "fx", "fy", "cx", "cy", "world_to_camera"):
+            self.assertIn(name, entry)
+        return entry
 
     def test_cameras_see_as_nuke_does(self):
         for settings in ({}, {"format": Format(300, 500), "vaperture": 3.0},  # the aperture lies across the format
@@ -405,7 +513,7 @@ class Script(camera_facts.CameraFacts):
         menu = types.SimpleNamespace(addMenu=lambda name: types.SimpleNamespace(addCommand=added.__setitem__))
         self.nuke.module.menu = lambda name: {"Nuke": menu}[name]
         sys.modules["alcove_nuke"] = self.script
-        camera_facts.script("nuke/menu.py")
+        script("nuke/menu.py")
         self.assertEqual(added, {"Ambient Occlusion...": self.script.compute})
 
 

@@ -4,8 +4,7 @@
 
 #include "core/chain/estimate/sites.h"
 #include "tests/support/device.h"
-#include "tests/support/scenes.h"
-#include "tests/support/sites_of.h"
+#include "tests/support/site_frames.h"
 
 namespace alcove::test {
 

@@ -117,8 +117,7 @@ std::vector<double> radii_of(const EstimatorSettings& settings) {
 }
 
 bool searches_exactly(const EstimatorSettings& settings) {
-  const bool is_exact = settings.search == SliceSearch::exact || settings.search == SliceSearch::every_pixel;
-  return settings.estimator == Estimator::gtao && (is_exact || settings.tolerance > 0);
+  return settings.estimator == Estimator::gtao && (settings.search == SliceSearch::exact || settings.tolerance > 0);
 }
 
 bool searches_slices(const EstimatorSettings& settings) {

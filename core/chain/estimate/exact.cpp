@@ -149,12 +149,12 @@ void estimate_exact(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorS
 
 SearchDirections search_directions(const EstimatorSettings& settings) {
   const int takers = settings.denoise == Denoise::none ? 1 : 4;
-  return {settings.slices * takers, takers, settings.search == SliceSearch::every_pixel};
+  return {settings.slices * takers, takers, settings.every_pixel};
 }
 
 Convergence convergence(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings,
                         const Estimate& result, uint planes) {
-  Convergence search{settings.tolerance, settings.search == SliceSearch::every_pixel, result.plane, planes, {}};
+  Convergence search{settings.tolerance, settings.every_pixel, result.plane, planes, {}};
   search.sums.ao = &gpu.buffer("blocked arcs", plane_bytes(gbuffer.view));
   search.sums.moments = result.moments;
   search.sums.order = result.order;

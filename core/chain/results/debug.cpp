@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -83,53 +84,37 @@ std::string debug_path(const OutputSettings& settings, const DebugView& view) {
 
 DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages,
                  const FrameInputs& frame) {
-  const GBuffer* shown = &gbuffer;
+  using Source = DebugSource;
+  const auto is_of = [&](std::initializer_list<Source> sources) {
+    return std::ranges::find(sources, view.source) != sources.end();
+  };
+  const bool is_estimate =
+      is_of({Source::raw_ao, Source::denoised_ao, Source::completed, Source::sites, Source::tiles});
+  const GBuffer& shown = is_estimate ? stages.gbuffer : gbuffer;
+  const Sites sites = is_of({Source::raw_ao, Source::completed, Source::sites}) ? stages.sites : Sites{};
+  const uint hidden = view.source == Source::hidden ? gbuffer.surfaces - 1 : 0;
   const gpu::Buffer* values = gbuffer.normal;
-  Sites sites;
-  uint hidden = 0;
   switch (view.source) {
-    case DebugSource::none: break;
-    case DebugSource::raw_depth: values = frame[RawPlane::depth]; break;
-    case DebugSource::normals_from_depth: values = normals_from_depth(gpu, frame); break;
-    case DebugSource::raw_ao:
-      shown = &stages.gbuffer;
-      values = stages.raw_ao;
-      sites = stages.sites;
-      break;
-    case DebugSource::denoised_ao:
-      shown = &stages.gbuffer;
-      values = stages.denoised_ao;
-      break;
-    case DebugSource::completed:
-      shown = &stages.gbuffer;
-      values = stages.completed;
-      sites = stages.sites;
-      break;
-    case DebugSource::sites:
-      shown = &stages.gbuffer;
-      sites = stages.sites;
-      break;
-    case DebugSource::hidden:
-      if (gbuffer.hidden) values = gbuffer.hidden;
-      hidden = gbuffer.surfaces - 1;
-      break;
-    case DebugSource::count:
-      if (stages.count) values = stages.count;
-      break;
-    case DebugSource::tiles:
-      shown = &stages.gbuffer;
-      values = stages.kinds;
-      break;
+    case Source::none:
+    case Source::sites: break;
+    case Source::raw_depth: values = frame[RawPlane::depth]; break;
+    case Source::normals_from_depth: values = normals_from_depth(gpu, frame); break;
+    case Source::raw_ao: values = stages.raw_ao; break;
+    case Source::denoised_ao: values = stages.denoised_ao; break;
+    case Source::completed: values = stages.completed; break;
+    case Source::hidden: values = gbuffer.hidden ? gbuffer.hidden : values; break;
+    case Source::count: values = stages.count ? stages.count : values; break;
+    case Source::tiles: values = stages.kinds; break;
   }
-  gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown->view));
-  gpu.dispatch("debug", DebugParams{shown->view, view.kind, sites.rows ? 1u : 0u, shown->grid.origin, hidden},
-               {{"Depth", shown->depth},
-                {"Normal", shown->normal},
+  gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown.view));
+  gpu.dispatch("debug", DebugParams{shown.view, view.kind, sites.rows ? 1u : 0u, shown.grid.origin, hidden},
+               {{"Depth", shown.depth},
+                {"Normal", shown.normal},
                 {"Values", values},
                 {"Result", result},
                 {"Rows", gpu::Optional(sites.rows)}},
-               extent_of(shown->view));
-  return {&view, shown->view.size, &result};
+               extent_of(shown.view));
+  return {&view, shown.view.size, &result};
 }
 
 }  // namespace alcove

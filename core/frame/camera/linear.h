@@ -1,11 +1,10 @@
-// Vectors and matrices of three, and eigenvectors.
+// Vectors and matrices of three.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 namespace alcove {
 
@@ -34,45 +33,5 @@ inline Matrix3 product(const Matrix3& a, const Matrix3& b) {
 }
 /// Below 0 where the map mirrors.
 inline double determinant(const Matrix3& m) { return dot(m[0], cross(m[1], m[2])); }
-
-/// A symmetric matrix of N x N.
-template <std::size_t N>
-using Square = std::array<std::array<double, N>, N>;
-
-/// Eigenvalues, and eigenvectors as columns, by Jacobi's rotations; in no order.
-template <std::size_t N>
-std::pair<std::array<double, N>, Square<N>> eigen_of(Square<N> a) {
-  constexpr int kSweeps = 30;
-  Square<N> v{};
-  for (std::size_t i = 0; i < N; i++) v[i][i] = 1;
-  for (int sweep = 0; sweep < kSweeps; sweep++) {
-    double beside = 0;
-    for (std::size_t p = 0; p < N; p++)
-      for (std::size_t q = p + 1; q < N; q++) {
-        beside += std::abs(a[p][q]);
-        if (a[p][q] == 0) continue;
-        const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-        const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-        for (std::size_t k = 0; k < N; k++) {
-          const double kp = a[k][p], kq = a[k][q];
-          a[k][p] = c * kp - s * kq;
-          a[k][q] = s * kp + c * kq;
-        }
-        for (std::size_t k = 0; k < N; k++) {
-          const double pk = a[p][k], qk = a[q][k];
-          a[p][k] = c * pk - s * qk;
-          a[q][k] = s * pk + c * qk;
-          const double vp = v[k][p], vq = v[k][q];
-          v[k][p] = c * vp - s * vq;
-          v[k][q] = s * vp + c * vq;
-        }
-      }
-    if (beside < 1e-300) break;
-  }
-  std::array<double, N> values{};
-  for (std::size_t i = 0; i < N; i++) values[i] = a[i][i];
-  return {values, v};
-}
 
 }  // namespace alcove

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/ranks.h"
+#include "core/frame/camera/least_squares.h"
 
 namespace alcove {
 namespace {
@@ -59,7 +60,7 @@ constexpr Panorama kPanoramas[] = {
 };
 
 /// Rows of a map from space to the directions in which the camera sees it, up to their lengths.
-using Map = std::array<std::array<double, 4>, 3>;
+using Map = std::array<Row<4>, 3>;
 
 struct Ray {
   Vector3 direction;
@@ -70,19 +71,17 @@ struct Ray {
 Map map_of(const std::vector<Ray>& rays) {
   Square<12> sums{};
   for (const auto& [d, seen] : rays) {
-    const std::array<double, 4> p{seen->position[0], seen->position[1], seen->position[2], 1};
+    const Row<4> p{seen->position[0], seen->position[1], seen->position[2], 1};
     const std::array<Vector3, 3> crossed{Vector3{0, -d[2], d[1]}, Vector3{d[2], 0, -d[0]}, Vector3{-d[1], d[0], 0}};
     for (const auto& row : crossed) {
-      std::array<double, 12> equation{};
+      Row<12> equation{};
       for (std::size_t i = 0; i < 12; i++) equation[i] = row[i / 4] * p[i % 4];
-      for (std::size_t i = 0; i < 12; i++)
-        for (std::size_t j = 0; j < 12; j++) sums[i][j] += equation[i] * equation[j];
+      add_products(sums, equation);
     }
   }
-  const auto [values, vectors] = eigen_of(sums);
-  const auto least = std::size_t(std::ranges::min_element(values) - values.begin());
+  const Row<12> fit = least_squares(sums);
   Map map{};
-  for (std::size_t i = 0; i < 12; i++) map[i / 4][i % 4] = vectors[i][least];
+  for (std::size_t i = 0; i < 12; i++) map[i / 4][i % 4] = fit[i];
   return map;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/ranks.h"
+#include "core/frame/camera/least_squares.h"
 
 namespace alcove {
 namespace {
@@ -85,37 +86,23 @@ std::string box_of(std::span<const SeenPoint> points) {
 
 // Points along a projection.
 
-/// Gives the coefficients with which the sum of squares of the equations is least.
-template <std::size_t N>
-std::array<double, N> least_squares(const std::vector<std::array<double, N>>& equations) {
-  Square<N> sums{};
-  for (const auto& equation : equations)
-    for (std::size_t i = 0; i < N; i++)
-      for (std::size_t j = 0; j < N; j++) sums[i][j] += equation[i] * equation[j];
-  const auto [values, vectors] = eigen_of(sums);
-  const auto least = std::size_t(std::ranges::min_element(values) - values.begin());
-  std::array<double, N> solution{};
-  for (std::size_t i = 0; i < N; i++) solution[i] = vectors[i][least];
-  return solution;
-}
-
 double row_at(const double* row, const Vector3& p) { return row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3]; }
 
 /// A projection of points: N numbers, equations that are linear in them, and the distance from a point to its pixel.
 template <std::size_t N>
 struct PointModel {
-  void (*add)(const SeenPoint& seen, std::vector<std::array<double, N>>& equations);
-  double (*distance)(const std::array<double, N>& numbers, const SeenPoint& seen);  // in units of `seen`
+  void (*add)(const SeenPoint& seen, Square<N>& sums);
+  double (*distance)(const Row<N>& numbers, const SeenPoint& seen);  // in units of `seen`
 };
 
-void add_linear(const SeenPoint& seen, std::vector<std::array<double, 12>>& equations) {
+void add_linear(const SeenPoint& seen, Square<12>& sums) {
   const auto& [x, y, z] = seen.position;
   const double u = seen.x, v = seen.y;
-  equations.push_back({x, y, z, 1, 0, 0, 0, 0, -u * x, -u * y, -u * z, -u});
-  equations.push_back({0, 0, 0, 0, x, y, z, 1, -v * x, -v * y, -v * z, -v});
+  add_products(sums, {x, y, z, 1, 0, 0, 0, 0, -u * x, -u * y, -u * z, -u});
+  add_products(sums, {0, 0, 0, 0, x, y, z, 1, -v * x, -v * y, -v * z, -v});
 }
 
-double linear_distance(const std::array<double, 12>& m, const SeenPoint& seen) {
+double linear_distance(const Row<12>& m, const SeenPoint& seen) {
   const double over = 1 / row_at(&m[8], seen.position);
   return std::hypot(row_at(&m[0], seen.position) * over - seen.x, row_at(&m[4], seen.position) * over - seen.y);
 }
@@ -123,14 +110,14 @@ double linear_distance(const std::array<double, 12>& m, const SeenPoint& seen) {
 /// Any linear map to the picture's plane, so that axes may be stretched and skewed.
 constexpr PointModel<12> kLinear{add_linear, linear_distance};
 
-void add_round(const SeenPoint& seen, std::vector<std::array<double, 8>>& equations) {
+void add_round(const SeenPoint& seen, Square<8>& sums) {
   const auto& [x, y, z] = seen.position;
   const double u = seen.x, v = seen.y;
-  equations.push_back({v * x, v * y, v * z, v, -u * x, -u * y, -u * z, -u});
+  add_products(sums, {v * x, v * y, v * z, v, -u * x, -u * y, -u * z, -u});
 }
 
 /// The distance across the direction from the middle.
-double round_distance(const std::array<double, 8>& m, const SeenPoint& seen) {
+double round_distance(const Row<8>& m, const SeenPoint& seen) {
   const double right = row_at(&m[0], seen.position), down = row_at(&m[4], seen.position);
   const double across = length(Vector3{seen.x, seen.y, 0}) / std::hypot(right, down);
   return std::hypot(std::abs(right) * across - std::abs(seen.x), std::abs(down) * across - std::abs(seen.y));
@@ -151,10 +138,10 @@ double share_on(const PointModel<N>& model, std::span<const SeenPoint> points, c
   std::vector<double> distances(all.size(), 0);
   for (int turn = 0; turn < 4; turn++) {  // again without the points that are farthest off, as those of edges are
     const double most = 3 * median_of(distances);
-    std::vector<std::array<double, N>> equations;
+    Square<N> sums{};
     for (std::size_t i = 0; i < all.size(); i++)
-      if (turn == 0 || distances[i] <= most) model.add(all[i], equations);
-    const auto numbers = least_squares(equations);
+      if (turn == 0 || distances[i] <= most) model.add(all[i], sums);
+    const Row<N> numbers = least_squares(sums);
     for (std::size_t i = 0; i < all.size(); i++) distances[i] = model.distance(numbers, all[i]);
   }
   std::size_t near = 0;
@@ -164,17 +151,15 @@ double share_on(const PointModel<N>& model, std::span<const SeenPoint> points, c
 
 /// Whether the points lie in one plane, or nearly so: then many projections see them alike.
 bool are_in_plane(std::span<const SeenPoint> points) {
-  constexpr double kFlat = 1e-6;  // of the squared extents
+  constexpr double kFlat = 5e-7;  // of the sum of squared extents
   Square<3> sums{};
   Vector3 mean{};
   const std::vector<SeenPoint> all = normalized(points).points;
   for (const auto& seen : all)
     for (std::size_t i = 0; i < 3; i++) mean[i] += seen.position[i] / double(all.size());
-  for (const auto& seen : all)
-    for (std::size_t i = 0; i < 3; i++)
-      for (std::size_t j = 0; j < 3; j++) sums[i][j] += (seen.position[i] - mean[i]) * (seen.position[j] - mean[j]);
-  const auto values = eigen_of(sums).first;
-  return std::ranges::min(values) <= kFlat * std::ranges::max(values);
+  for (const auto& seen : all) add_products(sums, difference(seen.position, mean));
+  const Vector3 across = least_squares(sums);
+  return !(dot(across, times(sums, across)) > kFlat * (sums[0][0] + sums[1][1] + sums[2][2]));
 }
 
 }  // namespace

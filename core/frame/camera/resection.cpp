@@ -12,33 +12,10 @@
 #include <vector>
 
 #include "core/base/ranks.h"
+#include "core/frame/camera/least_squares.h"
 
 namespace alcove {
 namespace {
-
-/// Inverse of a symmetric positive matrix of the first n rows and columns; none where it is singular.
-template <std::size_t N>
-std::optional<Square<N>> inverse_of(Square<N> a) {
-  Square<N> inverse{};
-  for (std::size_t i = 0; i < N; i++) inverse[i][i] = 1;
-  for (std::size_t column = 0; column < N; column++) {
-    std::size_t pivot = column;
-    for (std::size_t row = column; row < N; row++)
-      if (std::abs(a[row][column]) > std::abs(a[pivot][column])) pivot = row;
-    if (!(std::abs(a[pivot][column]) > std::numeric_limits<double>::min())) return std::nullopt;
-    std::swap(a[pivot], a[column]);
-    std::swap(inverse[pivot], inverse[column]);
-    const double over = 1 / a[column][column];
-    for (std::size_t k = 0; k < N; k++) a[column][k] *= over, inverse[column][k] *= over;
-    for (std::size_t row = 0; row < N; row++) {
-      const double factor = a[row][column];
-      if (row == column || factor == 0) continue;
-      for (std::size_t k = 0; k < N; k++)
-        a[row][k] -= factor * a[column][k], inverse[row][k] -= factor * inverse[column][k];
-    }
-  }
-  return inverse;
-}
 
 /// A camera as it is solved: x right, y down, z forward, in a space where the points are about 1 in size.
 struct Pinhole {
@@ -80,26 +57,25 @@ struct ImageScale {
 };
 
 /// The rows of the projection that maps points to pixels up to a factor, with a last row (0, 0, 0, 1) if orthographic.
-using Projection = std::array<std::array<double, 4>, 3>;
+using Projection = std::array<Row<4>, 3>;
 
 std::optional<Projection> perspective_of(const Picked& points, const ImageScale& image) {
   Square<12> sums{};
   for (const auto* seen : points) {
-    const std::array<double, 4> p{seen->position[0], seen->position[1], seen->position[2], 1};
+    const Row<4> p{seen->position[0], seen->position[1], seen->position[2], 1};
     const double u = (seen->x - image.x) / image.size, v = (seen->y - image.y) / image.size;
-    std::array<double, 12> of_x{}, of_y{};
+    Row<12> of_x{}, of_y{};
     for (std::size_t k = 0; k < 4; k++) {
       of_x[k] = of_y[4 + k] = p[k];
       of_x[8 + k] = -u * p[k];
       of_y[8 + k] = -v * p[k];
     }
-    for (std::size_t i = 0; i < 12; i++)
-      for (std::size_t j = 0; j < 12; j++) sums[i][j] += of_x[i] * of_x[j] + of_y[i] * of_y[j];
+    add_products(sums, of_x);
+    add_products(sums, of_y);
   }
-  const auto [values, vectors] = eigen_of(sums);
-  const auto least = std::size_t(std::ranges::min_element(values) - values.begin());
+  const Row<12> fit = least_squares(sums);
   Projection projection{};
-  for (std::size_t i = 0; i < 12; i++) projection[i / 4][i % 4] = vectors[i][least];
+  for (std::size_t i = 0; i < 12; i++) projection[i / 4][i % 4] = fit[i];
   for (std::size_t k = 0; k < 4; k++) {
     projection[0][k] = projection[0][k] * image.size + projection[2][k] * image.x;
     projection[1][k] = projection[1][k] * image.size + projection[2][k] * image.y;
@@ -109,30 +85,24 @@ std::optional<Projection> perspective_of(const Picked& points, const ImageScale&
 
 std::optional<Projection> orthographic_of(const Picked& points, const ImageScale& image) {
   Square<4> sums{};
-  std::array<double, 4> of_x{}, of_y{};
+  Row<4> of_x{}, of_y{};
   for (const auto* seen : points) {
-    const std::array<double, 4> p{seen->position[0], seen->position[1], seen->position[2], 1};
+    const Row<4> p{seen->position[0], seen->position[1], seen->position[2], 1};
     for (std::size_t i = 0; i < 4; i++) {
       of_x[i] += p[i] * (seen->x - image.x);
       of_y[i] += p[i] * (seen->y - image.y);
-      for (std::size_t j = 0; j < 4; j++) sums[i][j] += p[i] * p[j];
     }
+    add_products(sums, p);
   }
   const auto inverse = inverse_of(sums);
   if (!inverse) return std::nullopt;
-  Projection projection{};
-  for (std::size_t i = 0; i < 4; i++)
-    for (std::size_t j = 0; j < 4; j++) {
-      projection[0][i] += (*inverse)[i][j] * of_x[j];
-      projection[1][i] += (*inverse)[i][j] * of_y[j];
-    }
+  Projection projection{applied(*inverse, of_x), applied(*inverse, of_y), {0, 0, 0, 1}};
   projection[0][3] += image.x;
   projection[1][3] += image.y;
-  projection[2] = {0, 0, 0, 1};
   return projection;
 }
 
-Vector3 first_three(const std::array<double, 4>& row) { return {row[0], row[1], row[2]}; }
+Vector3 first_three(const Row<4>& row) { return {row[0], row[1], row[2]}; }
 
 /// Takes a perspective projection apart, without its skew. The points are in front.
 std::optional<Pinhole> pinhole_of_perspective(Projection m, const Picked& points) {
@@ -179,7 +149,7 @@ std::optional<Pinhole> pinhole_of_orthographic(const Projection& m, const Window
 }
 
 constexpr std::size_t kUnknowns = 10;  // fx, fy, cx, cy, a turn, an offset
-using Gradient = std::array<double, kUnknowns>;
+using Gradient = Row<kUnknowns>;
 
 /// The derivatives of a point's place in the picture by the unknowns, in x and in y. Those that an orthographic view
 /// does not depend on are 0.
@@ -211,11 +181,10 @@ Square<kUnknowns> products_of(const Pinhole& camera, const Picked& points, Gradi
     const Vector3 view = camera.in_view(seen->position);
     const auto error = error_of(camera, view, *seen);
     const auto gradients = gradients_of(camera, view);
-    for (std::size_t c = 0; c < 2; c++)
-      for (std::size_t i = 0; i < kUnknowns; i++) {
-        toward[i] -= gradients[c][i] * error[c];
-        for (std::size_t j = 0; j < kUnknowns; j++) sums[i][j] += gradients[c][i] * gradients[c][j];
-      }
+    for (std::size_t c = 0; c < 2; c++) {
+      for (std::size_t i = 0; i < kUnknowns; i++) toward[i] -= gradients[c][i] * error[c];
+      add_products(sums, gradients[c]);
+    }
   }
   for (std::size_t i = 0; i < kUnknowns; i++)
     if (sums[i][i] == 0) sums[i][i] = 1;
@@ -264,10 +233,7 @@ Pinhole refined(Pinhole camera, const Picked& points) {
     Gradient toward;
     const auto inverse = inverse_of(products_of(camera, points, toward));
     if (!inverse) break;
-    Gradient by{};
-    for (std::size_t i = 0; i < kUnknowns; i++)
-      for (std::size_t j = 0; j < kUnknowns; j++) by[i] += (*inverse)[i][j] * toward[j];
-    const Pinhole next = moved(camera, by);
+    const Pinhole next = moved(camera, applied(*inverse, toward));
     const double next_sum = sum_of_squares(next, points);
     if (!(next_sum < sum)) break;
     camera = next;

@@ -344,16 +344,19 @@ constexpr double kWhole = 0.5;               // share of the surfaces with anoth
 constexpr std::size_t kLeastPixels = 64;     // fewer tell too little
 constexpr double kLeastSame = 0.1;           // share of the pixels whose first surface must be the depth's
 
-bool has_channel(const ExrPart& part, const char* name) {
-  return std::ranges::find(part.channels, name, &ExrChannel::name) != part.channels.end();
+template <class Is>
+bool any_channel(const ExrFile& file, const std::vector<int>& parts, const Is& is) {
+  return std::ranges::any_of(
+      parts, [&](int part) { return std::ranges::any_of(file.parts()[std::size_t(part)].channels, is); });
 }
 
 bool is_half(const ExrFile& file, const std::vector<int>& parts) {
-  return std::ranges::any_of(parts, [&](int part) {
-    const auto& channels = file.parts()[std::size_t(part)].channels;
-    const auto z = std::ranges::find(channels, "Z", &ExrChannel::name);
-    return z != channels.end() && z->type == SampleType::half_float;
-  });
+  return any_channel(file, parts,
+                     [](const ExrChannel& c) { return c.name == "Z" && c.type == SampleType::half_float; });
+}
+
+bool has_backs(const ExrFile& file, const std::vector<int>& parts) {
+  return any_channel(file, parts, [](const ExrChannel& c) { return c.name == "ZBack"; });
 }
 
 /// Takes a file's samples for the frame, and those of all other files of --deep.
@@ -407,10 +410,6 @@ bool any_deep(const FrameSource& source, bool (*holds)(const ExrFile&, const std
   return std::ranges::any_of(source.channels.deep->elements, [&](const DeepFiles::Element& element) {
     return holds(source.files[element.file], element.parts);
   });
-}
-
-bool has_backs(const ExrFile& file, const std::vector<int>& parts) {
-  return std::ranges::any_of(parts, [&](int part) { return has_channel(file.parts()[std::size_t(part)], "ZBack"); });
 }
 
 /// Whether samples go on behind the first surface: those of a renderer end there, however much is hidden. Rows all over

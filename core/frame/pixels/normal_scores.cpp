@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/ranks.h"
+#include "core/frame/camera/least_squares.h"
 #include "core/frame/pixels/places.h"
 #include "core/frame/pixels/statistics.h"
 
@@ -159,12 +160,7 @@ void measure_turn(NormalScore& score, const std::vector<ReadPlace>& places, cons
     }
   }
   for (std::size_t i = 0; i < 3; i++) across[i][i] += kUnseen * double(places.size());
-  const double whole = determinant(across);
-  for (std::size_t i = 0; i < 3; i++) {
-    Matrix3 replaced = across;  // symmetrical: its rows are its columns
-    replaced[i] = moved;
-    score.turn[i] = determinant(replaced) / whole;
-  }
+  if (const auto inverse = inverse_of(across)) score.turn = applied(*inverse, moved);
 }
 
 /// Fills in how well the frame agrees with each of the readings; angle and turn of those by which half of the normals

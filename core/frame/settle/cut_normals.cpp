@@ -23,8 +23,6 @@ class CutNormals : private NormalSettlement {
  public:
   explicit CutNormals(const NormalSettlement& normals) : NormalSettlement(normals) {}
 
-  /// Takes normals without components below 0 if depth says that they lost some: the file does not hold the lost ones.
-  /// Returns whether they are such.
   bool settle(const std::vector<NormalScore>& scores, const NormalStatistics& statistics) {
     if (statistics.least < kBelowZero || !has_lengths(source_) || reading_.normal_unorm || source_.open.camera)
       return false;

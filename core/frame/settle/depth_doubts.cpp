@@ -18,7 +18,6 @@ class DepthDoubts : private DepthSettlement {
  public:
   explicit DepthDoubts(const DepthSettlement& depth) : DepthSettlement(depth) {}
 
-  /// Notes where the pixels speak against the kind of depth that is said. It is read so all the same.
   void run() {
     doubt_range();
     const bool linear = reading_.depth_kind == DepthKind::normalized || reading_.depth_kind == DepthKind::log;

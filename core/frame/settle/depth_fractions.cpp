@@ -13,8 +13,6 @@ class FractionRules : private DepthSettlement {
  public:
   FractionRules(const DepthSettlement& depth, DepthKind usual) : DepthSettlement(depth), usual_(usual) {}
 
-  /// Depth within 0 to 1 is the part of a range more often than a distance, and no pixel shows how long that range is.
-  /// It is refused where nothing supports distances, and noted where straight lines do: z / far has them too.
   void run() {
     if (!is_fraction()) return;
     const auto& scores = seen_.depth_scores;

@@ -21,8 +21,6 @@ class DepthKindSettlement : private DepthSettlement {
   explicit DepthKindSettlement(const DepthSettlement& depth)
       : DepthSettlement(depth), usual_(facts_.program.depth_kind) {}
 
-  /// Decides an open kind: by flat surfaces, else by positions, else by normals, else by the program, else the usual
-  /// one.
   void run() {
     if (is_between_planes(usual_) && values_.all.least >= 0 && values_.all.most <= 1)
       return take_usual("all in 0 to 1");

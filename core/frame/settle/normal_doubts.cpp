@@ -27,7 +27,6 @@ class NormalDoubts : private NormalSettlement {
  public:
   explicit NormalDoubts(const NormalSettlement& normals) : NormalSettlement(normals) {}
 
-  /// Notes normals that depth speaks against, and refuses normals that it refutes.
   void run(const std::vector<NormalScore>& scores) {
     if (source_.open.camera) return;
     const NormalScore* chosen = score_of(scores, reading_.normal_space, reading_.flip_normal);
@@ -61,8 +60,6 @@ class NormalDoubts : private NormalSettlement {
                        chosen->angle, kCheck));
   }
 
-  /// Refuses the camera where the normals agree with depth by one that is turned in a usual way, and by the given one
-  /// do not. `sharpest` is the share that another reading of the normals brings close.
   void refuse_turned_camera(const NormalScore& chosen, double sharpest) const {
     const auto turned = best_turned_camera(planes(), chosen);
     if (!turned || turned->score.close < sharpest || turned->score.agreement < kClear * chosen.agreement) return;
