@@ -468,7 +468,7 @@ TEST_F(Runs, in_memory_of_the_devices_own_give_the_bits_of_shared_memory_in_tile
   };
   const std::string shared = outputs("", {});
   EXPECT_TRUE(outputs("", own_memory) == shared);
-  EXPECT_TRUE(outputs("--memory 290M", own_memory) == shared);
+  EXPECT_TRUE(outputs("--memory 312M", own_memory) == shared);
 }
 
 TEST_F(Driver, that_cannot_list_extensions_has_none_and_leaves_no_instance) {

@@ -273,10 +273,10 @@ TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough
   EXPECT_EQ(frame_within(at_once).parts, 1);
   EXPECT_GT(frame_within(at_once - 1).parts, 1);
   const FrameReport parts = frame_within(least);
-  // At the least, rounded up to whole MiB, a part or two fewer may do.
+  // The least is rounded up to whole MiB, and near it a little more memory saves many parts.
   const double told = std::strtod(refusal.c_str() + refusal.find("M (in ") + 6, nullptr);
   EXPECT_LE(parts.parts, told);
-  EXPECT_GE(parts.parts, told / 3);
+  EXPECT_GE(parts.parts, told / 6);
   const auto planned = [&](const Options& more) {
     return run_program(joined({"run", shot, "-o", ao, "--camera", shot_camera, "--radius", "0.06", "--type", "float",
                                "--stats", folder / "stats.json", "--dry-run"},
