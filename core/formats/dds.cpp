@@ -1,6 +1,8 @@
 // DDS: a header of 32-bit words, then rows of pixels. Source of the format: Microsoft's programming guide for DDS, and
 // its list of DXGI formats.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>

@@ -1,5 +1,7 @@
 // NumPy's arrays: a header that is a Python dictionary, then numbers. Source of the format: numpy.lib.format.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
