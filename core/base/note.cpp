@@ -147,10 +147,9 @@ std::string header_text(const Notes& notes) {
 }
 
 std::string note_table_markdown() {
-  std::string text = "| code | | |\n|---|---|---|\n";
+  std::string text;
   for (const auto& facts : note_table())
-    text += std::string("| `") + facts.name + "` | " + (facts.is_warning ? "warning" : "note") + " | " + facts.meaning +
-            " |\n";
+    text += std::string("- `") + facts.name + "`" + (facts.is_warning ? "" : " (note)") + ": " + facts.meaning + "\n";
   return text;
 }
 

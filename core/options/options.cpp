@@ -117,12 +117,6 @@ void add_report_rows(std::vector<SettingRow>& rows) {
                  "of --print-config: what differs from the defaults, without files, frames, camera and device"});
 }
 
-/// Text as a cell of a table in Markdown, where a bar would end it.
-std::string cell(std::string text) {
-  for (std::size_t at = 0; (at = text.find('|', at)) != text.npos; at += 2) text.insert(at, "\\");
-  return text;
-}
-
 bool is_control(char c) { return (unsigned char)c < 0x20 || c == 0x7f; }
 
 /// Quotes a text for TOML. A text that would have to be escaped within double quotes is put within single ones, where
@@ -230,11 +224,13 @@ std::string option_table_markdown() {
     std::string group;
     for (const auto& row : option_table()) {
       if (row.is_only_key() != shows_keys) continue;
-      if (row.group != group) text += fmt::format("\n| {} | unit, range | default | |\n|---|---|---|---|\n", row.group);
+      if (row.group != group) text += fmt::format("\n### {}\n\n", row.group);
       group = row.group;
       const std::string value = row.value.empty() && shows_keys ? "true" : row.value;
-      text += fmt::format("| `{}`{} | {} | {} | {} |\n", row.name, value.empty() ? "" : " " + cell(value),
-                          cell(range_text(row)), row.default_text, cell(row.sentence));
+      std::string limits = range_text(row);
+      if (!row.default_text.empty()) limits += (limits.empty() ? "" : "; ") + ("default " + row.default_text);
+      text += fmt::format("- `{}`{}{}: {}\n", row.name, value.empty() ? "" : " `" + value + "`",
+                          limits.empty() ? "" : " (" + limits + ")", row.sentence);
     }
   }
   return text.substr(1);
