@@ -1,13 +1,6 @@
 // Alcove as a C library: ambient occlusion of one frame, from planes in memory and into planes in memory.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-//     alcove_session *ao = alcove_new();
-//     alcove_layout one = {1920, 1080, 1, ALCOVE_FLOAT, 0, 0, 0};
-//     alcove_set(ao, "radius", "0.5");
-//     alcove_set(ao, "fov", "40");
-//     alcove_plane(ao, "depth", depth, &one);
-//     if (alcove_run(ao, 0) || alcove_get(ao, "ao", result, &one)) fprintf(stderr, "%s\n", alcove_error(ao));
-//     alcove_free(ao);
 //
 // The library reads no files except presets, which are compiled in. It writes none except the driver's compiled kernels
 // in the XDG cache folder ("no-pipeline-cache" turns that off). It leaves locale, environment and signals alone, and
@@ -69,16 +62,6 @@ ALCOVE_API alcove_code alcove_set(alcove_session* handle, const char* option, co
 ALCOVE_API alcove_code alcove_preset(alcove_session* handle, const char* name);
 
 // Sets a plane, which is copied. All planes of a frame have one size. Null data removes the plane. Names:
-//   depth        1 component, of depth-kind, planar by default; distances above 0, other kinds within 0 to 1. Integers
-//                must be converted: 16 bits are few for distances, and 8 bits are refused
-//   position     3, instead of a depth; in position-space, which must be set if the camera has a position
-//   normal       3, or 2 by normal-encoding, signed by default; in normal-space, which must be set unless the
-//                camera has no position or a camera file says it; without this plane, normals come from depth
-//   behind       1, depth behind the first surface, of behind-kind; each call adds one, at most 8
-//   material-ao  1, multiplied in
-//   matte        1, 0 to 1: where AO is wanted
-//   occluders    1, 0 to 1: only these block;  ignore: these do not
-//   albedo       3, for multi-bounce with ao-channels rgb
 ALCOVE_API alcove_code alcove_plane(alcove_session* handle, const char* name, const void* data,
                                     const alcove_layout* layout);
 
@@ -93,23 +76,22 @@ ALCOVE_API alcove_code alcove_camera(alcove_session* handle, double fx, double f
 ALCOVE_API alcove_code alcove_camera_json(alcove_session* handle, const char* text);
 
 // Computes the results that the option "aov" names: "ao" by default. `frame`, the number of the frame, picks the entry
-// of a camera file's `frames`, and changes noise animated. Looks at the pixels as the program does: it measures how
-// depth was rounded, and fails if the pixels contradict depth, normals or camera. alcove_notes() has what they leave in
-// doubt.
+// of a camera file's `frames`, and seeds noise animated. Checks the pixels as the program does: it measures the
+// rounding of depth, and fails if the pixels contradict depth, normals or camera. alcove_notes() has the doubts.
 ALCOVE_API alcove_code alcove_run(alcove_session* handle, int frame);
 // Gives the number of components of a result of the last run; 0 if there is none of that name.
 ALCOVE_API int alcove_components(const alcove_session* handle, const char* aov);
 // Copies a result of the last run into a plane with its size and its number of components. The plane may overlap planes
 // that were given to alcove_plane().
 ALCOVE_API alcove_code alcove_get(alcove_session* handle, const char* aov, void* data, const alcove_layout* layout);
-// Gives a number of the last run: compute-ms (of the device, 0 if it does not tell), sky-pixels, repaired-depth and
+// Gives a number of the last run: compute-ms (of the device, 0 if it has no clock), sky-pixels, repaired-depth and
 // repaired-normals (pixels that made no sense), turned-normals (pixels whose normals faced away from the eye), radius.
 // NaN if there is none of that name.
 ALCOVE_API double alcove_number(const alcove_session* handle, const char* name);
 // Gives the doubts about the last run if it did not fail, one sentence per line, as the program's notes: depth that was
-// rounded, averaged or jittered, or that looks like another kind; a sky that is a number; normals of which few agree
-// with the depth; a radius too small for the depth's precision or larger than the picture. "" without doubts. The text
-// stays until the next run.
+// rounded, averaged or jittered, or that looks like another kind; a sky that is a number; normals that disagree with
+// the depth; a radius too small for the depth's precision or larger than the picture. "" without doubts. The text stays
+// until the next run.
 ALCOVE_API const char* alcove_notes(const alcove_session* handle);
 // Gives the name of the open device; "" if none is open.
 ALCOVE_API const char* alcove_device(const alcove_session* handle);

@@ -14,11 +14,11 @@ namespace alcove {
 /// The G-buffers of a frame.
 struct Surfaces {
   GBuffer frame;
-  GBuffer wide;  // with the margin in which other frames and views show more; else the same
+  GBuffer wide;  // with the margin that other frames and views fill; else the same
 };
 
-/// The surfaces of a frame, the visibility of its pixels, and what led to it. Null: nobody asked for it. Its buffers
-/// stay as they are while the recorder records results alone.
+/// The surfaces of a frame, the visibility of its pixels, and the stages before it; null: not asked for. The buffers
+/// keep their contents while the recorder records results alone.
 struct Seen {
   Surfaces surfaces;
   Visibility visibility;  // before any shaping
@@ -26,7 +26,7 @@ struct Seen {
   Estimate estimate;  // of its own; none of a mean over frames
   gpu::Buffer* completion = nullptr;
   gpu::Buffer* error = nullptr;  // of the frame's pixels
-  gpu::Buffer* count = nullptr;  // of a mean: a plane of how many frames each pixel's visibility is the mean
+  gpu::Buffer* count = nullptr;  // of a mean: a plane of the number of averaged frames of each pixel
   DebugStages stages;
   bool is_quick = false;  // by the quick search
 };
@@ -34,12 +34,12 @@ struct Seen {
 /// Records the passes up to the visibility. settings.radius must be set where it is needed.
 Seen see(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings, const Wanted& wanted);
 
-/// Records the passes from there on, in the same recording or in later ones, for other settings than those of see()
-/// too, if they differ in the shaping or in the composite's look alone. What it repairs is counted each time.
+/// Records the remaining passes, in the same recording or in later ones. The settings may differ from those of see() in
+/// the shaping and the composite's look alone. Repairs count each time.
 FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen,
                         const EstimatorSettings& settings, const Wanted& wanted);
 
-/// Records the passes that make what is wanted of one frame, and the composite where the frame has a beauty.
+/// Records the passes for the wanted outputs of one frame, and the composite if the frame has a beauty.
 /// settings.radius must be set where they need AO.
 FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings,
                        const Wanted& wanted = {});

@@ -1,4 +1,4 @@
-// Frames that show nothing but sky: the host fills in what the chain would give, without a kernel.
+// Frames that show nothing but sky: the host fills in the chain's results, without a kernel.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

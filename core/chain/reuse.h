@@ -1,9 +1,8 @@
-// What a frame has in common with the one before it in the same buffers: all of it, or blocks of its pixels.
+// Reuse of results of the frame before in the same buffers: of all of them, or of blocks of pixels.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A result may be used again where every value that it is made from is the same: the frame's recipe, which is
-// compared, and the raw planes, by 64-bit hashes (XXH3). Settings are those of the run. That needs noise that is the
-// same in every frame (Noise::fixed).
+// A result is reused if everything that decides it is equal: the frame's recipe, which is compared as a value, and the
+// raw planes, by 64-bit hashes (XXH3). The settings are those of the run. This needs Noise::fixed.
 #pragma once
 
 #include <array>
@@ -18,13 +17,13 @@ namespace alcove {
 /// Remembers the last frame that went through a recorder's buffers. Each recorder has one of its own.
 class LastFrame {
  public:
-  /// Whether all that the frame's results are made from is as it was: then outputs() are its own. If only some blocks
-  /// of its pixels are as they were, frame.changes says which. Call it once the planes are read, and keep() once the
+  /// Whether everything that decides the frame's results is unchanged: then outputs() has them. If only some blocks of
+  /// pixels are unchanged, frame.changes marks the changed ones. Call it once the planes are read, and keep() once the
   /// frame is computed; until then nothing is remembered.
   bool is_same(gpu::Recorder& gpu, FrameInputs& frame, const EstimatorSettings& settings);
-  /// Whether frames take longer to compute than to compare, by what was said of the last; where nothing was, they may.
+  /// Whether frames take longer to compute than to compare, by the time of the last; true without one.
   bool is_worth_comparing(const FrameInputs& frame) const;
-  /// Says how long the device took for a frame of which all was computed; 0: it has no clock.
+  /// Sets the device time of a frame that was computed as a whole; 0: the device has no clock.
   void took(double ms) { ms_ = ms; }
   void keep(const FrameOutputs& outputs) { outputs_ = outputs; }
   void forget() { outputs_.reset(); }
@@ -32,7 +31,7 @@ class LastFrame {
   const FrameOutputs& outputs() const { return outputs_.value(); }
 
  private:
-  /// What a frame was made from; of planes their hashes.
+  /// Everything that decides a frame's results; of planes their hashes.
   struct Past {
     struct Whole {
       FrameRecipe recipe;
@@ -41,14 +40,14 @@ class LastFrame {
       std::uint64_t selection = 0;
       bool operator==(const Whole&) const = default;
     } whole;                            // where it differs, no block is as it was
-    std::uint64_t colors = 0;           // of planes that no estimate is made from
-    std::vector<std::uint64_t> blocks;  // of those that one is made from
+    std::uint64_t colors = 0;           // of planes that change no estimate
+    std::vector<std::uint64_t> blocks;  // of the others
     bool operator==(const Past&) const = default;
   };
   static Past past_of(const FrameInputs& frame, const EstimatorSettings& settings);
 
   Past last_;
-  double ms_ = 0;  // of a whole frame; 0: nobody knows
+  double ms_ = 0;  // of a whole frame; 0: unknown
   std::optional<FrameOutputs> outputs_;
 };
 

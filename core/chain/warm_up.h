@@ -1,4 +1,4 @@
-// Makes the pipelines of a run before its first frame is there: that is half of a small frame's time.
+// Makes the pipelines of a run while its first frame is read: half of a small frame's time.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,16 +12,16 @@
 
 namespace alcove {
 
-/// Records the chain for a frame of a few pixels, which uses most kernels that any frame of these settings does.
+/// Records the chain for a frame of a few pixels, with most kernels that any frame of these settings uses.
 void record_small_frame(gpu::Recorder& gpu, EstimatorSettings settings, const Wanted& wanted);
 
-/// Threads that make pipelines, each once, the largest first, while others read the first frame. What a frame needs
-/// beside them, by its own layout, is made when it comes. It waits for its threads when it goes; nothing of it fails.
+/// Threads that make pipelines, each once, the largest first, while others read the first frame. A frame makes further
+/// pipelines itself. The destructor waits for the threads. Never fails.
 class WarmUp {
  public:
   /// The device must outlive it.
   WarmUp(gpu::Device& device, const EstimatorSettings& settings, const Wanted& wanted, int threads);
-  ~WarmUp() { next_ = names_.size(); }  // what nobody has begun by then is not made
+  ~WarmUp() { next_ = names_.size(); }  // skips the rest
   WarmUp(const WarmUp&) = delete;
   WarmUp& operator=(const WarmUp&) = delete;
 
@@ -31,7 +31,7 @@ class WarmUp {
  private:
   std::vector<gpu::KernelName> names_;
   std::atomic<std::size_t> next_ = 0;
-  std::vector<std::jthread> threads_;  // they go first
+  std::vector<std::jthread> threads_;  // destroyed first
 };
 
 }  // namespace alcove

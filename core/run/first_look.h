@@ -1,5 +1,5 @@
-// A run before any of its frames is computed: its frames, how they are read, what is noted of all of them, the options
-// that it lacks, and the text of --dry-run.
+// A run before any of its frames is computed: frames, their reading, notes on all of them, missing options, and the
+// text of --dry-run.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,23 +15,22 @@
 
 namespace alcove {
 
-/// Options that a run cannot do without, and that nobody gave.
+/// Options that a run needs and lacks.
 struct MissingOptions {
   bool input = false, output = false, camera = false, radius = false;
-  bool turns_normals = false;             // a camera that is missing must have world_to_camera, or normals be left out
-  bool lacks_matrix = false;              // the camera that is given has none, so that normals must be left out
-  std::string no_camera;                  // why header and positions, which look as if they had a camera, give none
-  std::optional<double> proposed_radius;  // where there is no radius, and the first frame can be read
-  std::optional<Error> no_channels;       // why its channels are not found, where there is no camera
-  std::optional<Error> unreadable;        // why the first frame cannot be looked at
+  bool turns_normals = false;             // the missing camera needs world_to_camera, unless normals are left out
+  bool lacks_matrix = false;              // the given camera has none, so normals must be left out
+  std::string no_camera;                  // why a header or positions that seem to have a camera give none
+  std::optional<double> proposed_radius;  // without a radius, if the first frame can be read
+  std::optional<Error> no_channels;       // why its channels are not found, without a camera
+  std::optional<Error> unreadable;        // why the first frame cannot be read
 
   bool any() const { return input || output || camera || radius; }
   /// One sentence for each, with the options that give it.
   std::vector<std::string> sentences() const;
 };
 
-/// Looks at names, headers, and the pixels of one frame. The frames of the run are found once. A file that is opened
-/// here stays open for the frame that is computed from it.
+/// Reads names, headers, and the pixels of one frame. A file that is opened here stays open for its frame.
 class FirstLook {
  public:
   explicit FirstLook(const Settings& settings) : settings_(settings) {}
@@ -43,19 +42,18 @@ class FirstLook {
   /// make no sense.
   MissingOptions missing_options();
 
-  /// Checks the settings, and puts the radii that a frame's depth tells (--radius auto, 5%) into those of the plan: the
-  /// same for every chunk of a sequence. Gives the notes on all frames. Fails on settings that contradict each other,
-  /// as notes_on_number() does, and with ErrorKind::input where no frame that is looked at shows a surface for the
-  /// radius, or a warning counts as an error.
+  /// Checks the settings, and finds radii by a frame's depth (--radius auto, 5%), the same for every chunk. Gives the
+  /// notes on all frames. Fails on contradicting settings, as notes_on_number() does, and with ErrorKind::input if no
+  /// examined frame shows a surface for the radius, or if a warning counts as an error.
   Notes prepare();
 
-  /// Settles one frame, and all others are read in the same way. It is the first one that shows what files and options
-  /// leave open. None where no frame can be read, or only such as show nothing while others are refused: then each is
+  /// Settles the reading of one frame, which all others share: the first one whose pixels decide everything that files
+  /// and options leave open. None if no frame can be read, or if some cannot and the others show nothing: then each is
   /// settled by itself. Closes all files.
   std::optional<FrameSource> settle(std::uint64_t most_bytes);
 
-  /// Gives a frame of the plan, which is opened unless a look has left it open. Fails as open_frame() does. After
-  /// settle() any thread may ask.
+  /// Gives a frame of the plan, opened if it is not open already. Fails as open_frame() does. After settle() any thread
+  /// may call it.
   FrameSource open(const Settings& settings, int frame);
 
  private:
@@ -70,19 +68,19 @@ class FirstLook {
 
   const Settings settings_;
   std::optional<FramePlan> plan_;
-  bool lacks_camera_ = false;    // frames are opened with one that stands in for it
-  bool lacks_matrix_ = false;    // pixels have shown that normals need a world_to_camera, and there is none
-  bool leaves_normals_ = false;  // frames are opened without normals, which the camera cannot turn
+  bool lacks_camera_ = false;    // frames are opened with a stand-in
+  bool lacks_matrix_ = false;    // normals need a world_to_camera by the pixels, and there is none
+  bool leaves_normals_ = false;  // frames are opened without normals, for want of a matrix
   std::map<int, FrameSource> opened_;
 };
 
-/// The note on the number that a single file's name has, where it decides which camera of a list the frame has. Fails
-/// with ErrorKind::usage where there is such a list and the name has no clear number, and with ErrorKind::input where
-/// the list has no such frame or cannot be read.
+/// The note on the number in a single file's name, if it chooses the frame's camera from a list. Fails with
+/// ErrorKind::usage if the name has no clear number, and with ErrorKind::input if the list has no such frame or cannot
+/// be read.
 Notes notes_on_number(const FramePlan& plan);
 
-/// The frames, files, size and memory of a run. Computes and writes nothing. Fails as the run would on settings, names,
-/// and a single frame that cannot be read as it is. is_wedge: it writes none of the outputs, and needs a frame whole.
+/// The text of --dry-run: frames, files, size and memory. Fails as the run would on settings, names, and a single frame
+/// that cannot be read. is_wedge: for a run without outputs that needs whole frames.
 std::string plan_text(FirstLook& look, bool is_wedge = false);
 
 }  // namespace alcove

@@ -18,48 +18,48 @@
 
 namespace alcove {
 
-/// The frame that the settings name, with all that its outputs need; nothing but headers is read.
-/// Fails with ErrorKind::input where it lacks what an output is made from, with ErrorKind::usage where --roi is not
-/// within it, or the estimator cannot use its --deep.
+/// Opens the frame that the settings name, with all planes that its outputs need; reads headers alone. Fails with
+/// ErrorKind::input if it lacks a plane for an output, with ErrorKind::usage if --roi is not within it or the estimator
+/// cannot use its --deep.
 FrameSource open_frame(const Settings& settings, int frame);
 
-/// What is written of a frame: its region, or all of it.
+/// The window that is written of a frame: its region, or all of it.
 const Window& written_of(const FrameSource& source);
-/// The window of the files that it is written to: as many pixels fewer as the frame is supersampled.
+/// The window of its output files, smaller by the factor of supersampling.
 Window written_picture(const FrameSource& source);
 
-/// Planes of a whole frame as they were read, in host memory; empty: those were not.
+/// Decoded planes of a whole frame, in host memory; empty: not read.
 using ReadPlanes = RawPlaneArray<std::vector<float>>;
-/// Those that were read for a frame which is computed at once.
+/// The decoded planes of a frame that is computed at once.
 ReadPlanes kept_planes(const FrameInputs& inputs);
-/// Reads all planes where `known` are not all of them, and settles what is open about the frame, in so many bytes.
+/// Reads all planes unless `known` has them, and settles the frame's reading, within so many bytes.
 void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& known, std::uint64_t most_bytes);
 
-/// Puts the planes over a window into upload buffers: from `known`, if that is all planes of the whole frame, or else
-/// from the files. Settles what is open about the frame, which must be read whole then, and says what they mean.
+/// Puts the planes over a window into upload buffers, from `known` if it has all planes, else from the files, and gives
+/// them with their meaning. Settles the frame's reading if it is open: then the window must be the whole frame.
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& window, const Settings& settings,
                        int frame, const ReadPlanes* known = nullptr);
 
 /// The attribute that holds the warnings of an output's frame; an output without warnings has none.
 inline constexpr const char* kNotesAttribute = "alcove/notes";
 
-/// The attribute that tells what frames and views a frame has taken surfaces from.
+/// The attributes that list the frames and views that a frame has used.
 inline constexpr const char* kHiddenAttribute = "alcove/hidden";
 inline constexpr const char* kAccumulatedAttribute = "alcove/accumulated";
 
-/// What the header of an output says of its making.
+/// The origin of an output, for its header.
 struct Provenance {
   std::string options, device;  // the digest of the settings, and the device's name
   std::string inputs = {};      // see InputIdentities
   std::string notes = {};       // see header_text()
-  std::string others = {};      // see text_of(); empty: it takes none
-  std::string estimates = {};   // the same, of those that the AO is a mean of
+  std::string others = {};      // see text_of(); empty: none are used
+  std::string estimates = {};   // the same, of the averaged estimates
 };
 
 /// The radii of all scales, as headers have them; "" where none is known.
 std::string radius_text(const EstimatorSettings& estimator);
 
-/// The text that tells in a picture what it was made with: whoever finds it there need not make the picture again.
+/// The text in a picture that identifies its options and inputs: --resume keeps a picture that has it.
 std::string made_by(const std::string& options, const std::string& inputs);
 
 /// The results over a window, plane by plane: the AO file's channels, then the composite's, the AO last where it is one
@@ -67,17 +67,16 @@ std::string made_by(const std::string& options, const std::string& inputs);
 std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,
                                                   const OutputSettings& settings);
 
-/// The bytes that putting a composite together takes beside what is computed, where its window is not that of the AO;
-/// else 0.
+/// The bytes for assembling a composite whose window is not that of the AO; else 0.
 std::uint64_t composite_bytes(const FrameSource& source);
 
 /// Writes the next rows of a composite, plane by plane.
 using WriteRows = std::function<void(std::span<const std::span<const float>>)>;
 
-/// Puts the rows of the composite's window into its file while those of another window are computed.
+/// Writes a composite whose window is not the computed one, row by row.
 class CompositeRows {
  public:
-  /// The source must stay. `computed` is the window of the rows that come, of so many planes.
+  /// The source must outlive this. `computed`: the window of the rows to come, of so many planes.
   CompositeRows(FrameSource& source, const Window& computed, std::size_t planes, WriteRows write_rows);
 
   /// The next computed rows, as wide as that window; the beauty's rows above them go first.
@@ -98,14 +97,14 @@ class CompositeRows {
 /// The AO file and the composite, written from top to bottom, each whole or not at all. Fails with ErrorKind::output.
 class FrameWriter {
  public:
-  /// The source must stay: where the beauty has another window than what is written of the frame, the rest is read.
+  /// The source must outlive this: it is read where the beauty's window is larger than the written one.
   FrameWriter(FrameSource& source, const Settings& settings, const Provenance& provenance);
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
-  /// The next rows of result_planes(), as wide as what is written of the frame.
+  /// The next rows of result_planes(), as wide as the written window.
   void write(std::span<const std::span<const float>> planes);
-  /// `notes` is what is noted now that all is computed; see header_text().
+  /// `notes`: those after all is computed; see header_text().
   void finish(const std::string& notes);
   void finish() { finish(notes_); }
 

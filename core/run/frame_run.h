@@ -1,4 +1,4 @@
-// One frame of a run: read, computed and written, whole or in tiles; and the sums of what its parts took.
+// One frame of a run: read, computed and written, whole or in tiles; and the sums over its parts.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -22,18 +22,18 @@
 
 namespace alcove {
 
-/// Counts over all windows of one frame. What the windows share is counted in each.
+/// Counts over all windows of one frame. Pixels that windows share count in each.
 class FrameTally {
  public:
   explicit FrameTally(FrameReport& report) : report_(report) {}
 
   /// A window is about to be computed.
   void begin(const Window& computed);
-  /// What was read of that window; `written` is all that is written of the frame.
+  /// The planes read for that window; `written`: the window that is written of the frame.
   void add_inputs(const FrameSource& source, const Window& computed, const FrameInputs& inputs, const Window& written);
   /// The cost of preparing others comes before the passes of the frame.
   void add_others(const PreparationCost& cost);
-  /// The findings of the frame's own estimate, where it is a mean of many; `others`: those it takes beside it.
+  /// Counts of this frame's estimate, if frames are averaged; `others`: of the other frames that it uses.
   void add_estimate(const FrameReport& estimate, const Others& others);
   void add_passes(std::span<const gpu::PassTime> passes);
   /// is_same: all results were kept from the frame before.
@@ -47,7 +47,7 @@ class FrameTally {
   void finish(const FrameSource& source, const Settings& settings);
 
  private:
-  /// How many pixels have had an estimate; where each has its own, how many surfaces ask for one.
+  /// The number of pixels with an estimate; if each has its own, of pixels that show surfaces.
   double estimates_of(const EstimatorSettings& settings) const;
   void note_repairs(const FrameSource& source);
   void add(const gpu::PassTime& pass, gpu::PassTime& sum);
@@ -64,9 +64,9 @@ class FrameTally {
 
 // The frame.
 
-/// The device time of a look: a run with it alone takes the sum.
+/// The device time of a look; the sum is that of a run with it alone.
 struct LookTime {
-  double estimate_ms = 0;  // of what all looks share, with the passes of other frames
+  double estimate_ms = 0;  // of the passes that all looks share, and of other frames
   double own_ms = 0;
 };
 /// Takes the results of the look of that number, over a window.
@@ -80,27 +80,27 @@ struct RunContext {
   InputIdentities& identities;                  // of the plan
   const FrameSource* settled = nullptr;         // all frames are read as this one; null: each by itself
   const DisplayTransform* transform = nullptr;  // for the preview of a composite
-  SharedFrames* shot = nullptr;                 // where frames take anything from others
-  bool takes_means = false;                     // a frame is the mean of many estimates
+  SharedFrames* shot = nullptr;                 // if frames use others
+  bool takes_means = false;                     // frames are averaged
   Provenance provenance;                        // of settings whose camera file is the same for all frames
   std::function<bool()> stop = {};              // asked between steps: true drops the frame
   // Takes the preview of a frame instead of its file; may be empty. Any thread calls it.
   std::function<void(int frame, const ShownPicture&)> take_preview = {};
-  // Instead of files, of a frame that is computed at once: takes the results of these settings one after the other;
-  // may be empty. They differ from the plan's in the shaping and the composite's look alone, so that one estimate
-  // serves them all. A frame that is tried again hands them over again.
+  // Looks that take_look receives one after the other, instead of files, of a frame that is computed at once. They
+  // differ from the plan's settings in the shaping and the composite's look alone, so one estimate serves all. A frame
+  // that is tried again delivers them again.
   std::vector<Settings> looks = {};
   TakeLook take_look = {};
   ReadPlanes* planes = nullptr;  // of the only frame, from run to run; null: they are read
 };
 
-/// The report of a frame that nothing was done for yet.
+/// The report of a frame before any work.
 FrameReport report_of(const FramePlan& plan, int frame);
 
-/// Told which part of how many of a frame is computed, and which share of that part is done, 0 to 1.
+/// Called with the part that is computed, the number of parts, and the share of that part that is done, 0 to 1.
 using PartWatch = std::function<void(int part, int parts, double done)>;
 
-/// Reads, computes and writes one frame on a lane, within the room. Never fails: the report says what went wrong.
+/// Reads, computes and writes one frame on a lane, within the room. Never throws: the report has the error.
 FrameReport run_frame(Lanes& lanes, const RunContext& run, const Room& room, int frame, const PartWatch& watch);
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// Lanes: where one frame after the other is computed.
+// Lanes: each computes one frame after the other.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace alcove {
 
-/// Where one frame after the other is computed: its buffers, and what they still hold.
+/// The buffers of one frame after the other, and their contents from the frame before.
 struct Lane {
   explicit Lane(gpu::Device& device) : gpu(device) {}
 
@@ -21,9 +21,8 @@ struct Lane {
   EstimateSlots estimates;
 };
 
-/// One lane for each frame in flight, whose buffers are kept from frame to frame. Each lane on a CPU has a device of
-/// its own, so that every frame has a core of its own from its first byte to its last, and no frame waits for another.
-/// A GPU is shared by all lanes.
+/// One lane for each frame in flight; its buffers are kept from frame to frame. On a CPU each lane has a device of its
+/// own, so that every frame has a core from its first byte to its last. A GPU is shared by all lanes.
 class Lanes {
   struct Place {
     gpu::Device* device;
@@ -37,10 +36,10 @@ class Lanes {
   int count() const;
   int validation_messages() const;
 
-  /// Changes the number of lanes. The buffers of those that nobody uses are given back.
+  /// Changes the number of lanes. Idle lanes release their buffers.
   void set_count(int count);
 
-  /// A lane that nobody else uses. At most count() threads may have one at once.
+  /// Exclusive use of a lane. At most count() threads may have one at once.
   class Lease {
    public:
     explicit Lease(Lanes& lanes);
@@ -49,7 +48,7 @@ class Lanes {
     ~Lease();
 
     Lane& lane() { return *place_.lane; }
-    /// Leaves the lane its buffers for the next frame; else they are given back with it.
+    /// Keeps the lane's buffers for the next frame; else they are released with the lease.
     void keep_buffers() { keeps_buffers_ = true; }
 
    private:

@@ -1,5 +1,5 @@
-// How much memory a frame takes, known before its pixels are read; how much the frames of a run may take, and for how
-// many of them at once that is enough.
+// The memory of a frame, known before its pixels are read; the memory limit of a run, and the number of frames at once
+// that it allows.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -31,14 +31,14 @@ struct FrameMemory {
   /// Upper bounds, in bytes.
   struct Bytes {
     std::uint64_t device;  // of the device's own memory: all buffers
-    std::uint64_t host;    // buffers or their staging twins, and what is read, shown and written
+    std::uint64_t host;    // buffers or their staging twins, and planes that are read, shown and written
     std::uint64_t buffer;  // of the largest buffer
   };
   /// Rehearses the chain for a window.
   Bytes of(const Window& computed) const;
-  /// What the codecs of the frame's files take of host memory where so much is left for the frame.
+  /// Host memory of the codecs of the frame's files if `room` bytes are left for the frame.
   std::uint64_t codec_bytes(std::uint64_t room) const;
-  /// What settings say of it, for a radius of 1 where there is none yet.
+  /// Takes over the settings; a radius that is unknown yet counts as 1.
   void take(const Settings& settings);
 
   Reading reading;
@@ -66,16 +66,16 @@ std::uint64_t raw_bytes_of(const FrameSource& source);
 struct RunMemory {
   std::uint64_t program_bytes = 0;  // of host memory: the process with one lane, and without frames
   std::uint64_t lane_bytes = 0;     // of host memory: each further lane without its frame
-  std::uint64_t host_bytes = 0;     // what is left for all frames of one lane
+  std::uint64_t host_bytes = 0;     // left for all frames of one lane
   std::uint64_t device_bytes = 0;   // of buffers in the device's own memory; without a limit where it is the host's
   bool is_chosen = false;           // the user has said how much
 };
 
-/// As long as the device is not known, it is taken for the CPU, which is what takes the most of the host's memory.
+/// For an unknown device: assumes the CPU, which needs the most host memory.
 RunMemory memory_of_host(const Settings& settings);
 RunMemory memory_for_frames(const Settings& settings, const gpu::DeviceInfo& device);
 
-/// The number of frames of which this window is computed that the memory has room for, at least 1.
+/// The number of frames that fit into the memory if this window of each is computed; at least 1.
 std::uint64_t frames_in(const RunMemory& memory, const FrameMemory& frame, const Window& computed);
 
 /// The memory that one frame in flight may take.
@@ -86,7 +86,7 @@ struct Room {
   std::uint64_t device_bytes = kEndless;  // of the device's own memory
   std::uint64_t buffer_bytes = 0;         // of one buffer of the device
   std::uint64_t pixels = kEndless;        // at once: fewer than those for which the device had no memory
-  // For messages: what the process takes without frames, and whether the user has said how much it may take.
+  // For messages: the memory of the process without frames, and whether the user has set the limit.
   std::uint64_t program_bytes = 0;
   bool is_chosen = false;
 };
@@ -94,9 +94,9 @@ struct Room {
 /// The room of each of `lanes` frames in flight.
 Room room_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& device);
 
-// What frames see of each other.
+// Other frames of a shot.
 
-/// The number of others that a frame takes at most.
+/// The largest number of other frames and views that a frame uses.
 std::size_t most_others(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings);
 
 /// The memory of a frame of the plan, with the share of its lane in its others.
@@ -121,13 +121,13 @@ int frames_at_once(const RunMemory& memory, const FramePlan& plan, const FrameSo
 /// The threads of the process: as many as --threads says, else one per core.
 int threads_of(const DeviceSettings& settings);
 
-/// Fails with ErrorKind::usage where --memory has no room for the frames around one, naming how many it has room for,
-/// and what would be enough; with ErrorKind::device where nobody has said --memory.
+/// Fails with ErrorKind::usage if --memory has no room for the frames around one, naming the number that fits and the
+/// memory that would be enough; with ErrorKind::device without --memory.
 void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
                              const Settings& settings, std::span<const int> frames);
 
-/// Fails with ErrorKind::device where frames that others take from have planes that no buffer of `most_bytes` holds:
-/// they are prepared whole, and only frames that are computed are cut into tiles.
+/// Fails with ErrorKind::device if a plane of a frame does not fit into a buffer of `most_bytes`. Frames that others
+/// use are prepared whole; only frames that are computed are cut into tiles.
 void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const Settings& settings);
 
 }  // namespace alcove

@@ -10,15 +10,15 @@
 
 namespace alcove {
 
-/// Takes the report of a frame. While it waits, for a terminal that stands still, say, frames go on.
+/// Takes the report of a frame. Frames go on while it blocks, as on a stopped terminal.
 using TakeReport = std::function<void(FrameReport&&)>;
-/// Told about once a second how far the frames in flight are; may be empty.
+/// Called about once a second with the progress of the frames in flight; may be empty.
 using TakeProgress = std::function<void(std::span<const FrameProgress>)>;
 
-/// Runs the frames on the lanes, in any order, until one fails that ends the run; calls both functions on this thread,
-/// the first in the order of the frames. Where the device has no memory for a frame, the number of lanes is halved,
-/// down to one, and then the window that is computed at once; the frame is computed again, and says so in a note. Later
-/// frames begin with what is left then.
+/// Runs the frames on the lanes, in any order, until a failure ends the run. Calls both functions on this thread, the
+/// first in the order of the frames. If the device has no memory for a frame, the number of lanes is halved, down to
+/// one, and then the window that is computed at once. The frame is computed again, with a note; later frames keep these
+/// limits.
 void run_pipeline(Lanes& lanes, const RunContext& run, const Room& room, std::span<const int> frames,
                   const TakeReport& take_report, const TakeProgress& take_progress);
 

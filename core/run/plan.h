@@ -1,4 +1,4 @@
-// Finds, before any work, which frames a run computes, and from which files to which.
+// The frames of a run and the names of their files, found before any work.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -23,7 +23,7 @@ struct FramesAround {
 constexpr int kWholeShot = std::numeric_limits<int>::max();
 /// The number of frames to each side that settings ask for.
 int around_of(const InputSettings& settings);
-/// The option by which frames take something from others of the shot; null: they do not.
+/// The option that makes frames use others of the shot; null: none does.
 const char* shot_option(const InputSettings& settings);
 
 /// A run's frames and the names of their files.
@@ -42,30 +42,29 @@ class FramePlan {
   const std::vector<int>& frames() const { return frames_; }
   /// The frames of all chunks.
   const std::vector<int>& all() const { return all_; }
-  /// The frames that are left out, since an input is missing; with the first chunk, the holes too.
+  /// Frames left out for want of an input; with the first chunk, the holes too.
   const std::vector<int>& missing() const { return missing_; }
-  /// The numbers between the frames on the disk that have no file; none where the settings list the frames. Frames on
-  /// every second or third number have none where these are their only steps.
+  /// The numbers between the frames on the disk that have no file; none if the settings list the frames. A constant
+  /// step of two or three leaves no holes.
   const std::vector<int>& holes() const { return holes_; }
-  /// The frames on the disk by the first input with a pattern, whichever are computed; none without a pattern.
+  /// All frames on the disk by the first input with a pattern; none without a pattern.
   std::vector<int> on_disk() const;
   /// A few frames of the whole sequence, from its beginning to its end, whatever the chunk. Guesses are made by the
   /// first of them that shows enough, so that all chunks make the same guesses.
   const std::vector<int>& evidence() const { return evidence_; }
-  /// Up to `count` frames to each side of one, in the shot: that is all frames on the disk and the holes between them,
-  /// whichever of them are computed, so that no choice of frames and no chunk changes a frame.
+  /// Up to `count` frames of the shot to each side. The shot is all frames on the disk and the holes between them, so
+  /// neither --frames nor --chunk changes a result.
   FramesAround around(int frame, int count) const;
-  /// As many frames as lie so far to each side of one within the shot; near its ends more of the other side.
+  /// The 2 `count` frames nearest to `frame`, those without a file left out, shifted inward near the ends of the shot.
   std::vector<int> nearest(int frame, int count) const;
-  /// Of so many frames to each side, that one included and near the shot's ends more of the other side, all that the
-  /// settings have a frame's AO be the mean of; none without --accumulate.
+  /// The 2 N + 1 frames averaged for `frame` by --accumulate N, shifted inward near the ends of the shot; else none.
   FramesAround accumulated(int frame) const;
-  /// Whether `other` lies so near a frame.
+  /// Whether `other` is one of them.
   bool is_accumulated(int other, int frame) const;
-  /// How many frames make a mean at most; and the number of a frame among as many, which differ for all of a mean.
+  /// The size of a mean, and a frame's slot in it; slots in one mean are distinct.
   int turns() const { return 2 * settings_.input.accumulate + 1; }
   int turn_of(int frame) const;
-  /// Those that lie around frames to compute and have no file; none but where the settings say to skip them.
+  /// Frames around those to compute that have no file, if the settings skip them.
   std::vector<int> missing_around() const;
   /// All of the shot.
   const std::vector<int>& shot() const { return shot_; }
@@ -75,7 +74,7 @@ class FramePlan {
   Settings at(int frame) const;
   /// Whether the frames of a sequence share one --preview, the contact sheet.
   bool has_contact_sheet() const { return has_contact_sheet_; }
-  /// Gives all frames these radii, in scene units, instead of those that a frame was to tell.
+  /// Gives all frames these radii, in scene units, instead of --radius auto or a percentage.
   void set_radii(const std::vector<double>& radii);
 
  private:
@@ -111,8 +110,8 @@ class FramePlan {
   std::set<int> absent_;  // of the shot
 };
 
-/// The pattern of the sequence that a single file belongs to by the number in its name, such as shot.####.exr, be it
-/// a frame's or maybe that of a shot; "" without a number, and for a version or a size.
+/// The pattern of the sequence that a single file belongs to by the number in its name, such as shot.####.exr; ""
+/// without a number, and for a version or a size. The number may be that of a frame or of a shot.
 std::string pattern_for(const std::string& path);
 
 /// The number of a single file's frame by its name (core/formats/sequence.h); 0 where there is none.

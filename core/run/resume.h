@@ -1,5 +1,4 @@
-// Finds out whether an earlier run has left a frame whole; the digest of options, by which it knows whether a file was
-// made with those of this run.
+// --resume: whether a frame's outputs exist, are whole, and were made with the options of this run, by their digest.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -15,19 +14,18 @@
 
 namespace alcove {
 
-/// 16 hexadecimal digits that change with every setting that changes the result, as the table of options says.
+/// 16 hexadecimal digits, a hash of all settings that change the result by the table of options.
 std::string options_digest(const Settings& settings);
 
-/// The identities of all that the frames of a plan are made from: their inputs_of(), and those of the frames around
-/// them that they take others from. An identity tells the contents of files from others, wherever they lie: a hash of
-/// each or, of an EXR or a large file, of its size, beginning and end. The beginning of an EXR file holds the places of
-/// all its chunks. Never fails: a file that cannot be read counts as empty. Each file is looked at once. Any thread may
-/// ask.
+/// Identities of the inputs of a plan's frames: inputs_of() of each, and of the frames around it that it uses. An
+/// identity is a hash of the contents of the files or, of an EXR or a large file, of its size, beginning and end; the
+/// beginning of an EXR file holds the places of all its chunks. A file that cannot be read counts as empty. Each file
+/// is read once. Any thread may ask.
 class InputIdentities {
  public:
   explicit InputIdentities(const FramePlan& plan) : plan_(plan) {}
   std::string of(int frame) { return all_of(frame).text; }
-  /// When the last of those files was written whose bytes are not all looked at.
+  /// The latest time stamp of the files that are hashed in part.
   std::filesystem::file_time_type newest(int frame) { return all_of(frame).newest; }
 
  private:
@@ -47,11 +45,11 @@ class InputIdentities {
 /// Frames to compute.
 struct FramesToCompute {
   std::vector<int> frames;
-  Notes notes;  // why outputs that are there are made again
+  Notes notes;  // why existing outputs are made again
 };
 
-/// The frames of the plan to compute: all but those whose outputs an earlier run has left whole, where the settings say
-/// to resume it. `digest` is that of the first frame.
+/// The frames of the plan to compute: with --resume all but those with whole and current outputs. `digest` is that of
+/// the first frame.
 FramesToCompute frames_to_compute(const FramePlan& plan, const std::string& digest, InputIdentities& identities);
 
 }  // namespace alcove

@@ -14,13 +14,12 @@ namespace alcove {
 /// Whether the preview is the composite as a display shows it, and not the AO as data.
 bool shows_composite(const OutputSettings& output);
 
-/// All files that a frame is made from: those that options name, and those that follow from them, which are manifests
-/// of Cryptomattes and the configuration of the display, but not the tables that it names. Opens files with
-/// Cryptomattes; one that cannot be read has no manifest.
+/// All input files of a frame: those that options name, manifests of Cryptomattes, and the display configuration
+/// without the tables that it names. Opens files with Cryptomattes; an unreadable one has no manifest.
 std::vector<NamedFile> inputs_of(const Settings& frame);
 
-/// Adds the inputs of the frames of all chunks, of the frames around them, and of all that are on the disk: each may be
-/// computed by a run of its own.
+/// Adds the inputs of the frames of all chunks, of the frames around them, and of all frames on the disk: another run
+/// may compute any of them.
 void add_inputs(FileUses& uses, const FramePlan& plan);
 
 /// Adds all that the run writes. `run` names it in messages where there are several.
@@ -39,8 +38,8 @@ void require_endings(const OutputSettings& output);
 /// Makes the folders of these files, unless the settings say not to. Fails with ErrorKind::output.
 void make_folders(const std::vector<NamedFile>& files, const OutputSettings& settings);
 
-/// The folders of a run's files that are not there before it. The destructor removes those that are empty, so that
-/// nothing is left of a run that is refused only once its frames are read.
+/// The folders that a run creates. The destructor removes the empty ones, so that a run that is refused after reading
+/// leaves nothing.
 class NewFolders {
  public:
   explicit NewFolders(const FramePlan& plan);
@@ -49,7 +48,7 @@ class NewFolders {
   ~NewFolders();
 
  private:
-  std::set<std::string> folders_;  // what lies in another one comes after it
+  std::set<std::string> folders_;  // parents first
 };
 
 }  // namespace alcove

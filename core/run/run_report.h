@@ -1,4 +1,4 @@
-// What happened to the frames of a run: for people, for farms, and as JSON.
+// Reports on the frames of a run: for people, for farms, and as JSON.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,9 +19,9 @@ namespace alcove {
 enum class FrameState { done, failed, kept, dropped };
 const char* name_of(FrameState state);
 
-/// Visibility that is taken, added up over the receivers of an estimate of the largest radius.
+/// Blocked visibility, summed over the receivers of an estimate of the largest radius.
 struct TakenVisibility {
-  double by_completed = 0;  // by surfaces where they are only guessed to go on
+  double by_completed = 0;  // by completed parts of surfaces
   double whole = 0;
 
   double completed_share() const { return whole > 0 ? by_completed / whole : 0; }
@@ -29,11 +29,11 @@ struct TakenVisibility {
 
 /// Numbers of surfaces behind the first ones.
 struct HiddenCounts {
-  std::uint64_t surfaces = 0;  // that were kept
-  std::uint64_t dropped = 0;   // that lie behind those, and were not
+  std::uint64_t surfaces = 0;  // kept
+  std::uint64_t dropped = 0;   // behind those
 };
 
-/// What happened to one frame.
+/// The report on one frame.
 struct FrameReport {
   int frame = 0;
   FrameState state = FrameState::dropped;
@@ -44,12 +44,12 @@ struct FrameReport {
   double total_ms = 0;
   std::vector<gpu::PassTime> passes;
   std::uint64_t pixels = 0, sky_pixels = 0, repaired_pixels = 0;
-  std::uint64_t rows_read = 0;  // of the input that were decoded, each as often as it was
-  // of the shot, that it takes surfaces from; none: the run does not look around frames
+  std::uint64_t rows_read = 0;  // decoded rows of the input, each as often as it was decoded
+  // frames of the shot whose surfaces it uses; none without --around
   std::optional<std::vector<int>> frames_around;
-  // pixels of others that it does not take: they move, or no other frame confirms them
+  // pixels of others that are left out: they move, or no other frame confirms them
   std::uint64_t moved = 0, unconfirmed = 0;
-  int parts = 1;  // the frame was computed in so many; what they share is counted in each
+  int parts = 1;  // of the frame; pixels that they share count in each
   /// Numbers of tiles of 8 x 8 pixels.
   struct Tiles {
     std::uint64_t sky = 0;       // nothing but sky
@@ -59,27 +59,27 @@ struct FrameReport {
   // The sum of squared errors of an estimate with a tolerance, and the pixels that it is over.
   double error_squares = 0, error_pixels = 0;
   std::optional<TakenVisibility> occlusion;  // of a frame with an estimate, where --stats asks for it
-  std::optional<HiddenCounts> hidden;        // of a frame of which more than the first surfaces is known
-  // Pixels with an estimate of their own, by the lattices that they lie on, of spacing 16, 8, 4, 2 and 1, and on no
-  // wider one; where pixels share estimates. Of several radii for the largest.
+  std::optional<HiddenCounts> hidden;        // of a frame with known hidden surfaces
+  // Pixels with an estimate of their own, by the widest lattice that they lie on, of spacing 16, 8, 4, 2 and 1; if
+  // pixels share estimates. Of several radii for the largest.
   std::optional<std::array<std::uint64_t, kLattices>> estimates;
   std::string search;  // along slices, a word of --search; empty: the estimator has no such choice
-  // Depth samples, averaged over all pixels: those that were taken where pixels share estimates, else what the settings
+  // Depth samples, averaged over all pixels: the actual ones if pixels share estimates, else those that the settings
   // ask for at surfaces.
   double samples_per_pixel = 0;
-  double accumulated = 0;            // the sum over its pixels of how many frames' estimates each is the mean of
+  double accumulated = 0;            // the number of averaged estimates, summed over its pixels
   std::uint64_t pixels_at_once = 0;  // the most that were computed at once
-  Notes notes;                       // what the user should know, also what was noted of the whole sequence
+  Notes notes;                       // on the frame, and on the whole sequence
   std::optional<Error> error;        // why it failed
   bool device_lost = false;          // it failed since its device was lost
   bool out_of_memory = false;        // it failed since the device had no memory for it
 };
 
-/// How far a frame in flight is.
+/// The progress of a frame in flight.
 struct FrameProgress {
   int frame = 0;
   std::string input;
-  double seconds = 0;  // since it was begun; 0 once it has ended, while it waits for earlier ones to be told
+  double seconds = 0;  // since its beginning; 0 once it has ended, while it waits for the reports of earlier ones
   int part = 0;        // that is being computed; 0: none yet
   int parts = 1;       // that the frame is computed in
   double done = 0;     // the share of the frame that is computed, 0 to 1
@@ -89,7 +89,7 @@ struct RunReport {
   bool is_sequence = false;
   std::string input;                 // of a sequence with the place for the frame number
   Notes notes;                       // on all frames and on how they are computed, as they become known
-  std::vector<std::string> presets;  // files that settings are from, the project's and those that presets build on too
+  std::vector<std::string> presets;  // files of settings, with the project's and those that presets build on
   std::string device, options;       // options: the digest that the outputs carry
   bool on_cpu_by_default = false;    // nobody asked for the CPU, and there is no GPU
   int at_once = 0;                   // the frames in flight, at the end of the run
@@ -111,7 +111,7 @@ std::string frame_json(const FrameReport& frame);
 /// A list of objects with `code`, `level` and `text`, on one line.
 std::string notes_json(const Notes& notes);
 
-/// One sentence on the whole run, the same words every time, for those who search logs.
+/// One sentence on the whole run, in fixed words, for searches in logs.
 std::string summary_of(const RunReport& report);
 
 }  // namespace alcove

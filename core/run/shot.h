@@ -23,14 +23,14 @@
 
 namespace alcove {
 
-/// Values of frames that several frames take: each is made once, by whoever needs it first. Any thread may ask. One
-/// that needs what another one makes makes what nobody is at, and only then waits.
+/// Values of frames that several frames take: each is made once, by the first thread that needs it. Any thread may ask.
+/// A thread whose value is being made elsewhere makes another missing value first, then waits.
 template <class T>
 class MadeOnce {
  public:
   using Value = std::shared_ptr<const T>;
 
-  /// Those of the frames, in their order. Fails as `make` does: the next one that needs the value tries again.
+  /// The values of the frames, in their order. Fails as `make` does; the next thread that needs the value tries again.
   std::vector<Value> of(std::span<const int> frames, const std::function<T(int)>& make) {
     std::vector<Value> values(frames.size());
     std::unique_lock lock(mutex_);
@@ -51,13 +51,13 @@ class MadeOnce {
     }
   }
 
-  /// Lets the others go.
+  /// Drops all values whose frame is not kept.
   void keep(const std::function<bool(int)>& is_kept) {
     const std::lock_guard lock(mutex_);
     std::erase_if(values_, [&](const auto& value) { return value.second && !is_kept(value.first); });
   }
 
-  /// The number of those that are kept or in the making.
+  /// The number of values that exist or are being made.
   std::size_t count() const {
     const std::lock_guard lock(mutex_);
     return values_.size();
@@ -82,7 +82,7 @@ class MadeOnce {
 
   mutable std::mutex mutex_;  // of all below
   std::condition_variable changed_;
-  std::map<int, Value> values_;  // null: in the making
+  std::map<int, Value> values_;  // null: being made
 };
 
 /// The first surface that one view of a frame sees, in host memory.
@@ -105,11 +105,11 @@ struct Movement {
 /// Surfaces that a frame takes from others.
 struct Others {
   std::vector<OtherView> seen;
-  std::vector<int> frames, missing;  // around it: those that it takes, and those that are not there
-  std::vector<std::string> views;    // that it takes of its own instant
+  std::vector<int> frames, missing;  // neighbouring frames that it uses, and those without a file
+  std::vector<std::string> views;    // other views of its own instant
 };
 
-/// Names them, for a header; empty where it takes none: "frames 3-5, 7; missing 6; views right".
+/// The text for a header; empty without others: "frames 3-5, 7; missing 6; views right".
 std::string text_of(const Others& others);
 
 /// The estimate of one frame, in host memory: planes over all of it.
@@ -122,21 +122,21 @@ struct EstimatedFrame {
   bool has_moving = false;            // some depth is below 0
   std::vector<std::uint32_t> normal;  // the same
   std::vector<float> values;          // planes: see EstimateSet
-  FrameReport report;                 // what its estimate took and found
-  Others others;                      // the names of those that it takes what is hidden from
+  FrameReport report;                 // times and counts of its estimate
+  Others others;                      // the names of the frames and views that show its hidden surfaces
 };
 
-/// The estimates that a frame is the mean of, its own among them.
+/// The estimates whose mean a frame is, its own among them.
 struct TakenEstimates {
-  ReadPlanes read;  // of the frame itself; without planes: nobody kept them
+  ReadPlanes read;  // of the frame itself; empty: not kept
   std::vector<std::shared_ptr<const EstimatedFrame>> of;
-  std::vector<int> missing;  // frames that are not there
+  std::vector<int> missing;  // frames without a file
 
   /// The estimate of the frame itself.
   const EstimatedFrame& own(int frame) const;
 };
 
-/// Names them, for a header; empty where there are none: "frames 3-7; missing 6".
+/// The text for a header; empty without estimates: "frames 3-7; missing 6".
 std::string text_of(const TakenEstimates& taken);
 
 /// Passes run and rows read for other frames.
@@ -149,40 +149,39 @@ struct PreparationCost {
 struct EstimateRoom {
   gpu::Recorder& gpu;
   const Room& room;
-  // Told which window of an estimate is computed, before each; may throw, which ends it.
+  // Called with each window of an estimate before it is computed; an exception ends the estimate.
   std::function<void(const Window&)> begin = {};
 };
 
-/// Fails with ErrorKind::input where nobody knows where a frame's camera stands.
+/// Fails with ErrorKind::input if the position of a frame's camera is unknown.
 void require_place(const FrameSource& source, int frame, const char* option);
 
-/// Whether frames look at others of the shot for more than their estimates; and whether they look at these or at views.
+/// takes_frames: whether frames use surfaces or movement of other frames; takes_others: of other frames or views.
 bool takes_frames(const InputSettings& settings);
 bool takes_others(const InputSettings& settings);
 
-/// Frames that are prepared and estimated, and kept for as long as a frame takes them that is being computed, or the
-/// next one: each is made once where frames that lie beside each other are computed after each other. In any other
-/// order memory is bounded all the same, and what comes late is made again. What one frame takes from others is the
-/// same whatever lane asks, and in whatever order.
+/// Prepared and estimated frames. A frame is kept while one that uses it is being computed or comes next. If neighbours
+/// are computed one after the other, each frame is made once. In any other order memory is bounded all the same, and
+/// late frames are made again. The results depend neither on the lane that asks nor on the order.
 class SharedFrames {
  public:
-  /// `frames` are those that are to be computed, in their order; each must be told of by begin() and done(). All are
-  /// read as `settled` is; null: each by itself.
+  /// `frames`: the frames to compute, in their order; begin() and done() must be called for each. All are read as
+  /// `settled` is; null: each by itself.
   SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames);
 
-  /// Gives what a frame takes from others, in upload buffers of the recorder, which is free before and after. Fails
-  /// with ErrorKind::input, naming the file, where one of them cannot be read or its camera says not where it stands.
+  /// Gives the surfaces that others show of a frame, in upload buffers of the recorder, which is idle before and after.
+  /// Fails with ErrorKind::input, naming the file, if one cannot be read or has no position of its camera.
   Others others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparationCost& cost);
 
   /// Gives the estimates around a frame. Fails as others_of() does.
   TakenEstimates estimates_of(const EstimateRoom& where, int frame, PreparationCost& cost);
 
-  /// From here on what this frame takes is kept.
+  /// Pins the frames that this one needs.
   void begin(int frame);
-  /// No one will ask for what this frame takes.
+  /// Releases them.
   void done(int frame);
 
-  /// Frames whose first surface is kept now, and those whose estimate is.
+  /// The numbers of prepared frames, and of estimates, that are kept now.
   std::size_t seen_count() const { return seen_.count(); }
   std::size_t estimated_count() const { return estimated_.count(); }
 
@@ -199,12 +198,12 @@ class SharedFrames {
                                             PreparationCost& cost) const;
   std::vector<Seen> seen(gpu::Recorder& gpu, const std::vector<int>& frames, PreparationCost& cost);
   Movement movement_of(gpu::Recorder& gpu, int frame, PreparationCost& cost);
-  /// Marks pixels of a frame that move by its motion vectors, and up to `around` pixels beside each, with 1, all others
-  /// with 0. None where the settings name no vectors, and at an end of the shot where they lead out of it. Fails where
-  /// no reading of the vectors is right.
+  /// Marks pixels that move by their motion vectors, and up to `around` pixels beside each, with 1, all others with 0.
+  /// None if the settings name no vectors, and at the end of a shot that they lead out of. Fails if no interpretation
+  /// of the vectors matches the cameras.
   std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparationCost& cost,
                                                              int around);
-  /// `option`: by which it is taken.
+  /// `option`: the one that asks for other frames, for messages.
   SeenFrame prepare(gpu::Recorder& gpu, const InputSettings& settings, int frame, const char* option,
                     PreparationCost& cost) const;
   EstimatedFrame estimate(const EstimateRoom& where, int frame, PreparationCost& cost);
@@ -220,34 +219,33 @@ class SharedFrames {
   std::map<int, ReadPlanes> read_;  // of frames that are estimated, until they are computed themselves
 };
 
-/// The frames that tell what moves in one, of which frames take what stands still.
+/// The frames that show movement in `frame`.
 std::vector<int> judges_of(const FramePlan& plan, int frame);
-/// How many of them there are at most, where so many frames to each side are taken.
+/// Their largest number with `count` frames to each side.
 int most_judges(int count);
 
-/// All frames that change what a frame takes: those around it, and their judges. In order.
+/// All frames that influence a frame: those around it, and the frames that show movement in these. In order.
 std::vector<int> frames_seen_for(const FramePlan& plan, int frame);
-/// The distance of the farthest of them from a frame, in frames of the shot.
+/// The distance of the farthest of them, in frames of the shot.
 int farthest_seen(int count);
 
-/// How many frames of the shot are prepared and estimated for those that are computed in their order, each once.
+/// The numbers of frames of the shot that are prepared and estimated, each once, for frames computed in this order.
 struct SharedCounts {
   std::size_t prepared = 0, estimated = 0;
 };
 SharedCounts shared_counts(const FramePlan& plan, std::span<const int> frames);
 
-/// The upload buffers of a lane that frames' estimates are put into. What is there for one frame is there for the next.
+/// The upload buffers of a lane for estimates. Slots keep their contents between frames.
 class EstimateSlots {
  public:
-  /// Gives the estimates as the frame takes them, for any number of parts of it; none where there are none. No buffer
-  /// is larger than `most_bytes`.
+  /// Gives the estimates for a frame, or for any number of its parts. No buffer is larger than `most_bytes`.
   EstimateSet filled(gpu::Recorder& gpu, const FramePlan& plan, const TakenEstimates& taken, int frame,
                      std::uint64_t most_bytes);
 
  private:
-  using Estimated = std::weak_ptr<const EstimatedFrame>;  // tells whether it is the same one, and keeps none
+  using Estimated = std::weak_ptr<const EstimatedFrame>;  // identifies an estimate without keeping it
   struct Group {
-    const std::byte* buffer = nullptr;  // where it was
+    const std::byte* buffer = nullptr;  // the address at the last call
     std::size_t stride = 0;             // words of a slot
     std::vector<Estimated> held;        // by slot
   };

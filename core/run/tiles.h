@@ -1,5 +1,5 @@
-// Parts of a frame: the surroundings that the AO within them depends on, and how a frame that is too large for memory
-// or device is cut into tiles.
+// Parts of a frame: the surroundings that their AO depends on, and the tiles of a frame that is too large for memory or
+// device.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -19,27 +19,27 @@ namespace alcove {
 /// data window.
 Window region_of(const FrameSource& source, const Region& roi);
 
-/// How far around the parts of a frame its results reach back, by the nearest depth in them: occluders of the radius,
-/// and the filters of the settings.
+/// The margins around parts of a frame within which pixels influence their results: by the radius at the nearest depth,
+/// and by the filters of the settings.
 class Surroundings {
  public:
   /// Gives the depth of whole rows, as it is read.
   using DepthRows = std::function<std::vector<float>(const Window& rows)>;
 
-  /// Of a settled frame, by its depth, which is asked for when it is needed.
+  /// Of a settled frame; `depth` is called when it is needed.
   Surroundings(const FrameSource& source, const Settings& settings, DepthRows depth);
-  /// The same by the depth of all of it, which must stay.
+  /// The same with the depth of the whole frame, which must outlive this.
   Surroundings(const FrameSource& source, const Settings& settings, std::span<const float> depth);
 
-  /// The window to compute for the results in a part to be, to the bit, what they are in the whole frame.
+  /// The window to compute so that the results in a part have the bits of the whole frame.
   Window around(const Window& part);
 
  private:
-  /// How far what is seen beside a block of pixels may be from it, px.
+  /// The reach beside a block of pixels, px.
   struct Reach {
     int x = 0, y = 0;
   };
-  /// What is known of a block once its depths have been looked at.
+  /// The reaches of a block, from its depths.
   struct Block {
     Reach occluders;  // within the radius
     Reach runs;       // within the widest run of an exact search
@@ -49,10 +49,10 @@ class Surroundings {
   const std::vector<Block>& blocks_of(int block_row);
   Window window_of(int block_row, int column) const;
   std::vector<float> nearest_depths(int block_row);
-  /// The window whose depths decide how far the surroundings of a part reach: the part with what filters need.
+  /// The part with the reach of the filters: its depths decide how far the surroundings extend.
   Window direct(const Window& part) const;
   Reach reach(double distance, double nearest, const Window& block) const;
-  /// The window of everything that may be seen beside what a window shows.
+  /// A window enlarged by the reaches of its blocks.
   Window within(Reach Block::*reach, const Window& window);
 
   const FrameSource& source_;
@@ -65,57 +65,55 @@ class Surroundings {
   double radius_;      // scene units
   int filters_;        // px that filters reach
   int lines_;          // px that the lines of an exact search need beyond the radius
-  int pairs_;          // px beyond all these within which solids are closed
-  double widest_run_;  // radii, beyond which they need no more of a run
+  int pairs_;          // px beyond all these for the passes that pair surfaces
+  double widest_run_;  // radii: wider runs block as if infinite
 };
 
 /// Fails with ErrorKind::input where a frame reaches so far that an exact search could not number its lines, however
 /// the frame is cut.
 void require_numbered_lines(const FrameSource& source, const EstimatorSettings& settings);
 
-/// The host memory that a frame needs, in bytes, and the cost of having no more than the least.
+/// The host memory that a frame needs, in bytes, and the cost in time of the least.
 struct MemoryNeeds {
   std::uint64_t least = 0, at_once = 0;
   std::size_t parts = 1;  // with the least
-  double factor = 1;      // pixels that the parts compute, for each that is computed at once
+  double factor = 1;      // pixels that the parts compute, relative to the whole at once
 
   /// "in 62 parts, about 12 times as long".
   std::string cost() const;
 };
 
-/// What decides whether a window can be computed at once.
+/// The limits of a window that is computed at once.
 struct WindowLimits {
   FrameMemory memory;
   Room room;
   int longest_side = std::numeric_limits<int>::max();  // px
-  std::uint64_t kept = 0;                              // bytes of host memory that are taken whatever is computed
+  std::uint64_t kept = 0;                              // bytes of host memory that are in use for any window
 
-  /// The limits of a frame's parts, whose planes stay in host memory as they were read. Fails as refuse() does where
-  /// that has no room for them.
+  /// The limits of a frame's parts while its decoded planes stay in host memory. Fails as refuse() does if they do not
+  /// fit.
   WindowLimits in_parts(FrameSource& source, const Settings& settings) const;
 
-  /// `beside`: bytes of host memory that are taken meanwhile.
+  /// `beside`: further bytes of host memory in use meanwhile.
   bool allow(const Window& computed, std::uint64_t beside = 0) const;
-  /// Why a window is not allowed: a clause for messages.
+  /// The reason why a window is not allowed: a clause for messages.
   std::string why_not(const Window& computed) const;
-  /// Fails for a frame that cannot be computed since this window is too large. `what` says so, and names what would
-  /// mend it beside more memory.
+  /// Fails for a frame whose smallest window is too large. `what` says so, and names remedies other than more memory.
   [[noreturn]] void refuse(const std::string& what, const Window& computed) const;
-  /// The same where so much host memory would do. It is ErrorKind::usage where the user has given less.
+  /// The same if `needs` would be enough. The kind is ErrorKind::usage if the user has given less.
   [[noreturn]] void refuse(const std::string& what, const MemoryNeeds& needs) const;
 
-  /// The --memory that leaves a frame so many bytes, with what codecs take beyond their present bytes where a run has
-  /// them: "395M".
+  /// The --memory that leaves a frame so many bytes, including the growth of the codecs' share: "395M".
   std::string option_for(std::uint64_t bytes) const;
 };
 
-/// What a frame needs, cut into parts or not. It must be settled.
+/// The needs of a settled frame, cut into parts or not.
 MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, const WindowLimits& limits);
-/// The same by a depth that is read for it, row by row. Settles the frame where nobody has.
+/// The same; reads the depth row by row, and settles the frame if it is not settled.
 MemoryNeeds memory_needs(FrameSource& source, const Settings& settings, const WindowLimits& limits);
 
-/// The parts that a frame is computed in within the limits, and their cost. Settles the frame where nobody has. Fails
-/// as tiles_of() does.
+/// The parts of a frame within the limits, and their cost. Settles the frame if it is not settled. Fails as tiles_of()
+/// does.
 MemoryNeeds tiles_within(FrameSource& source, const Settings& settings, const WindowLimits& limits);
 
 /// Rows of tiles from the top, each from the left.

@@ -26,12 +26,12 @@ inline constexpr std::size_t moments_in(uint order) { return order == 0 ? 0 : or
 /// The planes of an AOV of curvature: that of the only radius, or the mean and one for each.
 inline constexpr std::size_t planes_of_curvature(std::size_t radii) { return radii > 1 ? 1 + radii : 1; }
 
-/// The visibility on its way.
+/// The visibility between two passes.
 struct Visibility {
   gpu::Buffer* ao = nullptr;      // a plane; of several radii the mean
-  gpu::Buffer* scales = nullptr;  // a plane for each radius; null: there is one radius, or nobody asked for them
-  // planes of what is blocked, of the largest radius: see moments.glsl; then with curvature two for each radius, of
-  // what the own surface leaves open inside and outside; null: nobody asked for them
+  gpu::Buffer* scales = nullptr;  // a plane for each radius; null: one radius, or not asked for
+  // planes of moments of the blocked directions, of the largest radius: see moments.glsl; then with curvature two for
+  // each radius: the parts that the own surface leaves open inside and outside; null: not asked for
   gpu::Buffer* moments = nullptr;
 };
 

@@ -12,70 +12,70 @@
 
 namespace alcove {
 
-/// Whether the depth of a frame has to tell the radii.
+/// Whether the radii depend on a frame's depth (--radius auto, 5%).
 bool depends_on_depth(const EstimatorSettings& settings);
 /// Puts radii in scene units into the settings.
 void take_radii(EstimatorSettings& settings, const std::vector<double>& radii);
 /// All radii of the settings, from the smallest on; settings.radius must be set.
 std::vector<double> radii_of(const EstimatorSettings& settings);
 
-/// Whether slices are searched by profile and exact, and not by horizon.
+/// Whether `profile` and `exact` search the slices instead of `horizon`.
 bool searches_exactly(const EstimatorSettings& settings);
 
-/// Whether the estimator searches slices about the view ray, of gtao and bitmask: these find open directions too, know
-/// how thick occluders are, and nothing beyond the radius blocks.
+/// Whether the estimator searches slices through the view ray: gtao and bitmask. These find open directions too,
+/// respect thickness, and nothing beyond the radius blocks.
 bool searches_slices(const EstimatorSettings& settings);
 
-/// Whether surfaces are completed behind what is nearer. They are not where occluders are endless, since all that those
-/// hide is blocked anyway. What goes on beyond the picture's border does not count here.
+/// Whether surfaces are completed behind nearer ones. Endless occluders block everything behind them anyway, so with
+/// them they are not. Completion beyond the picture's border does not count here.
 bool completes(const EstimatorSettings& settings);
 
-/// Whether an estimator that takes samples reads how far back pixels are told to be solid: see backs.comp.
+/// Whether an estimator by samples reads the pixels' thickness from backs.comp.
 bool tells_backs(const EstimatorSettings& settings);
 
-/// Whether surfaces are completed anywhere, be it beyond the picture's border alone.
+/// Whether surfaces are completed anywhere, if only beyond the picture's border.
 bool completes_anywhere(const EstimatorSettings& settings);
 
-/// The depth samples that the settings ask for at so many pixels with an estimate, of which `wide` are sites of the
-/// widest lattice; 0 for an exact search.
+/// The depth samples that the settings ask for at so many estimates, `wide` of them on the widest lattice; 0 for an
+/// exact search.
 double samples_of(const EstimatorSettings& settings, double estimates, double wide);
 
-/// Tiles of a G-buffer that an estimator has something to do for.
+/// Tiles of a G-buffer that an estimator computes.
 struct TileList {
   gpu::Buffer* tiles = nullptr;        // one uint each, see pack_tile
   gpu::Buffer* counts = nullptr;       // one TileCounts
   gpu::Buffer* kinds = nullptr;        // of all tiles, from classify
   gpu::Buffer* lines = nullptr;        // GroupCount of profile, from refine
-  gpu::Buffer* sites = nullptr;        // that lie in them, from list_sites; null: all of their pixels
+  gpu::Buffer* sites = nullptr;        // in them, from list_sites; null: all of their pixels
   gpu::Buffer* site_counts = nullptr;  // one SiteCounts; null as the sites
   bool skips_surfaces = false;         // more than sky may be left out
 };
 
-/// The workgroups of a pass over the listed tiles, of which each takes at most one.
+/// The workgroups of a pass over the listed tiles, at most one for each.
 gpu::Extent list_extent(const TileList& list);
-/// The workgroups of an estimator over what is listed.
+/// The workgroups of an estimator over the listed sites or tiles.
 gpu::Extent estimate_extent(const TileList& list);
 
 /// The result of an estimator for the sites of a G-buffer.
 struct Estimate {
   gpu::Buffer* ao = nullptr;       // a plane of visibility for each radius, from the smallest on
-  uint plane = 0;                  // of `ao`: that of the radius that an estimator writes
+  uint plane = 0;                  // of `ao`: the radius that an estimator writes
   gpu::Buffer* moments = nullptr;  // of the largest radius: see Visibility
   uint order = 0;                  // of the moments
   // The first of two planes of `moments` for each radius, or of those of the radius that an estimator writes: see
   // Visibility; none: not asked for, or left to estimate_curvature().
   std::optional<uint> curvature{};
   TileList listed{};                  // of the largest radius
-  const gpu::Buffer* told = nullptr;  // how far back pixels are solid, from backs(); null: the settings say it
+  const gpu::Buffer* told = nullptr;  // the pixels' thickness, from backs(); null: by the settings
   gpu::Buffer* error = nullptr;       // with a tolerance, of the mean over the radii: see refine.comp
   gpu::Buffer* squares = nullptr;     // the same
-  // A plane of the visibility that completed surfaces took, of the largest radius, before any filter: 0 to what is
-  // blocked, 0 at sky. Null: not asked for.
+  // A plane of the visibility that completed surfaces block, of the largest radius, before any filter; 0 at sky. Null:
+  // not asked for.
   gpu::Buffer* completed = nullptr;
 };
 
-/// Runs the estimator of the settings for each of their radii. The frame gives the number that animates the noise, and
-/// what has changed.
+/// Runs the estimator of the settings for each of their radii. The frame has the number for animated noise, and the
+/// changes.
 Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
                   const EstimatorSettings& settings, uint order = 0, bool with_completed = false,
                   bool with_curvature = false);
@@ -83,28 +83,28 @@ Estimate estimate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites
 /// Runs an estimator that takes samples for each radius of the settings, into the buffers of `result`.
 void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
                       const EstimatorSettings& settings, Estimate& result);
-/// Follows the receivers' own surfaces where the estimator of the settings does not: by a search that takes samples and
-/// whose AO nobody reads, into the planes of `result` from that one on.
+/// Follows the receivers' own surfaces if the estimator does not, by another search by samples, whose AO is dropped,
+/// into the planes of `result` from `first` on.
 void estimate_curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
                         const EstimatorSettings& settings, const Estimate& result, uint first);
-/// The buffers of an estimate of so many radii into which an estimator writes one of them: moments, and what
-/// completed surfaces took, only with the largest.
+/// The part of an estimate of so many radii that an estimator writes for one; moments and completed visibility belong
+/// to the largest alone.
 Estimate of_radius(const Estimate& all, uint plane, std::size_t radii);
 
 /// The rules by which surfaces around a receiver block, for one radius.
 struct Reach {
   float radius;         // scene units: nothing beyond blocks
-  float told;           // scene units: nothing beyond tells how far back anything is solid
+  float told;           // scene units: pixels farther away give no thickness
   float front;          // scene units: no front farther away than this blocks by the solid behind it
-  float falloff_start;  // scene units: what is nearer blocks fully
+  float falloff_start;  // scene units: nearer surfaces block fully
   Falloff falloff;
-  float thickness;      // scene units that an occluder goes on behind what is seen of it; 0: as deep as wide
+  float thickness;      // scene units of an occluder's depth behind its front; 0: as deep as wide
   float bias;           // the least height that blocks: see EstimatorSettings::bias
-  Completion complete;  // where surfaces go on unseen: see EstimatorSettings::complete
-  bool in_sectors;      // of bitmask: all that blocks is counted in sectors, no horizon is exact
+  Completion complete;  // see EstimatorSettings::complete
+  bool in_sectors;      // bitmask: all blockers are counted in sectors, without an exact horizon
 };
 Reach reach_of(const EstimatorSettings& settings, double radius);
-/// Whether surfaces go on behind what is nearer. What endless occluders hide is blocked anyway.
+/// Whether surfaces go on behind nearer ones. Endless occluders block everything behind them anyway.
 bool completes_behind(const Reach& reach);
 
 /// The samples' spread over the hemisphere, and over neighbouring pixels.
@@ -126,35 +126,34 @@ struct VolumeSamples {
 /// The tiles that may be left out.
 struct Skipping {
   bool skips_sky;
-  const gpu::Buffer* changes;           // against the frame before; null: it gives nothing
-  ImagePart needed = {};                // the image without what of a margin nobody needs
+  const gpu::Buffer* changes;           // against the frame before; null: nothing is reused
+  ImagePart needed = {};                // the image without the unused part of a margin
   const gpu::Buffer* bounds = nullptr;  // from bounds(): how deep hidden surfaces lie
 };
 Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame, const BlockGrid& grid);
 
-/// Bounds what is hidden, by which `classify` tells the tiles where it may count; null where nothing is hidden, or
-/// nothing is left out.
+/// Bounds of the depths of hidden surfaces, for `classify`; null if nothing is hidden, or no tile is left out.
 const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping);
 
-/// Lists the tiles that an estimator must compute within one reach. Into the plane of `out` it writes the visibility of
-/// the sites of those that are left out, and into out.completed 0 for them. `prefix` stands before the names of its
-/// buffers where there is another estimate.
+/// Lists the tiles that an estimator must compute within one reach. For the sites of the other tiles it writes the
+/// visibility into the plane of `out`, and 0 into out.completed. `prefix` stands before the names of its buffers if
+/// there is another estimate.
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, const Reach& reach,
                   const Sites& sites, const Estimate& out, const std::string& prefix = "");
 
-/// The pixels of rows and columns that show one surface, see backs.glsl, and how far they go on beyond segments.
+/// The chains of pixels of one surface in rows and columns, see backs.glsl, and their lengths beyond segments.
 struct Chains {
   BacksParams params;
   gpu::Buffer &links, &ends;
 };
 
-/// Links pixels: see chains.comp. Without normals of their own, surfaces end where depth alone says so.
+/// Links pixels: see chains.comp. Without normals of their own, surfaces end by depth alone.
 Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals);
 
-/// Tells how far chains go on beyond segments: see chain_ends.comp.
+/// Measures chains beyond segments: see chain_ends.comp.
 void chain_ends(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains);
 
-/// How far back what each pixel shows is solid: see backs.comp.
+/// The thickness of the solid at each pixel: see backs.comp.
 const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains);
 
 /// gtao and bitmask. Tiles that have hidden surfaces within reach are searched by horizon_layers.
@@ -165,8 +164,8 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
             const VolumeSamples& samples, const Estimate& out);
 
-/// Sums for each tile of 8 x 8 pixels the visibility that is taken by completed surfaces, and by all, for the largest
-/// radius, at the sites of the widest lattice: see completion.comp. Null where nobody asked for estimate.completed.
+/// Sums for each tile of 8 x 8 pixels the visibility that completed surfaces block, and that all block, for the largest
+/// radius, at the sites of the widest lattice: see completion.comp. Null without estimate.completed.
 gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, const Sites& sites);
 
 }  // namespace alcove

@@ -12,12 +12,12 @@ namespace alcove {
 /// Takes the mean over the radii of an estimate, and keeps their planes where `keeps_scales`.
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales);
 
-/// The reach of the bilateral denoiser to each side, in pixels of the estimate. Where the settings leave it open, it
-/// is 8 if pixels share estimates, and 4 if each has its own or fit_sites smooths them first.
+/// The reach of the bilateral denoiser to each side, in pixels of the estimate. The default is 8 if pixels share
+/// estimates, and 4 if each has its own or fit_sites smooths them first.
 int denoise_radius_of(const EstimatorSettings& settings);
 
-/// The reach of estimates beyond their own pixels, in px of the frame: fit_sites and the denoiser by pixels of the
-/// estimate, and upsampling by two of them. So does the choice of how many directions a tile takes.
+/// The reach of estimates beyond their own pixels, in px of the frame: of fit_sites and the denoiser, of upsampling
+/// (two pixels of the estimate), and of the choice of a tile's directions.
 int filter_reach_of(const EstimatorSettings& settings);
 
 /// The parameters of the denoiser.
@@ -25,10 +25,10 @@ struct Denoiser {
   std::vector<double> weights;  // from the centre outwards, up to a common factor; empty: there is no filter
   double depth_sigma;           // see EstimatorSettings::denoise_depth_sigma
   int radius;                   // px: see denoise_radius_of()
-  bool looks_up;                // the weights are the user's, else of interpolate's parabola
+  bool looks_up;                // the weights are the user's, else interpolate's parabola
   bool fits_sites;              // sites are smoothed among themselves first: see fit_sites.comp
-  double within;                // scene units: how far interpolate and fit_sites reach at most
-  /// From how far a pixel takes estimates in all, in px.
+  double within;                // scene units: the largest reach of interpolate and fit_sites
+  /// The reach of all filters together, in px.
   int reach() const;
 };
 Denoiser denoiser_of(const EstimatorSettings& settings);
@@ -43,27 +43,27 @@ struct FilterRuns {
   RunList columns;  // of the same
   RunList blocks;   // of upsample
 };
-/// Lists where the filters have work, and writes their results everywhere else. `gbuffer` is that of the estimate.
-/// Where a list would not pay, there is none.
+/// Lists the runs and blocks in which the filters have work, and writes their results everywhere else. `gbuffer` is
+/// that of the estimate. A list that would not pay is left out.
 FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const Denoiser& denoiser);
 
-/// Runs both directions of the filter on any number of planes, or returns the input where there is no filter. `gbuffer`
-/// is that of the estimate. `runs`: from dilate, for the same visibility; without them the filter runs everywhere.
-/// `prefix` stands before the names of its buffers where others are filtered too.
+/// Runs both directions of the filter on any number of planes, or returns the input without a filter. `gbuffer` is that
+/// of the estimate. `runs`: from dilate, for the same visibility; without them the filter runs everywhere. `prefix`
+/// stands before the names of its buffers if others are filtered too.
 gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Denoiser& denoiser,
                      const std::string& prefix = "", const FilterRuns& runs = {});
 
 Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Denoiser& denoiser,
                    const FilterRuns& runs = {});
 
-/// Smooths the visibility of the sites of the widest lattice among themselves: planes of the lattice's pixels. The
-/// denoiser must fit sites; without, the whole has no planes.
+/// Smooths the visibility of the sites of the widest lattice among themselves: planes of the lattice's pixels. No
+/// planes if the denoiser does not fit sites.
 Visibility fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
                      const Denoiser& denoiser);
 gpu::Buffer& fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
                        const Denoiser& denoiser, const std::string& prefix = "");
 
-/// Gives every pixel a visibility from the sites about it, where not every pixel is one. `fitted`: of fit_sites, for
+/// Gives every pixel a visibility from the sites around it, unless every pixel is one. `fitted`: from fit_sites, for
 /// the same visibility.
 Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
                        const Visibility& fitted, const Sites& sites, const Denoiser& denoiser,
@@ -72,12 +72,12 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
                          const Sites& sites, const Denoiser& denoiser, const std::string& prefix = "",
                          const FilterRuns& runs = {});
 
-/// `smooth` with the moments of that order, and curvature, of every pixel, from those of the sites about it; without
-/// moments, or where every pixel is a site, it stays as it is.
+/// `smooth` with the moments of that order, and curvature, of every pixel, from those of the sites around it; unchanged
+/// without moments, or if every pixel is a site.
 Visibility spread(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& noisy, const Visibility& fitted,
                   const Sites& sites, Visibility smooth, uint order);
 
-/// Brings any number of planes from the blocks of `low` to the pixels of `gbuffer`, or returns the input where both are
+/// Brings any number of planes from the blocks of `low` to the pixels of `gbuffer`, or returns the input if both are
 /// the same.
 Visibility upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const Visibility& visibility,
                     const FilterRuns& runs = {});

@@ -1,4 +1,4 @@
-// The passes that make the G-buffer, which every later pass relies on, and those that put a margin around it.
+// The passes that make the G-buffer, on which every later pass relies, and the margin around it.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -34,16 +34,15 @@ struct GBuffer {
   vec3 depth_precision{};  // of planar depth: see DepthPrecision
   gpu::Buffer* depth = nullptr;
   gpu::Buffer* normal = nullptr;
-  // Surfaces behind that of `depth`, nearer first, a plane behind the other: planar depth > 0, kSkyDepth where there is
-  // none, and below 0, of the same size, where the surface closes the solid of the one before it. Sky has none. Null:
-  // there is nothing hidden in the frame.
+  // Surfaces behind that of `depth`, nearer first, a plane each: planar depth > 0, kSkyDepth for none, and the negated
+  // depth if the surface closes the solid of the one before it. Sky has none. Null: no hidden surfaces in the frame.
   gpu::Buffer* hidden = nullptr;
   uint surfaces = 1;                    // of a pixel at most: 1 more than `hidden` has planes
-  bool hides_no_more = false;           // a pixel with fewer hides no surface that is not told
+  bool hides_no_more = false;           // a pixel with fewer has no unknown surfaces
   gpu::Buffer* layer_counts = nullptr;  // one LayerCounts; null as `hidden`
-  gpu::Buffer* warped = nullptr;        // what other views show behind the first surface: see warp.comp; null: nothing
+  gpu::Buffer* warped = nullptr;        // hidden surfaces by other views: see warp.comp; null: none
   gpu::Buffer* view_counts = nullptr;   // one ViewCounts; null as `warped`
-  // As `depth` and `hidden`, without what is no occluder: see occluders.comp; null: all are, see occluder_depth_of().
+  // As `depth` and `hidden`, with occluders alone: see occluders.comp; null: all are, see occluder_depth_of().
   gpu::Buffer* occluder_depth = nullptr;
   gpu::Buffer* occluder_hidden = nullptr;
   gpu::Buffer* needed = nullptr;   // one uint per tile: whether its estimates are needed; null: all are
@@ -55,34 +54,33 @@ struct GBuffer {
 const gpu::Buffer& occluder_depth_of(const GBuffer& gbuffer);
 const gpu::Buffer* occluder_hidden_of(const GBuffer& gbuffer);
 
-/// Makes the G-buffer from the raw planes. `prefix` stands before the names of its buffers where there is another
-/// G-buffer already.
+/// Makes the G-buffer from the raw planes. `prefix` stands before the names of its buffers if there is another
+/// G-buffer.
 GBuffer prepare(gpu::Recorder& gpu, const FrameInputs& frame, const std::string& prefix = "");
 
-/// Puts normals where prepare found none, has all face the eye, and returns the same G-buffer.
+/// Adds missing normals, turns all towards the eye, and returns the same G-buffer.
 GBuffer reconstruct(gpu::Recorder& gpu, const GBuffer& gbuffer);
 
-/// Makes the G-buffer of the blocks of a grid, or returns the same one where each block is a pixel. `prefix`: as above.
+/// Makes the G-buffer of the blocks of a grid, or returns the same one if each block is a pixel. `prefix`: as above.
 GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& grid, const std::string& prefix = "");
 
-// The margin shows what lies around the picture, as other frames and other views see it: receivers at the border need
-// it.
+// The margin around the picture has the surfaces that other frames and views show there, for receivers at the border.
 
-/// The margin of a part of a frame, or of the whole: on each side on which it ends with the frame an eighth of the
-/// frame's width, for which other views of it usually have something to show. It does not depend on how a frame is cut.
+/// The margin of a part of a frame, or of the whole: an eighth of the frame's width on each side that is a side of the
+/// frame, which other views usually cover. Thus it does not depend on the cut into parts.
 Margin margin_of(const Window& part, const Window& frame);
 
-/// The frame as it is with its margin; the same one where it has none. Its planes stay those of the frame.
+/// The frame with its margin; the same one without a margin. Its planes stay those of the frame.
 FrameInputs with_margin(const FrameInputs& frame);
 
-/// The G-buffer with an empty margin: all that others show there is behind it.
+/// The G-buffer with an empty margin, in front of the surfaces that others show there.
 GBuffer widen(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& wide);
-/// Fills the margin of `wide` with the nearest surfaces that others show there, the first plane of `found`, and gives
-/// it normals. Those of the frame are there already: at its border the margin must not change them.
+/// Fills the margin of `wide` with the nearest surfaces that others show there, the first plane of `found`, and with
+/// their normals. The frame's normals are there already, so the margin does not change them at the border.
 void widen(gpu::Recorder& gpu, const GBuffer& prepared, const GBuffer& wide, const FrameInputs& frame,
            const gpu::Buffer& found);
 
-/// Cuts the margin off planes, or returns the same ones where there is none; null stays null.
+/// Cuts the margin off planes, or returns the same ones without a margin; null stays null.
 gpu::Buffer* cut(gpu::Recorder& gpu, const FrameInputs& frame, gpu::Buffer* planes, const std::string& name);
 Visibility cut(gpu::Recorder& gpu, const FrameInputs& frame, const Visibility& wide);
 /// The same for a G-buffer whose first surface `prepared` has.

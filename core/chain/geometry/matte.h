@@ -1,4 +1,4 @@
-// What mattes say of pixels: where AO is wanted, and which surfaces may block.
+// Mattes: the pixels that want AO, and the surfaces that may block.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,21 +12,21 @@ struct Matte {
   double outside = 1;            // the AO where it is 0
 };
 
-/// A matte, or that of RawPlane::occluders, as one plane of coverage over the frame; none where the frame has none.
+/// A matte, or that of RawPlane::occluders, as one plane of coverage over the frame; none if the frame has none.
 Matte matte(gpu::Recorder& gpu, const FrameInputs& frame, RawPlane which = RawPlane::matte);
 
 /// The G-buffer with the tiles whose estimates are needed; the same one without a matte. Filters look up to `reach` px
 /// of the frame beyond the matte. `wide`: the frame with its margin, see with_margin().
 GBuffer needed(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& wide, const Matte& matte, int reach);
 
-/// The stand-in for the unknown surfaces behind one that is no occluder.
+/// The stand-in for the unknown surfaces behind one that does not block.
 enum class Unknown {
   open,     // nothing
-  blocked,  // the surface in front of them: nothing that they may be blocks more
+  blocked,  // the surface in front of them, which blocks the most
 };
 
-/// The G-buffer with its occluders, where the frame says that some surfaces are none; else the same one. Receivers, and
-/// all that is decided by what is seen, stay as they are.
+/// The G-buffer with its occluders, if the frame has surfaces that do not block; else the same one. Receivers stay as
+/// they are.
 GBuffer occluders(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
                   Unknown unknown = Unknown::open);
 

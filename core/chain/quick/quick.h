@@ -7,11 +7,11 @@
 
 namespace alcove {
 
-/// Whether settings ask for the quick search, and for nothing that it cannot do: several radii, a falloff, a given
+/// Whether settings ask for the quick search, and for nothing that it lacks: several radii, a falloff, a given
 /// thickness, surfaces that are not completed everywhere, a smaller resolution, other densities and denoisers.
 bool may_search_quickly(const EstimatorSettings& settings);
-/// Whether a frame is searched so. With moments, hidden surfaces, or surfaces that are no occluders it is not. Nobody
-/// asks where curvature is wanted, which it does not find.
+/// Whether the quick search computes a frame: not with moments, hidden surfaces, or surfaces that do not block. Callers
+/// exclude curvature, which it does not find.
 bool searches_quickly(const EstimatorSettings& settings, const GBuffer& gbuffer, uint order);
 
 /// Blocks of pixels, and their sites.
@@ -25,7 +25,7 @@ struct Blocks {
   gpu::Extent sites = 0;                // the workgroups over the list
 };
 
-/// Chooses the sites, and copies the depth to where it has a margin.
+/// Chooses the sites, and copies the depth into a plane with a margin.
 Blocks block_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const EstimatorSettings& settings,
                    const FrameInputs& frame);
 /// Makes the margin of the depth.
@@ -38,7 +38,7 @@ const gpu::Buffer& fit_blocks(gpu::Recorder& gpu, const Blocks& blocks, const gp
 /// The visibility of all pixels.
 gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const Blocks& blocks, const gpu::Buffer& fitted);
 
-/// The sites, and the visibility at them, as debug views take them.
+/// The sites and their visibility, for debug views.
 struct ShownBlocks {
   Sites sites;
   const gpu::Buffer* ao;  // a plane

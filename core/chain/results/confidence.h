@@ -1,4 +1,4 @@
-// How far the AO can be trusted: the distance between two estimates that bracket it.
+// Confidence in the AO: by the distance between two estimates that bracket it.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -7,11 +7,10 @@
 
 namespace alcove {
 
-/// The settings of the estimates by slices and steps at full resolution between which --aov confidence takes the AO to
-/// lie, whatever estimates it.
+/// The settings of the two estimates, by slices and steps at full resolution, that bracket the AO of any estimator.
 EstimatorSettings bracket_of(const EstimatorSettings& settings);
 
-/// Makes a plane in [0, 1], for the largest radius, whatever the estimator: see confidence.comp.
+/// Makes a plane in [0, 1], for the largest radius and any estimator: see confidence.comp.
 gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
                         const EstimatorSettings& settings);
 

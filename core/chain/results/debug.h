@@ -1,4 +1,4 @@
-// Pictures that explain themselves: ONE table of what --set debug shows, and of the scales that its numbers have.
+// Debug views: ONE table of the pictures of --set debug, and of the scales of their numbers.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -30,20 +30,20 @@ enum class DebugSource {
 /// A row of the table.
 struct DebugView {
   const char* name;   // as --set debug takes it
-  const char* title;  // what the picture shows, and its unit
+  const char* title;  // of the picture, with its unit
   uint kind;          // of kernels/results/results.h
   DebugSource source;
-  // A percentile scale goes from the 3rd to the 97th of the frame's surfaces. On a logarithmic one equal factors are
-  // equal steps, by the numbers' sizes.
+  // A percentile scale goes from the 3rd to the 97th percentile of the frame's surfaces. On a logarithmic one equal
+  // factors of the absolute values are equal steps.
   DebugScale scale;
-  float low;  // ends of fixed scales; what is beyond has the colour of the end
+  float low;  // ends of fixed scales; values beyond have the colour of the end
   float high;
   bool is_grey;  // black to white instead of the colour ramp
 };
 std::span<const DebugView> debug_view_table();
 std::vector<std::string> debug_view_names();
 
-/// The rows that the settings ask for. Fails with ErrorKind::usage on a name that is not in the table, listing what is.
+/// The rows that the settings ask for. Fails with ErrorKind::usage on an unknown name, listing the known ones.
 std::vector<const DebugView*> debug_views_of(const OutputSettings& settings);
 /// Whether the settings ask for a view of this source.
 bool shows(const OutputSettings& settings, DebugSource source);
@@ -58,15 +58,15 @@ struct DebugPlane {
   gpu::Buffer* values;
 };
 
-/// The visibility on its way, at the resolution of the estimate; null where there is none.
+/// Stages of the visibility, at the resolution of the estimate; null: none.
 struct DebugStages {
   GBuffer gbuffer{};
   const gpu::Buffer* raw_ao = nullptr;
-  Sites sites{};  // the pixels that raw_ao is of
+  Sites sites{};  // the pixels of raw_ao
   const gpu::Buffer* denoised_ao = nullptr;
   const gpu::Buffer* completed = nullptr;  // of the pixels of raw_ao; null: not asked for
   const gpu::Buffer* kinds = nullptr;      // of the tiles
-  const gpu::Buffer* count = nullptr;      // of the frame's pixels: of how many frames' estimates each is the mean
+  const gpu::Buffer* count = nullptr;      // of the frame's pixels: the number of averaged estimates
 };
 DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuffer, const DebugStages& stages,
                  const FrameInputs& frame);

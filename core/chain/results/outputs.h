@@ -1,5 +1,5 @@
 // The results of the chain: buffers that the host reads after the recorder has run, ONE table of the AOVs among them,
-// and what a run asks for.
+// and the wanted outputs of a run.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace alcove {
 
-/// A frame's own estimate, which it hands to others: buffers that the host reads after the recorder has run.
+/// A frame's own estimate for the mean of others: buffers that the host reads after the recorder has run.
 struct OwnEstimate {
   GBuffer gbuffer;
   Visibility visibility;  // of all its pixels, before any shaping
@@ -25,15 +25,15 @@ struct OwnEstimate {
 /// Null: not asked for.
 struct FrameOutputs {
   gpu::Buffer* counts = nullptr;        // one FrameCounts
-  gpu::Buffer* layer_counts = nullptr;  // one LayerCounts, where anything is known of what is hidden
-  gpu::Buffer* view_counts = nullptr;   // one ViewCounts, where others see what is hidden here
-  gpu::Buffer* tiles = nullptr;         // one TileCounts, where there is an estimate
-  gpu::Buffer* sites = nullptr;         // one SiteCounts, of the largest radius, where pixels share estimates
+  gpu::Buffer* layer_counts = nullptr;  // one LayerCounts, with known hidden surfaces
+  gpu::Buffer* view_counts = nullptr;   // one ViewCounts, with hidden surfaces from others
+  gpu::Buffer* tiles = nullptr;         // one TileCounts, with an estimate
+  gpu::Buffer* sites = nullptr;         // one SiteCounts, of the largest radius, if pixels share estimates
   gpu::Buffer* squares = nullptr;       // with a tolerance, vec2 per tile: sum of its squares, and receivers
-  // with wanted.completed, vec2 per tile: what completed surfaces took of the visibility, and what all did
+  // with wanted.completed, vec2 per tile: the visibility that completed surfaces block, and that all block
   gpu::Buffer* completion = nullptr;
-  // with wanted.completed, a plane of the estimate's size: see Estimate. It stays on the device: whoever reads it calls
-  // download()
+  // with wanted.completed, a plane of the estimate's size: see Estimate. It stays on the device: call download() to
+  // read it
   gpu::Buffer* completed = nullptr;
   gpu::Buffer* ao = nullptr;            // a plane: visibility in [0, 1]; of several radii the mean
   gpu::Buffer* scales = nullptr;        // a plane for each radius, from the smallest on
@@ -49,20 +49,20 @@ struct FrameOutputs {
   gpu::Buffer* confidence = nullptr;          // a plane, in [0, 1]
   gpu::Buffer* error = nullptr;               // a plane: with a tolerance, the estimated error of the visibility
   gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
-  // a plane, of several radii their mean and one for each: what the own surface blocks inside and outside, in [0, 1],
-  // and their difference, 0.5 = flat
+  // a plane, of several radii their mean and one for each: the parts that the own surface blocks inside and outside, in
+  // [0, 1], and their difference, 0.5 = flat
   gpu::Buffer* convexity = nullptr;
   gpu::Buffer* cavity = nullptr;
   gpu::Buffer* curvature = nullptr;
   gpu::Buffer* color_ao = nullptr;   // planes r, g, b: the visibility with multi-bounce
   gpu::Buffer* composite = nullptr;  // the beauty's planes
-  gpu::Buffer* count = nullptr;      // a plane and more: of how many frames' estimates it is the mean; null: its own
+  gpu::Buffer* count = nullptr;      // a plane and more: the number of averaged estimates; null: not averaged
   bool is_quick = false;             // its visibility is of the quick search
-  std::optional<OwnEstimate> own{};  // with wanted.only_own: then nothing else is made of it
+  std::optional<OwnEstimate> own{};  // with wanted.only_own: then there is nothing else
   std::vector<DebugPlane> debug{};
 };
 
-/// The input of an AOV; each needs those that stand before it, too.
+/// The input of an AOV; each needs the ones before it, too.
 enum class AovSource { geometry, visibility, open_directions, transfer };
 
 /// A row of the table.
@@ -71,7 +71,7 @@ struct AovRow {
   const char* channels;                // in the file, with commas; one for each plane, or all from the only plane
   gpu::Buffer* FrameOutputs::*planes;  // where the chain leaves them
   AovSource source;
-  bool is_float = false;  // whatever --type says: half would lose what it is for
+  bool is_float = false;  // for any --type: half is too coarse
 };
 
 inline constexpr std::array kAovs{
@@ -121,8 +121,7 @@ bool is_of_curvature(const Aov& aov);
 /// Whether an AOV that the settings ask for lies in these planes.
 bool wants(const OutputSettings& settings, gpu::Buffer* FrameOutputs::*planes);
 
-/// The outputs' requests of the chain: their names, parsed once. Settings convert to it, so they may be passed in its
-/// place.
+/// The wanted outputs of the chain: their names, parsed once. Settings convert to it implicitly.
 struct Wanted {
   /// Fails with ErrorKind::usage on names that are in no table.
   Wanted(const OutputSettings& settings);
@@ -130,18 +129,18 @@ struct Wanted {
 
   /// Whether an AOV lies in these planes.
   bool has(gpu::Buffer* FrameOutputs::*planes) const;
-  /// Whether the AO of each radius is asked for, or that of one.
+  /// Whether the AO of single radii is asked for.
   bool needs_scales() const { return has(&FrameOutputs::scales) || order > 1; }
   /// Whether an AOV of the own surface's shape is asked for.
   bool needs_curvature() const { return std::ranges::any_of(aovs, &is_of_curvature); }
-  /// Whether nothing is asked for but AO that is made from depth and normals alone.
+  /// Whether only AO from depth and normals alone is asked for.
   bool is_only_visibility() const;
 
   std::vector<Aov> aovs;
   std::vector<const DebugView*> debug_views;
-  bool visibility = false;  // AO, or what is made from it
-  uint order = 0;           // of the moments that others are made from, of an estimator that finds open directions
-  bool completed = false;   // what completed surfaces took of the visibility
+  bool visibility = false;  // AO, or an output made from it
+  uint order = 0;           // of the moments for other outputs, of an estimator that finds open directions
+  bool completed = false;   // the visibility that completed surfaces block
   bool only_own = false;    // the estimate alone, for other frames
   bool multi_bounce = false;
   PixelFilter filter;

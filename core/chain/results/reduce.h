@@ -24,8 +24,8 @@ FilterWeights filter_weights(const PixelFilter& filter, int factor);
 /// The number of pixels beyond a part of a frame that count for it; 0 with the factor 1.
 int reduce_reach(const PixelFilter& filter, int factor);
 
-/// Filters what is an amount or a direction, where the frame is larger than its picture: all pixels of a block then
-/// have the picture's value. Depths stay.
+/// Filters amounts and directions if the frame is larger than its picture: all pixels of a block then have the
+/// picture's value. Depths stay.
 FrameOutputs reduce(gpu::Recorder& gpu, const FrameInputs& frame, const PixelFilter& filter, const FrameOutputs& out);
 
 }  // namespace alcove

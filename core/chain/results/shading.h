@@ -1,4 +1,4 @@
-// The passes that make something of the visibility: shaping, colour, reflections, composites, planes for files.
+// The passes after the visibility: shaping, colour, reflections, composites, planes for files.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -22,11 +22,10 @@ struct Shaping {
 };
 Shaping shaping_of(const EstimatorSettings& settings);
 
-/// Shapes the AO and the planes of the radii; the input where there is none, or nothing asks for any shaping.
-/// material_ao may be null.
+/// Shapes the AO and the planes of the radii; gives the input if there is none, or no shaping. material_ao may be null.
 Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
                  const gpu::Buffer* material_ao, const Matte& matte = {});
-/// The same for one buffer of planes. What it repairs is counted with the first one of a frame, whose prefix is empty.
+/// The same for one buffer of planes. Repairs count with the first one of a frame, whose prefix is empty.
 gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
                    const gpu::Buffer* material_ao, const Matte& matte = {}, const std::string& prefix = "");
 
@@ -34,13 +33,13 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
 gpu::Buffer& bent_normal(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* moments);
 
 /// The nine coefficients of the reflected light, with the AO of the largest radius, in that space; with a light, planes
-/// r, g, b of what is reflected of it. The visibility must have moments of second order, or no planes at all: then
-/// nothing is blocked. `name`: of the buffer.
+/// r, g, b of its reflected part. The visibility must have moments of second order, or no planes at all: then nothing
+/// is blocked. `name`: of the buffer.
 gpu::Buffer& transfer(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
                       const Matrix3& space_from_view, const std::string& name, const Environment* light = nullptr);
 
-/// The outputs with convexity, cavity and curvature of so many radii, those that are wanted. They are made of the
-/// visibility's moments, whose last planes are two for each radius.
+/// The outputs with the wanted planes of convexity, cavity and curvature of so many radii, from the last planes of the
+/// moments, two for each radius.
 FrameOutputs curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, std::size_t radii,
                        const Wanted& wanted, const Matte& matte, FrameOutputs out);
 
