@@ -114,9 +114,9 @@ struct EstimatorSettings {
   double falloff_start = 0;         // fraction of the radius where the falloff begins, 0 to 1 exclusive
   // fraction of the radius where it ends, above the start to 1; nothing beyond blocks
   double falloff_end = 1;
-  // directions per pixel, 1 to 64, see wide_slices_of(); with fewer than 3 each pixel by itself is noisy, and the
+  // directions per pixel, 1 to 64; with fewer than 3 each pixel by itself is noisy, and the
   // denoiser must share those of its neighbours
-  int slices = 2;
+  int slices = 4;
   int steps = 16;  // samples to each side of a slice, 1 to 4096; they matter more than slices
   // of gtao: the RMS error of the visibility that an exact search may leave, 0 to 1. Each tile gets as many directions
   // as that takes; 0: as `slices` says

@@ -275,7 +275,7 @@ BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector
       const auto pixels = double(loaded.planar.size());
       const double blocks = double(settings.resolution) * double(settings.resolution);
       const double estimates = result.estimates ? result.estimates : (pixels - result.sky_pixels) / blocks;
-      row.samples_per_pixel = samples_of(settings, estimates, result.wide) / pixels;
+      row.samples_per_pixel = samples_of(settings, estimates) / pixels;
       row.mottle = mottle_of(gpu, loaded, settings);
       measure(row, loaded, settings, suite.reference_slices ? &references : nullptr);
       report.rows.push_back(std::move(row));

@@ -37,23 +37,6 @@ GBuffer work_of(gpu::Recorder& gpu, const FrameInputs& frame, const FrameInputs&
   return needed(gpu, blocks, inputs, masked, filter_reach_of(settings));
 }
 
-/// Estimates and smooths by the quick search.
-void see_quickly(gpu::Recorder& gpu, const GBuffer& work, const FrameInputs& inputs, const EstimatorSettings& settings,
-                 const Wanted& wanted, Seen& seen) {
-  seen.is_quick = true;
-  const Blocks blocks = block_sites(gpu, work, settings, inputs);
-  margin(gpu, work, blocks);
-  const gpu::Buffer& at_sites = quick_horizon(gpu, work, blocks, sampling_of(settings, inputs.frame));
-  const gpu::Buffer& fitted = fit_blocks(gpu, blocks, at_sites);
-  seen.visibility.ao = &spread_blocks(gpu, work, blocks, fitted);
-  seen.estimate.listed.site_counts = blocks.counts;
-  seen.stages = {.gbuffer = work, .denoised_ao = seen.visibility.ao};
-  if (wanted.debug_views.empty()) return;
-  const ShownBlocks shown = show_blocks(gpu, work, blocks, at_sites);
-  seen.stages.sites = shown.sites;
-  seen.stages.raw_ao = shown.ao;
-}
-
 /// The frame's own estimate, smoothed.
 Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
                     const EstimatorSettings& settings, const Wanted& wanted) {
@@ -61,24 +44,21 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
   Seen seen;
   const GBuffer work = work_of(gpu, frame, inputs, surfaces, settings, seen.matte);
   const uint order = moment_order(settings, wanted);
-  if (searches_quickly(settings, work, order) && !wanted.needs_curvature()) {
-    see_quickly(gpu, work, inputs, settings, wanted, seen);
-    return seen;
-  }
-  const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn));
   const bool with_completed = wanted.completed && completes_anywhere(settings);
-  seen.estimate = estimate(gpu, work, chosen, inputs, settings, order, with_completed, wanted.needs_curvature());
+  seen.is_quick = searches_quickly(settings, work, order, wanted.needs_curvature());
+  const gpu::Buffer* wide = seen.is_quick ? &margin(gpu, work) : nullptr;
+  const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn), "", wide);
+  seen.estimate = seen.is_quick
+                      ? quick_horizon(gpu, work, chosen, *wide, inputs, settings)
+                      : estimate(gpu, work, chosen, inputs, settings, order, with_completed, wanted.needs_curvature());
   seen.completion = completion(gpu, work, seen.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
   const Visibility noisy = combine(gpu, work, seen.estimate, wanted.needs_scales());
   const FilterRuns runs = dilate(gpu, work, seen.estimate.listed, denoiser);
-  const Visibility fitted = fit_sites(gpu, work, noisy, chosen, denoiser);
-  const Visibility smooth = chosen.rows ? interpolate(gpu, work, noisy, fitted, chosen, denoiser, runs)
-                                        : denoise(gpu, work, noisy, denoiser, runs);
-  const Visibility whole = spread(gpu, work, noisy, fitted, chosen, smooth, order);
-  seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, whole, runs));
+  const Visibility smoothed = smooth(gpu, work, noisy, chosen, denoiser, runs, order);
+  seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smoothed, runs));
   if (wanted.has(&FrameOutputs::error)) seen.error = cut(gpu, frame, seen.estimate.error, "error");
-  seen.stages = {work, noisy.ao, chosen, smooth.ao, seen.estimate.completed, seen.estimate.listed.kinds};
+  seen.stages = {work, noisy.ao, chosen, smoothed.ao, seen.estimate.completed, seen.estimate.listed.kinds};
   return seen;
 }
 

@@ -59,7 +59,7 @@ HostResult compute_ao(gpu::Recorder& gpu, const HostFrame& frame, const Estimato
   const auto ao = outputs.ao->as<float>();
   const auto& counts = outputs.counts->as<FrameCounts>()[0];
   const SiteCounts sites = outputs.sites ? outputs.sites->as<SiteCounts>()[0] : SiteCounts{};
-  return {{ao.begin(), ao.end()},  counts.sky,           sites.listed, sites.of_lattice[0], counts.repaired_depth,
+  return {{ao.begin(), ao.end()},  counts.sky,           sites.listed, counts.repaired_depth,
           counts.repaired_normals, counts.turned_normals};
 }
 

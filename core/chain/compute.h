@@ -25,7 +25,6 @@ struct HostResult {
   std::vector<float> ao;  // one value per pixel: visibility in [0, 1]
   std::uint32_t sky_pixels = 0;
   std::uint32_t estimates = 0;  // pixels with one of their own; 0 if each has one
-  std::uint32_t wide = 0;       // those of them on the widest lattice
   std::uint32_t repaired_depth = 0;
   std::uint32_t repaired_normals = 0;
   std::uint32_t turned_normals = 0;

@@ -157,9 +157,8 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
     const std::vector<double> radii = radii_of(settings.estimator);
     add_new(report_.notes,
             sample_.notes(radii.front(), radii.back(), source.reading.data.width, source.reading.data.height));
-    const double wide = report_.estimates ? double(report_.estimates->front()) : 0;
     report_.samples_per_pixel =
-        samples_of(settings.estimator, estimates_of(settings.estimator), wide) / double(report_.pixels);
+        samples_of(settings.estimator, estimates_of(settings.estimator)) / double(report_.pixels);
     // An estimator that completes nothing, and sky, are no reason to leave the share out: it is 0.
     if (!settings.output.stats.empty() && !report_.occlusion) report_.occlusion.emplace();
   }

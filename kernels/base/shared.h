@@ -113,9 +113,8 @@ struct TileCounts {
   uint layered;  // of the listed ones, those with kTileLayered
 };
 
-// How far from a pixel others decide whether it is a site, in px: 3 for each of the four passes of sites.comp, and one
-// for the sites that links.comp puts on the border of a part.
-ALCOVE_CONSTANT int kSiteReach = 13;
+// How far from a pixel others decide whether it is a site, in px: they are of its block.
+ALCOVE_CONSTANT int kSiteReach = 3;
 ALCOVE_CONSTANT uint kLattices = 5;  // of one pixel of 16, 8, 4, 2 and 1: see tiles.glsl
 
 /// The number of listed sites: pixels that are to be estimated.

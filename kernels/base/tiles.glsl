@@ -4,13 +4,7 @@
 // The lattice of spacing 16 has one pixel of every 4 x 4. Those of 8, 4, 2 and 1 each hold the former and as many
 // pixels again: every second pixel of every fourth row, every second pixel of every second row, the pixels of one
 // colour of a chess board, and all. Pixels are counted from the display window's corner, so that a crop has the lattice
-// of the whole. Rows without any site cost the filters little.
-//
-// A site is a pixel with an estimate of its own. A tile has 8 words, one per row of it; bit i of each byte is the i-th
-// pixel of the row. From the lowest byte on: whether the pixel and the one to its right are one surface, whether it and
-// the one below are, whether it is a surface, whether it is a site.
-
-const uint kBelowByte = 8u, kSurfaceByte = 16u, kSiteByte = 24u;
+// of the whole. On them lie the sites that every density has: pixels with an estimate of their own.
 
 /// The lattice in a row of 32 pixels, bit by bit. first: of the row, from the display window's corner.
 uint lattice_row(ivec2 first, int spacing) {
@@ -22,15 +16,6 @@ uint lattice_row(ivec2 first, int spacing) {
   const uint turn = uint(first.x & 3);
   return row >> turn | row << ((32u - turn) & 31u);
 }
-
-/// The index of a tile's first word.
-int words_of_tile(ivec2 tile, ivec2 tiles) { return (tile.y * tiles.x + tile.x) * 8; }
-
-/// The word of the row of a tile in which a pixel lies.
-int word_of_pixel(ivec2 pixel, ivec2 tiles) { return words_of_tile(pixel / kTile, tiles) + pixel.y % kTile; }
-
-/// Whether the pixel in this column of the image is a site, by the word of its row.
-bool is_site(uint word, int x) { return (word >> kSiteByte + uint(x % kTile) & 1u) != 0u; }
 
 /// The workgroups in x and y of a dispatch of so many.
 uvec2 dispatch_of(uint groups) { return uvec2(min(groups, kListedRow), (groups + kListedRow - 1u) / kListedRow); }
@@ -63,10 +48,9 @@ ListedPlace listed_place(uvec2 group, uint invocation) {
   return ListedPlace(place / kTilePixels, place % kTilePixels);
 }
 
-/// Packs a site: such a pixel in one word, and whether it is of the widest lattice.
-const uint kWideSite = 0x80000000u;
+/// Packs a site: such a pixel in one word.
 uint pack_site(uint tile, uint pixel) { return tile * kTilePixels + pixel; }
-ListedPlace unpack_site(uint site) { return ListedPlace((site & ~kWideSite) / kTilePixels, site % kTilePixels); }
+ListedPlace unpack_site(uint site) { return ListedPlace(site / kTilePixels, site % kTilePixels); }
 
 /// Packs a run of pixels that an invocation of a filter computes in each of kGroupX lines: the number of these lines,
 /// and the number of the run in them.

@@ -20,6 +20,7 @@
 #include "kernels/base/view.glsl"
 #include "kernels/base/clearance.glsl"
 #include "kernels/base/tiles.glsl"
+#include "kernels/base/blocks.glsl"
 #include "kernels/base/moments.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -46,7 +47,7 @@ writeonly buffer Moments { float moments[]; };
 writeonly buffer Completed { float completed[]; };
 // one uint per tile, from needed: not 0 where estimates are needed; only with kClassifySelects
 readonly buffer Needed { uint wanted[]; };
-readonly buffer Rows { uint rows[]; };     // 8 words per tile, see tiles.glsl; only if sparse
+readonly buffer Blocks { uint words[]; };  // one uint per block, see blocks.glsl; only if sparse
 writeonly buffer Kinds { uint kinds[]; };  // one uint per tile: kTileOpen, kTileListed or kTileKept
 
 /// Where a sphere reaches nearer to the eye than this part of its box's depth, all of the image counts. Down to
@@ -159,7 +160,7 @@ void write_open(View view, ivec2 tile) {
   for (uint i = gl_LocalInvocationID.x; i < kTilePixels; i += kGroupX) {
     const ivec2 pixel = pixel_of_tile(tile, i);
     if (!inside(view, pixel)) continue;
-    if (kSparse != 0u && !is_site(rows[word_of_pixel(pixel, tiles_of(view.size))], pixel.x)) continue;
+    if (kSparse != 0u && !is_site(params.grid, words[word_of_pixel(params.grid, pixel)], pixel)) continue;
     const int index = index_of(view, pixel);
     ao[index + int(params.plane) * plane] = 1.0;
     if ((kMode & kClassifyWithCompleted) != 0u) completed[index] = 0.0;

@@ -2,25 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_ESTIMATE_H
 #define ALCOVE_ESTIMATE_H
+#include "kernels/base/blocks.h"
 #include "kernels/hidden/hidden.h"
 ALCOVE_BEGIN
 
-struct LinksParams {
-  View view;
-  ivec2 origin;  // px from the display window's corner to the image's
-};
-
-ALCOVE_CONSTANT int kSitesTiles = 3;  // in a row, that one invocation decides
-
 struct SitesParams {
-  ivec2 size;    // px
-  ivec2 origin;  // px from the display window's corner to the image's
-  int spacing;   // of the lattice that sites are added from, 1 to 8
+  View view;
+  SiteGrid grid;
+  uint lattice;  // of whose pixels surfaces are sites whatever is beside them: as the word of a block
+  float reach;   // px at unit depth (orthographic: at any): from so far a site stands for others at most
 };
 
 struct ListSitesParams {
-  ivec2 size;    // px
-  ivec2 origin;  // px from the display window's corner to the image's
+  ivec2 size;  // px
+  SiteGrid grid;
+  ivec2 origin;  // px from the corner of lattices to the image's
 };
 
 struct BoundsParams {
@@ -55,7 +51,8 @@ struct ClassifyParams {
   ivec2 frame_size;  // px; the frame is the image, or `factor` times as large
   ivec2 overhang;    // px of the first pixel of the image that are outside of the frame
   int factor;
-  int margin;  // px of the frame beyond the reach whose depths may decide what is within it
+  int margin;     // px of the frame beyond the reach whose depths may decide what is within it
+  SiteGrid grid;  // of sites; only if sparse
   // px of the image: from and up to where anybody needs estimates; with kClassifySkips tiles outside count as sky
   ivec2 needed_from, needed_to;
 };

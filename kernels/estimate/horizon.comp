@@ -9,8 +9,8 @@
 //
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016. Lines are those of the listing
 // of its algorithm in the edition of 2019 (Technical Memo ATVI-TR-19-01). The steps have their numbers at the code:
-//  1. A receiver takes kSlices slices (lines 4 to 10), and half as many again where it stands for the pixels about it.
-//     They are even in azimuth about the view ray, not on the screen, so that no Jacobian is owed off axis.
+//  1. A receiver takes kSlices slices (lines 4 to 10). They are even in azimuth about the view ray, not on the screen,
+//     so that no Jacobian is owed off axis.
 //  2. The normal is projected into the slice: its angle gamma, and its length, which is the slice's weight (lines 11 to
 //     15).
 //  3. Each side of the slice is searched (line 17) as far as the exact image of the sphere of the radius reaches. The
@@ -57,8 +57,7 @@ ALCOVE_MODE const uint kMode = kFalloffNone;  // one of kFalloff* of slice.glsl,
 // one of kThickness*, of what is not connected to the receiver, kCompletes*, kInSectors and kTellsBacks or not, and
 // kHiddenSurface times as many surfaces as a pixel may have behind the first
 ALCOVE_SOLID const uint kSolid = kThicknessWidth | kCompletesBorder | kCompletesHidden | kTellsBacks;
-// 0: all pixels are estimated; else only the sites of the list, and those of the widest lattice by so many slices
-layout(constant_id = 3) const uint kSparse = 0;
+layout(constant_id = 3) const uint kSparse = 0;  // 1: only the sites of the list are estimated
 layout(scalar, push_constant) uniform Push { HorizonParams params; };
 // Bindings have their numbers here, so that those of the twin are the same: it leaves out what it does not use.
 layout(binding = 0) readonly buffer Depth { float depth[]; };  // one float per pixel, from prepare
@@ -744,7 +743,7 @@ void write_curvature(int index, int plane, vec2 blocked) {
 }
 
 /// Writes the visibility of a pixel and, where they are asked for, the moments of what is blocked.
-void estimate(ivec2 pixel, uint slices) {
+void estimate(ivec2 pixel) {
   const View view = params.view;
   const int index = index_of(view, pixel);
   const int plane = view.size.x * view.size.y;
@@ -767,7 +766,7 @@ void estimate(ivec2 pixel, uint slices) {
   vec2 curvature = vec2(0);
   uint s = 0u;
   do {
-    const Slice slice = slice_at(view, r, s, slices, noise.x);  // 1. and 2.
+    const Slice slice = slice_at(view, r, s, kSlices, noise.x);  // 1. and 2.
     if (slice.weight < kLeastWeight) continue;
     whole += slice.share * slice.weight * (slice.cos_gamma + slice.gamma * slice.sin_gamma);  // both sides' whole_arc()
     int sign = -1;
@@ -782,7 +781,7 @@ void estimate(ivec2 pixel, uint slices) {
       if (kOrder > 0u) blocked_moments += moments_of(arcs, float(sign) * slice.t, r.eye);
       sign += 2;
     } while (sign <= 1);
-  } while (++s < slices);
+  } while (++s < kSlices);
   // 10.
   const float visibility = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
   ao[ao_index] = visibility;
@@ -793,5 +792,5 @@ void estimate(ivec2 pixel, uint slices) {
 
 void main() {
   const ListedPixel here = listed_pixel(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-  if (both(here.exists, is_mine(list[here.tile]))) estimate(here.pixel, here.is_wide ? kSparse : kSlices);
+  if (both(here.exists, is_mine(list[here.tile]))) estimate(here.pixel);
 }

@@ -9,20 +9,17 @@ struct ListedPixel {
   bool exists;
   uint tile;  // in the list
   ivec2 pixel;
-  bool is_wide;  // a site of the widest lattice
 };
 
 ListedPixel listed_pixel(uvec2 group, uint invocation) {
   ListedPlace place = listed_place(group, invocation);
-  bool exists = place.tile < counts.listed, is_wide = false;
+  bool exists = place.tile < counts.listed;
   if (kSparse != 0u) {
     const uint at = pack_site(place.tile, place.pixel);
     exists = at < site_counts.listed;
-    const uint site = exists ? sites[at] : 0u;
-    if (exists) place = unpack_site(site);
-    is_wide = (site & kWideSite) != 0u;
+    if (exists) place = unpack_site(sites[at]);
   }
-  if (!exists) return ListedPixel(false, 0u, ivec2(0), false);
+  if (!exists) return ListedPixel(false, 0u, ivec2(0));
   const ivec2 pixel = pixel_of_tile(unpack_tile(list[place.tile]), place.pixel);
-  return ListedPixel(inside(params.view, pixel), place.tile, pixel, is_wide);
+  return ListedPixel(inside(params.view, pixel), place.tile, pixel);
 }

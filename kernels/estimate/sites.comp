@@ -1,134 +1,123 @@
-// Makes those pixels of a lattice sites that have too few sites of their own surface about them.
+// Chooses the sites of each block of 4 x 4 pixels, and lists them.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: the words of tiles, see tiles.glsl, with the sites of the next wider lattice.
-// Out: the same with those of this one.
+// In: planar depth, view normals, needed tiles.
+// Out: the words of blocks, see blocks.glsl; the planes and the list of sites; depth with a margin.
 //
-// A pixel does without an estimate if the filters can give it one: if in three of the four quadrants about it a site
-// lies within kReach pixels in x and in y, and a path leads there over pixels that are one surface, with one bend at
-// most. On the wider lattices the path may not lead over a round surface, of which a site far away says nothing. What
-// is beyond the image's border counts as a site. On the densest lattice it does not, and two quadrants will do, so that
-// every pixel has a site of the image about it. All pixels of a row are decided at once, as bits of a word; an
-// invocation decides three tiles, and reads kReach pixels beyond them.
+// Surfaces on a lattice are sites. Where the density is adaptive, each site stands for the pixels of its block that
+// show its surface (likeness.glsl) no farther away than a part of the radius, in which AO changes. One of the others is
+// the next site, until none is left. A filter by rows, and then by
+// columns, must find a way from the site to the pixel: where the pixel's column meets the site's row there is no sky.
+// An invocation computes a block.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "kernels/estimate/estimate.h"
+#include "kernels/quick/quick.h"
+#include "kernels/base/view.glsl"
+#include "kernels/base/likeness.glsl"
+#include "kernels/base/normal.glsl"
 #include "kernels/base/tiles.glsl"
+#include "kernels/base/blocks.glsl"
+#include "kernels/base/site_planes.glsl"
 
-layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint kSelects = 0;   // 1: only blocks of needed tiles have sites
+layout(constant_id = 1) const uint kAdaptive = 1;  // 0: only the lattice has sites
+layout(constant_id = 2) const uint kWidens = 0;    // 1: copies the depth
 layout(scalar, push_constant) uniform Push { SitesParams params; };
-readonly buffer Rows { uint rows[]; };  // 8 words per tile, see tiles.glsl
-// links over which a path may lead, as `rows` or without a bend, from links
-readonly buffer Links { uint linked_rows[]; };
-writeonly buffer Result { uint result[]; };  // as `rows`, with more sites
+readonly buffer Depth { float depth[]; };    // one float per pixel, from prepare
+readonly buffer Normal { uint normal[]; };   // one uint per pixel, from prepare
+readonly buffer Needed { uint needed[]; };   // one uint per tile; only if it selects
+writeonly buffer Wide { float wide[]; };     // one float per pixel of the image with its margin: see margin.comp
+writeonly buffer Blocks { uint words[]; };   // one uint per block
+writeonly buffer Planes { vec4 planes[]; };  // by the sites' numbers, see pack_plane; only if adaptive
+writeonly buffer List { uint list[]; };      // the sites' pixels, see pack_pixel, in no order
+buffer Counts { SiteCounts counts; };        // zeros before
 
-const int kReach = 3;                   // px
-const int kCount = kTile + 2 * kReach;  // rows that are looked at
-const int kBeside = 4;                  // px of the tiles on either side that are
+/// A site stands for a pixel that is at least so alike: on a plane, one less than .6 pixels' widths off. Error and time
+/// hardly change from .25 to .7.
+const float kCovered = 0.64;
 
-struct Surroundings {
-  uint right[kCount], below[kCount];  // linked
-};
+/// The order in which pixels become sites: first that of the widest lattice, then others near the middle.
+const int kOrder[kBlockPixels] = int[](5, 10, 6, 9, 0, 15, 3, 12, 1, 14, 2, 13, 4, 11, 7, 8);
 
-/// Pixels of three tiles in a row, and kBeside of their neighbours, as bits.
-uint bits_of(uint words[kSitesTiles + 2], uint first) {
-  uint bits = bitfieldExtract(words[0], int(first) + kTile - kBeside, kBeside);
-  [[unroll]] for (int k = 0; k < kSitesTiles; k++) bits |= bitfieldExtract(words[k + 1], int(first), kTile)
-                                                           << uint(kBeside + k * kTile);
-  return bits | bitfieldExtract(words[kSitesTiles + 1], int(first), kBeside) << uint(kBeside + kSitesTiles * kTile);
+/// Whether anybody needs the estimates of a block: its corners lie in up to four tiles.
+bool is_needed(View view, ivec2 first) {
+  const ivec2 tiles = tiles_of(view.size);
+  const ivec2 from = max(first, ivec2(0)) / kTile, to = min(first + kBlock - 1, view.size - 1) / kTile;
+  return (needed[from.y * tiles.x + from.x] | needed[from.y * tiles.x + to.x] | needed[to.y * tiles.x + from.x] |
+          needed[to.y * tiles.x + to.x]) != 0u;
 }
 
-// A row's sites, and what is linked to them up to kReach pixels to their right or left.
-uint to_right(uint site, uint linked) {
-  [[unroll]] for (int k = 0; k < kReach; k++) site |= (site & linked) << 1;
-  return site;
-}
-uint to_left(uint site, uint linked) {
-  [[unroll]] for (int k = 0; k < kReach; k++) site |= site >> 1 & linked;
-  return site;
-}
-
-void spread_right(inout uint site[kCount], Surroundings s) {
-  [[unroll]] for (int y = 0; y < kCount; y++) site[y] = to_right(site[y], s.right[y]);
-}
-
-void spread_left(inout uint site[kCount], Surroundings s) {
-  [[unroll]] for (int y = 0; y < kCount; y++) site[y] = to_left(site[y], s.right[y]);
-}
-
-// Sites come down as far from the rows above: `last` holds what came to the row before by 0, 1 and 2 pixels.
-void spread_down(inout uint site[kCount], Surroundings s) {
-  uvec3 last = uvec3(0);
-  [[unroll]] for (int y = 0; y < kCount; y++) {
-    const uvec3 next = last & (y > 0 ? s.below[max(y - 1, 0)] : 0u);
-    last = uvec3(site[y], next.xy);
-    site[y] |= next.x | next.y | next.z;
-  }
-}
-
-void spread_up(inout uint site[kCount], Surroundings s) {
-  uvec3 last = uvec3(0);
-  [[unroll]] for (int y = kCount - 1; y >= 0; y--) {
-    const uvec3 next = last & s.below[y];
-    last = uvec3(site[y], next.xy);
-    site[y] |= next.x | next.y | next.z;
-  }
+/// Lists the sites of a block. The invocation whose sites begin a workgroup counts it.
+void list_sites(ivec2 first, uint sites) {
+  if (sites == 0u) return;
+  const uint count = uint(bitCount(sites)), group = kGroupX * kGroupY;
+  const uint begin = atomicAdd(counts.listed, count), end = begin + count;
+  for (uint at = begin; at < end; at++, sites &= sites - 1u)
+    list[at] = pack_pixel(first + place_in_block(findLSB(sites)));
+  if ((begin + group - 1u) / group == (end + group - 1u) / group) return;
+  const uvec2 groups = dispatch_of((end + group - 1u) / group);
+  atomicMax(counts.groups.x, groups.x);
+  atomicMax(counts.groups.y, groups.y);
 }
 
 void main() {
-  const ivec2 tiles = tiles_of(params.size);
-  const ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(kSitesTiles, 1);
-  if (any(greaterThanEqual(first, tiles))) return;
-  const ivec2 corner = first * kTile - ivec2(kBeside, kReach);
-  const uint columns = ~0u >> uint(max(32 - (params.size.x - corner.x), 0)) & ~0u << uint(max(-corner.x, 0));
-  const bool is_dense = params.spacing == 1;
-  Surroundings s;
-  uint site[kCount], outside[kCount], own[kTile];
-  [[unroll]] for (int y = 0; y < kCount; y++) {
-    const int line = clamp(corner.y + y, 0, params.size.y - 1);
-    uint words[kSitesTiles + 2], links[kSitesTiles + 2];
-    [[unroll]] for (int k = 0; k < kSitesTiles + 2; k++) {
-      const ivec2 tile = ivec2(clamp(first.x + k - 1, 0, tiles.x - 1), line / kTile);
-      const int at = words_of_tile(tile, tiles) + line % kTile;
-      words[k] = rows[at];
-      links[k] = linked_rows[at];
-    }
-    outside[y] = line == corner.y + y ? ~columns : ~0u;
-    site[y] = bits_of(words, kSiteByte) & ~outside[y] | (is_dense ? 0u : outside[y]);
-    s.right[y] = bits_of(links, 0u) | outside[y] | outside[y] >> 1;
-    s.below[y] = bits_of(links, kBelowByte) | outside[y];
-    if (y >= kReach && y < kReach + kTile) own[y - kReach] = bits_of(words, kSurfaceByte) & ~outside[y];
+  const View view = params.view;
+  const SiteGrid grid = params.grid;
+  const ivec2 block = ivec2(gl_GlobalInvocationID.xy), first = block * kBlock - grid.overhang;
+  const int number = block.y * grid.blocks.x + block.x, stride = view.size.x + 2 * kDepthMargin;
+  if (block == ivec2(0)) counts.groups.z = 1u;
+  if (any(greaterThanEqual(block, grid.blocks))) return;
+  Plane pixels[kBlockPixels];
+  uint left = 0u, lattice = 0u;  // the pixels that no site stands for, and those of the lattice, as bits by their order
+  uint surfaces = 0u;            // as bits row by row
+  [[unroll]] for (int k = 0; k < kBlockPixels; k++) {
+    const ivec2 pixel = first + place_in_block(kOrder[k]);
+    const int index = index_of(view, clamp(pixel, ivec2(0), view.size - 1));
+    const float z = depth[index];
+    pixels[k] = plane_of(view, pixel, z, kAdaptive != 0u ? unpack_normal(normal[index]) : vec3(0));
+    const bool exists = inside(view, pixel);
+    if (kWidens != 0u && exists) wide[(pixel.y + kDepthMargin) * stride + pixel.x + kDepthMargin] = z;
+    const bool is_surface = exists && z < kSkyDepth;
+    left |= is_surface ? 1u << k : 0u;
+    surfaces |= is_surface ? 1u << kOrder[k] : 0u;
+    lattice |= (params.lattice >> kOrder[k] & 1u) << k;
   }
-  [[unroll]] for (int y = 0; y + 1 < kCount; y++) s.below[y] |= outside[y + 1];
-
-  uint right[kCount] = site, left[kCount] = site, down[kCount] = site, up[kCount] = site;
-  spread_right(right, s);
-  spread_left(left, s);
-  spread_down(down, s);
-  spread_up(up, s);
-  uint a[kCount] = right, b[kCount] = right, c[kCount] = left, d[kCount] = left;
-  spread_down(a, s);
-  spread_up(b, s);
-  spread_down(c, s);
-  spread_up(d, s);
-  uint e[kCount] = down, f[kCount] = up, g[kCount] = down, h[kCount] = up;
-  spread_right(e, s);
-  spread_right(f, s);
-  spread_left(g, s);
-  spread_left(h, s);
-  [[unroll]] for (int y = 0; y < kTile; y++) {
-    const int k = y + kReach;
-    const uint p = a[k] | e[k], q = b[k] | f[k], r = c[k] | g[k], t = d[k] | h[k];
-    const uint three = p & q & (r | t) | r & t & (p | q);
-    const uint two = p & q | r & t | (p | q) & (r | t);
-    const uint lattice = lattice_row(corner + ivec2(0, k) + params.origin, params.spacing);
-    const uint sites = (site[k] | lattice & ~(is_dense ? two : three)) & own[y];
-    for (int tile = 0; tile < kSitesTiles; tile++) {
-      if (first.x + tile >= tiles.x) continue;
-      const int at = words_of_tile(first + ivec2(tile, 0), tiles) + y;
-      result[at] =
-          bitfieldInsert(rows[at], bitfieldExtract(sites, kBeside + tile * kTile, kTile), int(kSiteByte), kTile);
-    }
-  }
+  if (kSelects != 0u) left = is_needed(view, first) ? left : 0u;
+  if (kAdaptive == 0u) left &= lattice;
+  uint sites = 0u;
+  if (left != 0u) do {
+      const int at = findLSB(left);
+      Plane site = pixels[0];
+      int place = kOrder[0];
+      // Chosen member by member: an index that is no constant would put the pixels into memory.
+      [[unroll]] for (int k = 1; k < kBlockPixels; k++) {
+        const bool is = at == k;
+        site.z = is ? pixels[k].z : site.z;
+        site.ahead = is ? pixels[k].ahead : site.ahead;
+        site.across.x = is ? pixels[k].across.x : site.across.x;
+        site.across.y = is ? pixels[k].across.y : site.across.y;
+        site.scale = is ? pixels[k].scale : site.scale;
+        site.n.x = is ? pixels[k].n.x : site.n.x;
+        site.n.y = is ? pixels[k].n.y : site.n.y;
+        site.n.z = is ? pixels[k].n.z : site.n.z;
+        place = is ? kOrder[k] : place;
+      }
+      const uint row = surfaces >> (place & ~3);  // of the site, in the lowest bits
+      const float reach = params.reach / site.scale;
+      uint covered = 0u;
+      [[unroll]] for (int k = 0; k < kBlockPixels && kAdaptive != 0u; k++) {
+        const vec2 px = vec2(place_in_block(kOrder[k]) - place_in_block(place));
+        const uint way = row >> (kOrder[k] & 3) & 1u;
+        const bool is_near = dot(px, px) <= reach * reach;
+        covered |= is_near && similarity(site, pixels[k], px, 0.0) > kCovered ? way << k : 0u;
+      }
+      if (kAdaptive != 0u) planes[number_of_site(grid, number, place)] = pack_plane(site);
+      sites |= 1u << place;
+      left &= ~(covered & ~lattice | 1u << at);
+    } while (left != 0u);
+  words[number] = sites;
+  list_sites(first, sites);
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_FILTERS_H
 #define ALCOVE_FILTERS_H
-#include "kernels/base/shared.h"
+#include "kernels/base/blocks.h"
 ALCOVE_BEGIN
 
 struct CombineParams {
@@ -33,42 +33,40 @@ struct DenoiseParams {
   float weight[9];    // by the distance in pixels, 0 to the radius; of any sum
 };
 
-ALCOVE_CONSTANT int kLatticeStep = 4;  // px between the sites of the widest lattice
-ALCOVE_CONSTANT int kSpreadReach = 4;  // px in x and in y from which a pixel takes the moments of sites
-ALCOVE_CONSTANT int kFitReach = 12;    // px in x and in y from which a site takes others' estimates
+// A pixel takes the sites of the blocks beside its own, and each of these those of the two blocks beyond: 1 + 3 * 4 px.
+ALCOVE_CONSTANT int kBlocksReach = 13;
 
-ALCOVE_CONSTANT int kFitRun = 4;  // sites in a row that one invocation computes
-
-struct FitSitesParams {
+struct FitBlocksParams {
   View view;
-  ivec2 first;  // px: the lattice's first pixel; it may lie beside the image
-  ivec2 sites;  // in x and y
-  float reach;  // px that the radius is wide at unit depth (orthographic: at any)
+  SiteGrid grid;
+  float reach;  // px at unit depth (orthographic: at any): from so far a site takes others
+  float most;   // px: the most of that
+  float held;   // px^2: the slopes of the plane are held back by as much spread of the sites
 };
 
-struct SpreadParams {
+struct SpreadBlocksParams {
   View view;
-  ivec2 first, sites;  // of the lattice, as FitSitesParams has them
+  SiteGrid grid;
+  float slope;  // the part of the slopes at sites by which the values of pixels differ from theirs
 };
 
 ALCOVE_CONSTANT uint kInterpolateColumns = 1;  // columns, after rows; else rows
 ALCOVE_CONSTANT uint kInterpolateListed = 2;   // only the runs of the list, not all
 ALCOVE_CONSTANT uint kInterpolateByDepth = 4;  // weighs by depth_sigma instead of by planes and normals
 ALCOVE_CONSTANT uint kInterpolateLooksUp = 8;  // weighs by `weight` instead of by the parabola
-ALCOVE_CONSTANT uint kInterpolateFitted = 16;  // the sites of the lattice have the values of fit_sites
 
 // Sites in reach weigh at least this part of what they weigh at the pixel itself: they may be all that there is.
 ALCOVE_NUMBER kLeastWindow = 1e-6;
 
 struct InterpolateParams {
   View view;
-  ivec2 axis;          // (1, 0): along rows; (0, 1): along columns
-  float depth_sigma;   // of the depth: a step by this part of it weighs 1/e
-  float reach;         // px, of the parabola at unit depth (orthographic: at any): from so far a site counts, in the
-                       // limits of the kernel
-  float most;          // px: the user's radius, from which a site counts at most
-  ivec2 first, sites;  // of the lattice, as FitSitesParams has them
-  float weight[9];     // by the distance in pixels, 0 to the radius; from the radius to the radius their sum is 1
+  SiteGrid grid;      // of the sites
+  ivec2 axis;         // (1, 0): along rows; (0, 1): along columns
+  float depth_sigma;  // of the depth: a step by this part of it weighs 1/e
+  float reach;        // px, of the parabola at unit depth (orthographic: at any): from so far a site counts, in the
+                      // limits of the kernel
+  float most;         // px: the user's radius, from which a site counts at most
+  float weight[9];    // by the distance in pixels, 0 to the radius; from the radius to the radius their sum is 1
 };
 
 struct UpsampleParams {

@@ -2,12 +2,12 @@
 // separable filter.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In: planes of visibility at sites, depth, normals, and the words that say which pixels are sites; those of the widest
-// lattice may have been smoothed among themselves before, see fit_sites.comp.
+// In: planes of visibility at sites, depth, normals, and the words that say which pixels are sites.
 // Out: as many planes. Where all is open it stays exactly 1; sky is 1.
 //
 // The steps have their numbers at the code:
-//  1. The sites in reach of a run of pixels are found: of rows in the words of tiles; of columns, what rows have made.
+//  1. The sites in reach of a run of pixels are found: of rows in the words of blocks; of columns, what rows have
+//     made.
 //  2. A site counts at a pixel as far as both show one surface (likeness.glsl), and by a parabola of their distance.
 //  3. Sums over the sites are taken for each pixel.
 //  4. The pixel takes its own place on the straight line that fits the sites best (W. S. Cleveland, "Robust Locally
@@ -24,13 +24,14 @@
 #include "kernels/base/likeness.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/tiles.glsl"
+#include "kernels/base/blocks.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = 0) const int kRadius = 8;  // pixels to each side, 1 to kDenoiseMostRadius
-layout(constant_id = 1) const uint kMode = 0;   // bits of kInterpolate*
-layout(constant_id = 2) const int kPlanes = 1;  // how many planes; they share their weights
+layout(constant_id = 0) const int kRadius = 8;   // pixels to each side, 1 to kDenoiseMostRadius
+layout(constant_id = 1) const uint kMode = 0;    // bits of kInterpolate*
+layout(constant_id = 2) const int kPlanes = 1;   // how many planes; they share their weights
+layout(constant_id = 3) const int kMoments = 0;  // those of them that are moments: the first ones
 const bool kColumns = (kMode & kInterpolateColumns) != 0u;
-const bool kFitted = (kMode & kInterpolateFitted) != 0u && !kColumns;
 const uint kByDepth = kMode & kInterpolateByDepth;
 layout(scalar, push_constant) uniform Push { InterpolateParams params; };
 // planes of floats in [0, 1], visibility or the like, at sites; of columns: what rows have made, see pack_blocked
@@ -42,17 +43,13 @@ readonly buffer List { uint list[]; };       // one uint per run, from dilate; o
 readonly buffer Counts { RunCounts counts; };
 // a word for each run of a row and 32 rows, with a bit for each that is written; zeros before the rows
 buffer Runs { uint runs[]; };
-readonly buffer Fitted { float fitted[]; };  // planes of the lattice's pixels, from fit_sites; only where fitted
-readonly buffer Sites { uint rows[]; };      // 8 words per tile, see tiles.glsl; not read along columns
+readonly buffer Blocks { uint words[]; };  // one uint per block, see blocks.glsl; not read along columns
 
 const bool kReadsNormals = kByDepth == 0u;
 #include "kernels/base/plane_at.glsl"
 
 /// Pixels that one invocation looks at.
 const int kCount = kDenoiseRun + 2 * kRadius;
-
-/// A site that was not smoothed weighs so much beside one that was.
-const float kNoisySite = 0.4;
 
 /// A pixel takes sites from so many pixels away, however small the radius is: it has some there, see sites.comp.
 const int kLeastReach = 3;
@@ -75,17 +72,19 @@ uint pack_blocked(float blocked, float weight) {
 
 float square(float x) { return x * x; }
 
+/// The value of a plane where nothing is blocked.
+float open_value(int p) { return p < kMoments ? 0.5 : 1.0; }
+
 /// 1. The sites of a row from this pixel on, as bits.
 uint sites_of_row(ivec2 first) {
-  const ivec2 tiles = tiles_of(params.view.size);
-  const int tile = first.x >> 3, in_tile = first.x & 7;
+  const SiteGrid grid = params.grid;
+  const ivec2 at = first + grid.overhang;
+  const int block = at.x >> 2, beside = at.x & 3, row = at.y / kBlock * grid.blocks.x;
   uint bits = 0u;
-  for (int k = 0; k <= (kCount + 6) / 8; k++) {
-    const bool exists = tile + k >= 0 && tile + k < tiles.x;
-    const int at = words_of_tile(ivec2(clamp(tile + k, 0, tiles.x - 1), first.y / kTile), tiles) + first.y % kTile;
-    const uint row = exists ? rows[at] >> kSiteByte : 0u;
-    const int shift = 8 * k - in_tile;
-    if (shift < 32) bits |= shift < 0 ? row >> uint(-shift) : row << uint(shift);
+  for (int k = 0; k <= (kCount + 2) / kBlock; k++) {
+    const bool exists = block + k >= 0 && block + k < grid.blocks.x;
+    const uint word = exists ? words[row + clamp(block + k, 0, grid.blocks.x - 1)] : 0u;
+    if (k * kBlock - beside < 32) bits = with_row(bits, row_of_block(word, at.y % kBlock), k * kBlock - beside);
   }
   return bits;
 }
@@ -122,16 +121,12 @@ void interpolate(ivec2 first, uint sites, int plane) {
     const int j = findLSB(left) - kRadius;
     const ivec2 site = first + j * params.axis;
     const int index = index_of(params.view, site);
-    const ivec2 beside = site - params.first;
-    const bool is_of_lattice = kFitted && ((beside.x | beside.y) & (kLatticeStep - 1)) == 0;
-    const int of_lattice = (beside.y / kLatticeStep) * params.sites.x + beside.x / kLatticeStep;
-    const float weight = kColumns ? square(unpackUnorm2x16(ao[index]).y) : kFitted && !is_of_lattice ? kNoisySite : 1.0;
+    const float weight = kColumns ? square(unpackUnorm2x16(ao[index]).y) : 1.0;
     const Plane there = plane_at(params.view, site);
     float blocked[kPlanes];
     for (int p = 0; p < kPlanes; p++) {
       const uint word = ao[index + p * plane];
       blocked[p] = kColumns ? unpackUnorm2x16(word).x : 1.0 - uintBitsToFloat(word);
-      if (kFitted && is_of_lattice) blocked[p] = 1.0 - fitted[of_lattice + p * params.sites.x * params.sites.y];
     }
     for (int i = 0; i < kDenoiseRun; i++) {
       const float away = float(j - i);
@@ -166,7 +161,8 @@ void interpolate(ivec2 first, uint sites, int plane) {
       const float rise = (slope[p * kDenoiseRun + i] - sums[i].along * mean) / max(spread, 1e-30);
       const float blocked = is_known ? clamp(mean - rise * away, 0.0, 1.0) : 0.0;
       result[index_of(params.view, pixel) + p * plane] =
-          kColumns ? floatBitsToUint(1.0 - blocked) : pack_blocked(blocked, is_known ? sums[i].whole * sureness : 0.0);
+          kColumns ? floatBitsToUint(is_known ? 1.0 - blocked : open_value(p))
+                   : pack_blocked(blocked, is_known ? sums[i].whole * sureness : 0.0);
     }
   }
 }
@@ -207,6 +203,6 @@ void main() {
     for (int i = 0; i < kDenoiseRun * kPlanes; i++) {
       const ivec2 pixel = first + i % kDenoiseRun * params.axis;
       if (inside(params.view, pixel))
-        result[index_of(params.view, pixel) + i / kDenoiseRun * plane] = floatBitsToUint(1.0);
+        result[index_of(params.view, pixel) + i / kDenoiseRun * plane] = floatBitsToUint(open_value(i / kDenoiseRun));
     }
 }

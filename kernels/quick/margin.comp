@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals. Out: below 0 what is only guessed; sky where nothing goes on. Inside of the picture
-// block_sites writes what is seen. Invocations take first the bands above and below, then the ends of rows.
+// sites writes what is seen. Invocations take first the bands above and below, then the ends of rows.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/quick/quick.h"
@@ -10,7 +10,7 @@
 #include "kernels/base/normal.glsl"
 
 layout(local_size_x = 256) in;
-layout(scalar, push_constant) uniform Push { BlocksParams params; };
+layout(scalar, push_constant) uniform Push { MarginParams params; };
 readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
 readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
 writeonly buffer Wide { float wide[]; };    // one float per pixel of the image with its margin

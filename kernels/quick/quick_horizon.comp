@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth with a margin, view normals, the list of sites.
-// Out: the visibility of the sites.
+// Out: visibility, at the sites.
 //
 // Steps 1 to 5, 9 and 10 are those of horizon.comp, but that a run counts at each of its samples, as far as it is known
 // by then: sectors only grow, so nothing waits for its end. Of the others these differ:
@@ -10,6 +10,7 @@
 //  7. Nothing goes on behind others. Beyond the border samples find the depths that margin.comp has put there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#include "kernels/base/blocks.h"
 #include "kernels/quick/quick.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
@@ -18,18 +19,17 @@
 #include "kernels/base/clearance.glsl"
 #include "kernels/estimate/slice.glsl"
 #include "kernels/estimate/sectors.glsl"
-#include "kernels/quick/blocks.glsl"
+#include "kernels/base/blocks.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kSlices = 2;  // slices per site
 layout(constant_id = 1) const uint kSteps = 12;  // steps to each side of a slice
-layout(scalar, push_constant) uniform Push { BlocksParams params; };
+layout(scalar, push_constant) uniform Push { QuickParams params; };
 readonly buffer Wide { float wide[]; };     // one float per pixel of the image with its margin: see margin.comp
 readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
-readonly buffer Blocks { uint words[]; };   // from block_sites
-readonly buffer List { uint list[]; };      // from block_sites
+readonly buffer List { uint list[]; };      // from sites
 readonly buffer Counts { SiteCounts counts; };
-writeonly buffer Seen { float seen[]; };  // visibility in [0, 1] by the sites' numbers
+writeonly buffer Ao { float ao[]; };  // one float per pixel, visibility in [0, 1]
 
 /// A run is so many times as thick as wide.
 const float kThicknessPerWidth = 2.0;
@@ -115,10 +115,7 @@ void main() {
   const View view = params.view;
   const uint at = (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
   if (at >= counts.listed) return;
-  const uint site = list[at];
-  const int number = int(site) / kBlockSites;
-  const ivec2 pixel = block_of(number, params.blocks) * kBlock - params.overhang +
-                      place_of_site(words[number], site % uint(kBlockSites));
+  const ivec2 pixel = unpack_pixel(list[at]);
   View around = view;
   around.size += 2 * kDepthMargin;
   const float z = wide[index_of(around, pixel + kDepthMargin)];
@@ -141,5 +138,5 @@ void main() {
       sign += 2;
     } while (sign <= 1);
   } while (++s < kSlices);
-  seen[site] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
+  ao[index_of(view, pixel)] = whole > 0.0 ? clamp(1.0 - blocked / whole, 0.0, 1.0) : 1.0;
 }

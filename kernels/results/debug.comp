@@ -14,6 +14,7 @@
 #include "kernels/base/normal.glsl"
 #include "kernels/base/arcs.glsl"
 #include "kernels/base/tiles.glsl"
+#include "kernels/base/blocks.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(scalar, push_constant) uniform Push { DebugParams params; };
@@ -22,7 +23,7 @@ readonly buffer Normal { uint normal[]; };  // one uint per pixel, unit vector i
 // one float per pixel (kDebugValue) or a second set of normals (kDebugNormalAngle), or the kinds of tiles
 // (kDebugTile), or what is hidden (kDebugHidden); not read by others
 readonly buffer Values { uint values[]; };
-readonly buffer Rows { uint rows[]; };        // 8 words per tile, see tiles.glsl; only if sparse
+readonly buffer Blocks { uint words[]; };     // one uint per block, see blocks.glsl; only if sparse
 writeonly buffer Result { float result[]; };  // one float per pixel
 
 /// The distance of the farthest of the four neighbours from the tangent plane, as part of the pixel's depth; 1 at the
@@ -40,7 +41,7 @@ float edge(ivec2 pixel, float z, vec3 n) {
   return farthest;
 }
 
-bool has_site(ivec2 pixel) { return is_site(rows[word_of_pixel(pixel, tiles_of(params.view.size))], pixel.x); }
+bool has_site(ivec2 pixel) { return is_site(params.grid, words[word_of_pixel(params.grid, pixel)], pixel); }
 
 /// A pixel's nearest site is sought so far around it, in px.
 const int kFarthestSite = 4;

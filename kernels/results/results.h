@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_RESULTS_H
 #define ALCOVE_RESULTS_H
-#include "kernels/base/shared.h"
+#include "kernels/base/blocks.h"
 ALCOVE_BEGIN
 
 struct BentNormalParams {
@@ -110,10 +110,11 @@ ALCOVE_CONSTANT uint kDebugHidden = 8;  // surfaces behind the first, and half a
 
 struct DebugParams {
   View view;
-  uint kind;     // one of kDebug*
-  uint sparse;   // of kDebugValue and kDebugDensity: 1: only sites have a value
-  ivec2 origin;  // px from the display window's corner to the image's
-  uint hidden;   // of kDebugHidden: planes of surfaces behind the first
+  SiteGrid grid;  // of sites; only if sparse
+  uint kind;      // one of kDebug*
+  uint sparse;    // of kDebugValue and kDebugDensity: 1: only sites have a value
+  ivec2 origin;   // px from the display window's corner to the image's
+  uint hidden;    // of kDebugHidden: planes of surfaces behind the first
 };
 
 ALCOVE_END

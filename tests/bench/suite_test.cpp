@@ -28,7 +28,7 @@ class SuiteRadius : public CommandLine {
 
 TEST_F(SuiteRadius, is_the_candidates_own_where_it_names_one) {
   const auto errors = errors_of(
-      "[[candidate]]\nname = \"the frame's\"\nslices = 2\n"
+      "[[candidate]]\nname = \"the frame's\"\nslices = 4\n"
       "[[candidate]]\nname = \"its own\"\nradius = 0.1\n"
       "[[sweep]]\nradius = [1, 0.1]\n");
   EXPECT_LT(errors.at("the frame's"), 1e-6);

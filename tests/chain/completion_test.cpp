@@ -51,8 +51,8 @@ class CompletedPlanes : public testing::Test {
   int width() const { return frame.data.width; }
   int height() const { return frame.data.height; }
 
-  /// Whether a pixel is on the lattice of that spacing: see kernels/base/tiles.glsl.
-  static bool is_receiver(int x, int y, int spacing) { return is_on_lattice(x + 3, y + 5, spacing); }
+  /// Whether a pixel is on the lattice of that spacing, which has the pixels beside the middles of blocks.
+  static bool is_receiver(int x, int y, int spacing) { return is_on_lattice(x + 3 - 1, y + 5 - 1, spacing); }
 
   Sites sites_of(int spacing) const { return sites(recorder(), gbuffer, {spacing, false}); }
 

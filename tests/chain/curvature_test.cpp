@@ -246,8 +246,8 @@ TEST(Curvature, of_a_wall_does_not_change_behind_what_stands_before_it) {
   for (const EstimatorSettings& settings : {fine(1), usual(1)}) {
     const Planes planes = planes_of(rendering.frame, settings, kAll);
     const auto is_wall = [&](std::size_t i) { return rendering.hits[i].primitive == 0; };
-    // The filter gives pixels that are like none the least unlike ones.
-    EXPECT_LE(farthest(planes.curvature, 0.5, is_wall), settings.stride == 1 ? 0 : 1e-4) << name_of(settings);
+    // Between two samples that lie far apart a surface may seem to rise.
+    EXPECT_LE(farthest(planes.curvature, 0.5, is_wall), settings.steps == 32 ? 0 : 0.006) << name_of(settings);
     EXPECT_LT(std::ranges::min(planes.ao), 0.9f) << "it does block";
   }
 }

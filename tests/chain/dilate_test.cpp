@@ -41,13 +41,9 @@ std::vector<float> run(const Filter& filter, const std::vector<float>& before, b
   const GBuffer low = downsample(gpu, gbuffer, block_grid(inputs, int(filter.settings.resolution)));
   const Denoiser denoiser = denoiser_of(filter.settings);
   const Sites chosen = sites(gpu, low, site_rule_of(filter.settings));
-  EXPECT_EQ(chosen.rows != nullptr, filter.settings.stride > 1);
+  EXPECT_EQ(chosen.words != nullptr, filter.settings.stride > 1);
   const auto filtered = [&](gpu::Buffer& ao, const FilterRuns& runs) {
-    const bool fits = chosen.rows && denoiser.fits_sites;
-    const gpu::Buffer* fitted = fits ? &fit_sites(gpu, low, ao, chosen, denoiser) : nullptr;
-    gpu::Buffer& smooth = chosen.rows ? interpolate(gpu, low, ao, fitted, chosen, denoiser, "", runs)
-                                      : denoise(gpu, low, ao, denoiser, "", runs);
-    return &upsample(gpu, gbuffer, low, smooth, "", runs);
+    return &upsample(gpu, gbuffer, low, smooth(gpu, low, ao, chosen, denoiser, "", runs), "", runs);
   };
   gpu::Buffer& ao = gpu.buffer("ao", sizeof(float) * filter.ao.size(), gpu::Use::upload);
   gpu::Buffer& words = gpu.buffer("words", sizeof(uint) * filter.tiles.size(), gpu::Use::upload);
@@ -63,7 +59,7 @@ std::vector<float> run(const Filter& filter, const std::vector<float>& before, b
   list.kinds = &words;
   list.skips_surfaces = true;
   const FilterRuns runs = listed ? dilate(gpu, low, list, denoiser) : FilterRuns{};
-  EXPECT_EQ(runs.rows.runs != nullptr, listed && filter.settings.denoise != Denoise::none);
+  EXPECT_EQ(runs.rows.runs != nullptr, listed && !denoiser.weights.empty());
   EXPECT_EQ(runs.blocks.runs != nullptr, listed && filter.settings.resolution != Resolution::full);
   const gpu::Buffer& result = *filtered(ao, runs);
   gpu.download(result);

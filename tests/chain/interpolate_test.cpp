@@ -35,8 +35,7 @@ EstimatorSettings by_depth(int spacing, double sigma) {
 
 /// Each with a site in reach of every pixel.
 std::vector<EstimatorSettings> all_filters() {
-  return {filter(16, 0),
-          filter(16, 8),
+  return {filter(16, 8),
           filter(16, 4),
           filter(16, 8, Density::uniform),
           filter(8, 5),
@@ -74,20 +73,17 @@ struct Sparse {
   Sparse(const HostFrame& host, const EstimatorSettings& settings)
       : frame(prepared(host)),
         sites(alcove::sites(recorder(), frame.gbuffer, site_rule_of(settings))),
-        picture(picture_of(downloaded<uint>(*sites.rows), frame.gbuffer)) {}
+        picture(picture_of(sites, frame.gbuffer)) {}
 
   /// Interpolates planes, which hold `elsewhere` where there is no site.
   std::vector<float> interpolated(std::vector<float> planes, const EstimatorSettings& settings,
                                   float elsewhere = kNan) const {
     for (std::size_t i = 0; i < planes.size(); i++)
-      if (!picture.pixels[i % picture.pixels.size()].is_site) planes[i] = elsewhere;
+      if (!picture.sites[i % picture.sites.size()]) planes[i] = elsewhere;
     gpu::Buffer& buffer = recorder().buffer("visibility of a test", planes.size() * sizeof(float), gpu::Use::upload);
     std::ranges::copy(planes, buffer.as<float>().begin());
     recorder().upload(buffer);
-    const Denoiser denoiser = denoiser_of(settings);
-    const gpu::Buffer* fitted =
-        denoiser.fits_sites ? &fit_sites(recorder(), frame.gbuffer, buffer, sites, denoiser) : nullptr;
-    return downloaded<float>(interpolate(recorder(), frame.gbuffer, buffer, fitted, sites, denoiser));
+    return downloaded<float>(smooth(recorder(), frame.gbuffer, buffer, sites, denoiser_of(settings)));
   }
 };
 
@@ -142,37 +138,6 @@ double reach_at(const Geometry& geometry, const Denoiser& denoiser, int x, int y
   return denoiser.within / (std::abs(geometry.view.tangent_per_pixel.x) * scale);
 }
 
-/// A site's place on the plane that fits those of the lattice around it best, its slopes held back as by a spread of
-/// 4 px^2 more.
-double fitted_site(const Geometry& geometry, const Denoiser& denoiser, const std::vector<float>& ao, int x, int y) {
-  const double end = std::min(12.0, reach_at(geometry, denoiser, x, y)) + 2;
-  struct Site {
-    double x, y, blocked, weight;
-  };
-  std::vector<Site> sites;
-  double whole = 0;
-  Vec3 mean{};  // of places and what is blocked
-  for (int v = -12; v <= 12; v += 4)
-    for (int u = -12; u <= 12; u += 4) {
-      if (x + u < 0 || y + v < 0 || !geometry.is_surface(x + u, y + v)) continue;
-      const double weight =
-          std::max(0.0, 1 - (u * u + v * v) / (end * end)) * std::max(0.0, geometry.likeness(x, y, x + u, y + v));
-      if (weight == 0) continue;
-      sites.push_back({double(u), double(v), 1.0 - ao[geometry.index(x + u, y + v)], weight});
-      whole += weight;
-      mean = mean + Vec3{u * weight, v * weight, sites.back().blocked * weight};
-    }
-  mean = (1 / whole) * mean;
-  double xx = 4, xy = 0, yy = 4, xz = 0, yz = 0;
-  for (const Site& site : sites) {
-    const double part = site.weight / whole, dx = site.x - mean.x, dy = site.y - mean.y, dz = site.blocked - mean.z;
-    xx += part * dx * dx, xy += part * dx * dy, yy += part * dy * dy, xz += part * dx * dz, yz += part * dy * dz;
-  }
-  const double scale = 1 / (xx * yy - xy * xy);
-  const double slope_x = scale * (yy * xz - xy * yz), slope_y = scale * (xx * yz - xy * xz);
-  return std::clamp(mean.z - slope_x * mean.x - slope_y * mean.y, 0.0, 1.0);
-}
-
 /// What a word of two numbers of 16 bits keeps of one.
 double rounded(double x) { return std::round(x * 65535) / 65535; }
 double rounded_weight(double weight) { return std::pow(std::max(rounded(std::sqrt(weight)), 1.0 / 65535), 2); }
@@ -196,12 +161,10 @@ std::vector<double> interpolated_slowly(const Sparse& sparse, const std::vector<
       if (!geometry.is_surface(x, y)) continue;
       Taps taps;
       for (int u = std::max(x - radius, 0); u <= std::min(x + radius, width - 1); u++) {
-        if (!sparse.picture.at(u, y).is_site) continue;
-        const bool is_fitted = denoiser.fits_sites && sparse.picture.is_on_lattice(u, y, 16);
+        if (!sparse.picture.is_site(u, y)) continue;
         taps.away.push_back(u - x);
-        taps.value.push_back(is_fitted ? fitted_site(geometry, denoiser, ao, u, y) : 1 - ao[geometry.index(u, y)]);
-        taps.weight.push_back((denoiser.fits_sites && !is_fitted ? 0.4 : 1) * weight_at(u - x, x, y) *
-                              similarity(geometry, denoiser, x, y, u, y));
+        taps.value.push_back(1 - ao[geometry.index(u, y)]);
+        taps.weight.push_back(weight_at(u - x, x, y) * similarity(geometry, denoiser, x, y, u, y));
       }
       if (!(taps.whole() > 0)) continue;
       blocked[geometry.index(x, y)] = rounded(taps.fitted().at_pixel);
@@ -324,23 +287,6 @@ TEST(Interpolate, mixes_nothing_across_a_crease) {
   const std::vector<float> sides = crease.sides();
   for (const EstimatorSettings& settings : {filter(16, 8), filter(8, 8), filter(4, 8), filter(2, 8)}) {
     const Difference d = difference(Sparse(crease.rendering.frame, settings).interpolated(sides, settings), sides);
-    EXPECT_LT(d.max, 1e-3) << name_of(settings) << " pixel " << d.worst % 80 << " " << d.worst / 80;
-  }
-}
-
-// Moments take another way than AO.
-TEST(Spread, mixes_nothing_across_a_crease) {
-  const Crease crease;
-  const std::vector<float> sides = crease.sides();
-  for (const EstimatorSettings& settings : {filter(16, 8), filter(4, 8)}) {
-    const Sparse sparse(crease.rendering.frame, settings);
-    gpu::Buffer& moments = recorder().buffer("moments of a test", sides.size() * sizeof(float), gpu::Use::upload);
-    std::ranges::copy(sides, moments.as<float>().begin());
-    recorder().upload(moments);
-    const Visibility noisy{.moments = &moments};
-    const Visibility fitted = fit_sites(recorder(), sparse.frame.gbuffer, noisy, sparse.sites, denoiser_of(settings));
-    const Visibility smooth = spread(recorder(), sparse.frame.gbuffer, noisy, fitted, sparse.sites, {}, 0);
-    const Difference d = difference(downloaded<float>(*smooth.moments), sides);
     EXPECT_LT(d.max, 1e-3) << name_of(settings) << " pixel " << d.worst % 80 << " " << d.worst / 80;
   }
 }

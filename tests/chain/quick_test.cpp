@@ -1,7 +1,8 @@
-// The quick search: each of its passes by itself, what it gives for scenes whose AO is known, and where another search
+// The quick search: its margin, what it gives for scenes whose AO is known, and where another search
 // takes its place.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/quick/quick.h"
+#include "kernels/quick/quick.h"
 #include "tests/support/chain.h"
 #include "tests/support/preset.h"
 #include "tests/support/random_scenes.h"
@@ -22,109 +23,6 @@ EstimatorSettings quick(double radius, int slices = 2, int steps = 12) {
   return settings;
 }
 
-/// Blocks of a frame, and their sites as the host sees them.
-struct Chosen {
-  Prepared frame;
-  Blocks blocks;
-  std::vector<uint> words;
-
-  explicit Chosen(const HostFrame& host, double radius = 1)
-      : frame(prepared(host)),
-        blocks(block_sites(recorder(), frame.gbuffer, quick(radius), frame.inputs)),
-        words(downloaded<uint>(*blocks.words)) {}
-  ivec2 size() const { return frame.gbuffer.view.size; }
-  /// Calls back with each site's number and pixel.
-  template <class Visit>
-  void visit(const Visit& visit) const {
-    for (std::size_t block = 0; block < words.size(); block++)
-      for (std::size_t s = 0; s < (words[block] & 15); s++) {
-        const int place = int(words[block] >> (4 + 4 * s) & 15), across = int(block) % blocks.params.blocks.x;
-        visit(block * kBlockSites + s, across * kBlock - blocks.params.overhang.x + place % kBlock,
-              int(block) / blocks.params.blocks.x * kBlock - blocks.params.overhang.y + place / kBlock);
-      }
-  }
-  std::set<std::pair<int, int>> sites() const {
-    std::set<std::pair<int, int>> result;
-    visit([&](std::size_t, int x, int y) { result.emplace(x, y); });
-    return result;
-  }
-  /// What the filters make of a visibility that is given at the sites.
-  template <class Visibility>
-  std::vector<float> filtered(const Visibility& visibility) const {
-    gpu::Buffer& seen = recorder().buffer("seen", words.size() * kBlockSites * sizeof(float), gpu::Use::upload);
-    const auto values = seen.template as<float>();
-    visit([&](std::size_t site, int x, int y) { values[site] = float(visibility(x, y)); });
-    const gpu::Buffer& fitted = fit_blocks(recorder(), blocks, seen);
-    return downloaded<float>(spread_blocks(recorder(), frame.gbuffer, blocks, fitted));
-  }
-};
-
-// Sites: the rule, written out slowly.
-
-/// The pixels of a block in the order of the rule.
-constexpr int kOrder[] = {5, 10, 6, 9, 0, 15, 3, 12, 1, 14, 2, 13, 4, 11, 7, 8};
-constexpr double kCovered = 0.64;
-
-/// The sites of the block that begins at this pixel; `is_doubtful` where floats may decide otherwise.
-std::set<std::pair<int, int>> sites_slowly(const Geometry& geometry, int x, int y, bool& is_doubtful) {
-  std::vector<std::pair<int, int>> left;
-  std::set<std::pair<int, int>> sites;
-  for (const int place : kOrder) {
-    const int u = x + place % kBlock, v = y + place / kBlock;
-    if (u >= 0 && v >= 0 && geometry.is_surface(u, v)) left.emplace_back(u, v);
-  }
-  while (!left.empty() && sites.size() < kBlockSites) {
-    const auto site = left.front();
-    sites.insert(site);
-    std::erase_if(left, [&](const auto& pixel) {
-      const double likeness = geometry.likeness(site.first, site.second, pixel.first, pixel.second);
-      is_doubtful = is_doubtful || std::abs(likeness - kCovered) < 1e-3;
-      return pixel == site || likeness > kCovered;
-    });
-  }
-  return sites;
-}
-
-TEST(BlockSites, are_one_for_each_surface_of_a_block_by_the_rule) {
-  std::mt19937 random(5);
-  RandomScenes scenes(78);
-  std::size_t doubtful = 0, compared = 0, several = 0;
-  for (int i = 0; i < 60; i++) {
-    const Chosen chosen(i % 2 ? scenes.next() : random_picture(random));
-    const Geometry geometry(chosen.frame.gbuffer);
-    const auto sites = chosen.sites();
-    const ivec2 overhang = chosen.blocks.params.overhang;
-    for (int y = -overhang.y; y < chosen.size().y; y += kBlock)
-      for (int x = -overhang.x; x < chosen.size().x; x += kBlock) {
-        bool is_doubtful = false;
-        const auto expected = sites_slowly(geometry, x, y, is_doubtful);
-        std::set<std::pair<int, int>> found;
-        for (const auto& site : sites)
-          if (site.first >= x && site.first < x + kBlock && site.second >= y && site.second < y + kBlock)
-            found.insert(site);
-        (is_doubtful ? doubtful : compared)++;
-        several += expected.size() > 1;
-        if (!is_doubtful) ASSERT_EQ(found, expected) << i << ": " << x << " " << y;
-      }
-  }
-  EXPECT_GT(several, 500);
-  EXPECT_GT(compared, 20 * doubtful);
-}
-
-TEST(BlockSites, of_a_crop_are_those_of_the_whole) {
-  const HostFrame whole = furnished_room(64, 48).frame;
-  const auto all = Chosen(whole).sites();
-  const Window window{7, 9, 41, 30};  // its first whole blocks begin at 8 and 12, its last end at 48 and 36
-  std::size_t compared = 0;
-  for (const auto& [x, y] : Chosen(crop_of(whole, window)).sites()) {
-    const int u = x + window.x, v = y + window.y;
-    if (u < 8 || v < 12 || u >= 48 || v >= 36) continue;
-    EXPECT_TRUE(all.contains({u, v})) << u << " " << v;
-    compared++;
-  }
-  EXPECT_GT(compared, 60);
-}
-
 // The margin.
 
 TEST(Margin, shows_a_plane_where_it_goes_on_and_nothing_of_sky) {
@@ -132,11 +30,12 @@ TEST(Margin, shows_a_plane_where_it_goes_on_and_nothing_of_sky) {
     const Scene wall{{Plane{.point = {5, 0, 0}, .normal = unit({-1, 0.2, 0.3})}}};
     Shot shot =
         orthographic ? Shot::orthographic({}, {1, 0, 0}, 1, 40, 30) : Shot::perspective({}, {1, 0, 0}, 12, 40, 30);
-    const Chosen chosen(render(wall, shot).frame);
+    const Prepared frame = prepared(render(wall, shot).frame);
     shot.data = {-kDepthMargin, -kDepthMargin, 40 + 2 * kDepthMargin, 30 + 2 * kDepthMargin};
     const HostFrame around = render(wall, shot).frame;
-    margin(recorder(), chosen.frame.gbuffer, chosen.blocks);
-    const auto wide = downloaded<float>(*chosen.blocks.wide);
+    const gpu::Buffer& buffer = margin(recorder(), frame.gbuffer);
+    sites(recorder(), frame.gbuffer, {16, true}, "", &buffer);
+    const auto wide = downloaded<float>(buffer);
     ASSERT_EQ(wide.size(), around.depth.size());
     std::size_t told = 0;
     for (std::size_t i = 0; i < wide.size(); i++) {
@@ -168,104 +67,6 @@ TEST(Margin, keeps_a_crease_dark_that_leaves_the_picture) {
     }
   ASSERT_GT(count, 60);
   EXPECT_LT(std::abs(bias), 0.1 * dark) << "without a margin the border misses .3 of it";
-}
-
-// The filters.
-
-TEST(Blocks, leave_a_straight_gradient_as_it_is) {
-  const Chosen chosen(wall_at(3, 2, 61, 47, unit({-1, 0.3, 0.2}), false));
-  const auto gradient = [](int x, int y) { return 0.3 + 0.006 * x + 0.004 * y; };
-  const auto ao = chosen.filtered(gradient);
-  // Slopes are held back, and beside the border a plane has sites on one side only.
-  for (int y = 0; y < 47; y++)
-    for (int x = 0; x < 61; x++) {
-      const bool is_inside = x >= 13 && y >= 13 && x < 48 && y < 34;
-      ASSERT_NEAR(ao[std::size_t(y * 61 + x)], gradient(x, y), is_inside ? 1e-3 : 0.04) << x << " " << y;
-    }
-}
-
-/// The plane of least squares through sites about one of them, at that site; its slopes are held back by 8 px^2.
-double fitted_slowly(const std::vector<std::array<double, 3>>& sites, double x, double y, double reach) {
-  double weight = 0, sum = 0, xs = 0, ys = 0, rise_x = 0, rise_y = 0, xx = 0, xy = 0, yy = 0;
-  for (const auto& [u, v, blocked] : sites) {
-    const double dx = u - x, dy = v - y, w = std::max(0.0, 1 - (dx * dx + dy * dy) / (reach * reach));
-    weight += w, sum += w * blocked, xs += w * dx, ys += w * dy, rise_x += w * dx * blocked, rise_y += w * dy * blocked;
-    xx += w * dx * dx, xy += w * dx * dy, yy += w * dy * dy;
-  }
-  const double mean = sum / weight;
-  xx += 8 * weight - xs * xs / weight, yy += 8 * weight - ys * ys / weight, xy -= xs * ys / weight;
-  rise_x -= xs * mean, rise_y -= ys * mean;
-  const double whole = xx * yy - xy * xy;
-  const double slope_x = (yy * rise_x - xy * rise_y) / whole, slope_y = (xx * rise_y - xy * rise_x) / whole;
-  return std::clamp(mean - (slope_x * xs + slope_y * ys) / weight, 0.0, 1.0);
-}
-
-TEST(Blocks, fit_a_plane_to_their_sites) {
-  const Chosen chosen(wall_at(1, 3, 57, 45, {-1, 0, 0}, false), 1.1);
-  std::mt19937 random(9);
-  std::vector<std::array<double, 3>> sites;
-  chosen.filtered([&](int x, int y) {
-    const double visibility = double(random() % 1000) / 1000;
-    sites.push_back({double(x), double(y), 1 - visibility});
-    return visibility;
-  });
-  const auto fitted = downloaded<std::array<float, 4>>(
-      recorder().buffer("fitted blocks", chosen.words.size() * kBlockSites * 4 * sizeof(float)));
-  const double reach = chosen.blocks.params.reach / 5;
-  ASSERT_THAT(reach, AllOf(testing::Gt(6), testing::Lt(9))) << "two blocks to each side";
-  std::size_t i = 0;
-  chosen.visit([&](std::size_t site, int x, int y) {
-    ASSERT_NEAR(fitted[site][0], fitted_slowly(sites, x, y, reach), 1e-4) << x << " " << y;
-    ASSERT_EQ(sites[i++][0], x);
-  });
-}
-
-TEST(Blocks, share_their_noise) {
-  const Chosen chosen(wall_at(0, 0, 64, 48, unit({-1, 0.3, 0.2}), false));
-  std::mt19937 random(3);
-  double squares = 0, mean = 0;
-  const auto ao = chosen.filtered([&](int, int) { return random() % 2 ? 0.6 : 0.4; });
-  for (const float value : ao) mean += value / double(ao.size());
-  for (const float value : ao) squares += (value - mean) * (value - mean) / double(ao.size());
-  EXPECT_LT(std::sqrt(squares), 0.045) << "sites have .1, and linear interpolation alone leaves .067";
-}
-
-TEST(Blocks, mix_no_surfaces) {
-  HostFrame host = wall_at(0, 0, 64, 48, {-1, 0, 0}, false);
-  const auto is_near = [](int x, int y) { return (x + y / 3) % 23 < 10 || x % 17 == 0; };
-  for (int y = 0; y < 48; y++)
-    for (int x = 0; x < 64; x++)
-      if (is_near(x, y)) host.depth[std::size_t(y * 64 + x)] *= 0.8f;
-  const Chosen chosen(host);
-  const auto ao = chosen.filtered([&](int x, int y) { return is_near(x, y) ? 0.2 : 0.9; });
-  for (int y = 0; y < 48; y++)
-    for (int x = 0; x < 64; x++)
-      ASSERT_NEAR(ao[std::size_t(y * 64 + x)], is_near(x, y) ? 0.2 : 0.9, 2e-3) << x << " " << y;
-}
-
-TEST(Blocks, mix_nothing_across_a_crease) {
-  const Crease crease;
-  const std::vector<float> sides = crease.sides();
-  const auto ao = Chosen(crease.rendering.frame).filtered([&](int x, int y) { return sides[std::size_t(y * 80 + x)]; });
-  const Difference d = difference(ao, sides);
-  EXPECT_LT(d.max, 1e-3) << d.worst % 80 << " " << d.worst / 80;
-}
-
-// Far from the middle of a wide picture a normal that faces the eye may still point away from it along the axis.
-TEST(Blocks, mix_no_surfaces_at_the_sides_of_a_wide_picture) {
-  const Plane wall{.point = {1, 2, 0}, .normal = {0.8, -0.6, 0}};
-  HostFrame host = render({{wall}}, Shot::perspective({}, {1, 0, 0}, 140, 160, 40)).frame;
-  const auto is_near = [](int x, int y) { return (x / 5 + y / 7) % 2 == 0; };
-  for (std::size_t i = 0; i < host.depth.size(); i++)
-    if (is_near(int(i) % 160, int(i) / 160)) host.depth[i] *= 0.7F;
-  const auto ao = Chosen(host).filtered([&](int x, int y) { return is_near(x, y) ? 0.2 : 0.9; });
-  int seen = 0;
-  for (std::size_t i = 0; i < host.depth.size(); i++) {
-    if (i % 160 >= 25) continue;  // farther in, the walls are nearer to each other than a pixel is wide
-    seen++;
-    ASSERT_NEAR(ao[i], is_near(int(i) % 160, int(i) / 160) ? 0.2 : 0.9, 1e-3) << i % 160 << " " << i / 160;
-  }
-  EXPECT_EQ(seen, 1000);
 }
 
 // The search.
@@ -350,13 +151,15 @@ bool is_quick(const EstimatorSettings& settings, const std::string& aovs = "ao")
 TEST(Quick, leaves_what_it_does_not_know_to_the_general_search) {
   EXPECT_TRUE(is_quick(quick(0.5)));
   EXPECT_TRUE(is_quick(quick(0.5), "ao,normal,depth"));
+  EstimatorSettings by_radius = quick(0.5);
+  by_radius.denoise_radius = 5;
+  EXPECT_TRUE(is_quick(by_radius)) << "the filter has no say";
   EXPECT_FALSE(is_quick(quick(0.5), "ao,bent-normal"));
   using Change = void (*)(EstimatorSettings&);
   for (const Change change : std::initializer_list<Change>{
            [](auto& s) { s.further_radii = {0.2}; }, [](auto& s) { s.falloff = Falloff::linear; },
            [](auto& s) { s.thickness = ThicknessKind::infinite; }, [](auto& s) { s.complete = Completion::border; },
-           [](auto& s) { s.density = Density::uniform; }, [](auto& s) { s.denoise_radius = 5; },
-           [](auto& s) { s.estimator = Estimator::bitmask; }}) {
+           [](auto& s) { s.density = Density::uniform; }, [](auto& s) { s.estimator = Estimator::bitmask; }}) {
     EstimatorSettings settings = quick(0.5);
     change(settings);
     EXPECT_FALSE(is_quick(settings)) << name_of(settings);

@@ -409,7 +409,7 @@ TEST_F(CommandLine, stats_have_the_documented_fields_and_add_up) {
     EXPECT_GT(pass.at("ms"), 0);
     passes.push_back(pass.at("name"));
   }
-  EXPECT_THAT(passes, ElementsAre("prepare", "reconstruct", "links", "classify", "list_sites", "chains", "chain_ends",
+  EXPECT_THAT(passes, ElementsAre("prepare", "reconstruct", "sites", "classify", "list_sites", "chains", "chain_ends",
                                   "backs", "horizon", "completion", "interpolate", "interpolate", "shape"));
   const json& ms = one.at("ms");
   EXPECT_NEAR(ms.at("compute"), sum, 1e-9 * sum);

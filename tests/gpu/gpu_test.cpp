@@ -61,7 +61,7 @@ TEST(Reflection, of_a_twin_has_the_same_parameters_and_bindings) {
 }
 
 TEST(Reflection, tells_blocks_that_are_read_from_blocks_that_are_written) {
-  const std::set<std::string> read{"Bounds", "Changes", "Depth", "Needed", "Rows"};
+  const std::set<std::string> read{"Bounds", "Changes", "Depth", "Needed", "Blocks"};
   for (const auto& block : gpu::reflect(gpu::kernel_code("classify")).blocks) {
     EXPECT_EQ(block.is_written, !read.contains(block.name)) << block.name;
     EXPECT_EQ(block.is_read, !block.is_written || block.name == "Counts") << block.name;
@@ -80,7 +80,7 @@ TEST(Reflection, tells_arrays_of_words_that_are_read_without_atomics) {
   constexpr VkFormat kFloats = VK_FORMAT_R32_SFLOAT, kUints = VK_FORMAT_R32_UINT;
   EXPECT_THAT(texels_of("classify"),
               UnorderedElementsAre(testing::Pair("Depth", kFloats), testing::Pair("Changes", kUints),
-                                   testing::Pair("Needed", kUints), testing::Pair("Rows", kUints)))
+                                   testing::Pair("Needed", kUints), testing::Pair("Blocks", kUints)))
       << "Bounds is of vectors, Counts a struct, and the others are only written";
   EXPECT_THAT(texels_of("interpolate"), AllOf(Contains(testing::Key("Ao")), Not(Contains(testing::Key("Runs")))))
       << "Runs has atomics";

@@ -122,6 +122,9 @@ std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
   density.debug = "density";
   run_chain_of(gpu, kernels, settings, density, false);
   settings.search = SliceSearch::steps;
+  settings.denoise_radius = 5;
+  run_chain_of(gpu, kernels, settings, {});
+  settings.denoise_radius = 0;
   settings.power = 1.5;
   run_chain_of(gpu, kernels, settings, everything());
   settings.further_radii = {0.1};

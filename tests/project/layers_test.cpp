@@ -270,7 +270,8 @@ TEST(Layers, the_functions_of_the_chain_are_its_drawing) {
 std::string chain_source() {
   std::string chain = read_bytes(ALCOVE_SOURCE_DIR "/core/chain/chain.cpp");
   for (const auto& [file, type, name] :
-       {std::array{"estimate/sites", "Sites", "sites"}, std::array{"estimate/estimate", "Estimate", "estimate"},
+       {std::array{"filters/filters", "gpu::Buffer&", "smooth"},
+        std::array{"estimate/estimate", "Estimate", "estimate"},
         std::array{"estimate/estimate", "void", "estimate_sampled"},
         std::array{"estimate/exact", "void", "estimate_exact"}, std::array{"hidden/hidden", "GBuffer", "layers"},
         std::array{"hidden/hidden", "GBuffer", "warp"}, std::array{"hidden/hidden", "void", "surfels"},

@@ -110,6 +110,7 @@ TEST_F(Tiles, give_the_bits_of_the_whole_where_ramps_are_cut) {
     depth[i] *= 1 - 0.05f * float(std::clamp<std::size_t>(column < 25 ? column : 50 - column, 8, 15) - 8);
   }
   cards.write(frame);
+  little_memory = 2 * kLittleMemory;
   done_in_tiles(typed("--radius 0.06"));
   const std::string kept = read_bytes(ao);
   expect_same(typed("--radius 0.06 --set ramps=cut"));

@@ -138,10 +138,9 @@ bool completes_anywhere(const EstimatorSettings& settings) {
   return searches_slices(settings) && settings.complete != Completion::none;
 }
 
-double samples_of(const EstimatorSettings& settings, double estimates, double wide) {
+double samples_of(const EstimatorSettings& settings, double estimates) {
   if (searches_exactly(settings)) return 0;
-  const double more = wide * (wide_slices_of(settings) - settings.slices) / settings.slices;
-  return samples_of_a_radius(settings) * double(1 + settings.further_radii.size()) * (estimates + more);
+  return samples_of_a_radius(settings) * double(1 + settings.further_radii.size()) * estimates;
 }
 
 gpu::Extent estimate_extent(const TileList& list) {
@@ -172,8 +171,7 @@ Reach reach_of(const EstimatorSettings& settings, double radius) {
 bool completes_behind(const Reach& reach) { return reach.complete == Completion::all && !std::isinf(reach.thickness); }
 
 Sampling sampling_of(const EstimatorSettings& settings, int frame) {
-  return {settings.slices, wide_slices_of(settings), settings.steps,
-          noise_shift(settings.noise == Noise::animated ? frame : 0, settings.seed)};
+  return {settings.slices, settings.steps, noise_shift(settings.noise == Noise::animated ? frame : 0, settings.seed)};
 }
 
 Skipping skipping_of(const EstimatorSettings& settings, const FrameInputs& frame, const BlockGrid& grid) {
@@ -249,7 +247,7 @@ void estimate_curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites&
   sampled.complete = Completion::none;
   sampled.tolerance = 0;
   Sampling sampling = sampling_of(settings, frame.frame);
-  if (denoiser_of(settings).weights.empty()) sampling.slices = std::max(sampling.slices, kUnfilteredSlices);
+  if (!denoiser_of(settings).smooths()) sampling.slices = std::max(sampling.slices, kUnfilteredSlices);
   sampling.steps = std::max(sampling.steps, kCurvatureSteps);
   const auto radii = radii_of(settings);
   for (uint plane = 0; plane < radii.size(); plane++) {
@@ -300,6 +298,7 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                               gbuffer.grid.overhang,
                               gbuffer.grid.factor,
                               gbuffer.surfaces > 1 ? kHiddenChangeMargin : kChangeMargin,
+                              sites.grid,
                               skipping.needed.from,
                               skipping.needed.to};
   gpu.dispatch("classify", params,
@@ -307,14 +306,14 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
                 {"Changes", gpu::Optional(skipping.changes)},
                 {"Needed", gpu::Optional(gbuffer.needed)},
                 {"Depth", gbuffer.depth},
-                {"Rows", gpu::Optional(sites.rows)},
+                {"Blocks", gpu::Optional(sites.words)},
                 {"List", list.tiles},
                 {"Counts", list.counts},
                 {"Kinds", list.kinds},
                 {"Ao", out.ao},
                 {"Moments", gpu::Optional(out.moments)},
                 {"Completed", gpu::Optional(out.completed)}},
-               {groups_of(int(blocks.x), kGroupY) * kGroupX, blocks.y * kGroupY}, {sites.rows ? 1u : 0u, mode});
+               {groups_of(int(blocks.x), kGroupY) * kGroupX, blocks.y * kGroupY}, {sites.words ? 1u : 0u, mode});
   return list;
 }
 
@@ -370,7 +369,7 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
                     (out.completed ? kWithCompleted : 0) | (out.curvature ? kWithCurvature : 0);
   const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0) |
                      (out.told ? kTellsBacks : 0);
-  const uint sites = out.listed.sites ? uint(sampling.wide_slices) : 0;
+  const uint sites = out.listed.sites ? 1 : 0;
   std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, sites, solid};
   gpu.dispatch("horizon", params, buffers, estimate_extent(out.listed), constants);
   if (gbuffer.surfaces == 1) return;
@@ -417,9 +416,7 @@ gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
   const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
   gpu::Buffer& sums = gpu.buffer("completion", sizeof(vec2) * tiles.x * tiles.y);
   gpu.dispatch("completion",
-               CompletionParams{view,
-                                {gbuffer.grid.origin.x + sites.shift.x, gbuffer.grid.origin.y + sites.shift.y},
-                                sites.spacing,
+               CompletionParams{view, sites.spacing > 1 ? sites.origin : gbuffer.grid.origin, sites.spacing,
                                 planes_in(*estimate.ao, view) - 1},
                {{"Depth", gbuffer.depth}, {"Ao", estimate.ao}, {"Completed", estimate.completed}, {"Sums", sums}},
                tiles);

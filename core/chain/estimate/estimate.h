@@ -36,9 +36,8 @@ bool tells_backs(const EstimatorSettings& settings);
 /// Whether surfaces are completed anywhere, if only beyond the picture's border.
 bool completes_anywhere(const EstimatorSettings& settings);
 
-/// The depth samples that the settings ask for at so many estimates, `wide` of them on the widest lattice; 0 for an
-/// exact search.
-double samples_of(const EstimatorSettings& settings, double estimates, double wide);
+/// The depth samples that the settings ask for at so many estimates; 0 for an exact search.
+double samples_of(const EstimatorSettings& settings, double estimates);
 
 /// Tiles of a G-buffer that an estimator computes.
 struct TileList {
@@ -110,7 +109,6 @@ bool completes_behind(const Reach& reach);
 /// The samples' spread over the hemisphere, and over neighbouring pixels.
 struct Sampling {
   int slices;        // directions per pixel
-  int wide_slices;   // of sites of the widest lattice
   int steps;         // samples to each side of a slice
   vec2 noise_shift;  // where the noise pattern begins
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/estimate/sites.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -11,12 +12,6 @@
 
 namespace alcove {
 namespace {
-
-std::size_t tiles_in(const View& view) {
-  return std::size_t(groups_of(view.size.x, uint(kTile))) * groups_of(view.size.y, uint(kTile));
-}
-
-std::size_t rows_bytes(const View& view) { return tiles_in(view) * kTile * sizeof(uint); }
 
 /// The shifts of a lattice of one pixel of 4 x 4: those that follow each other lie far apart.
 constexpr std::array<ivec2, 16> kShifts{{{0, 0},
@@ -36,15 +31,16 @@ constexpr std::array<ivec2, 16> kShifts{{{0, 0},
                                          {2, 1},
                                          {0, 3}}};
 
-ivec2 moved_by(const ivec2& origin, const ivec2& shift) { return {origin.x + shift.x, origin.y + shift.y}; }
+/// A site stands for pixels within this part of the smallest radius.
+constexpr double kStoodFor = 0.5;
 
-/// See links.comp.
-const gpu::Buffer& flat_links(gpu::Recorder& gpu, const View& view, const std::string& prefix) {
-  return gpu.buffer(prefix + "flat links", rows_bytes(view));
+/// The pixels of a block that lie on the lattice of a spacing: see tiles.glsl. That of spacing 16 has the one that is
+/// first in sites.comp.
+constexpr ivec2 kFirst{1, 1};
+uint lattice_of(int spacing) {
+  constexpr std::array<uint, 5> kLattice{0xffff, 0xa5a5, 0xa0a0, 0x00a0, 0x0020};
+  return kLattice.at(std::size_t(std::countr_zero(unsigned(spacing))));
 }
-
-/// From so many slices on an estimate is meant to be better than what fewer pixels can tell.
-constexpr int kManySlices = 5;
 
 }  // namespace
 
@@ -52,7 +48,7 @@ int spacing_of(const EstimatorSettings& settings) {
   if (searches_exactly(settings)) return 1;
   if (settings.stride > 0) return settings.stride;
   if (settings.denoise != Denoise::bilateral || settings.resolution != Resolution::full) return 1;
-  if (settings.density == Density::adaptive && searches_slices(settings)) return settings.slices < kManySlices ? 16 : 2;
+  if (settings.density == Density::adaptive && searches_slices(settings)) return 16;
   return settings.slices <= 2 && settings.estimator == Estimator::gtao ? 4 : 1;
 }
 
@@ -60,64 +56,67 @@ bool is_adaptive(const EstimatorSettings& settings) {
   return settings.density == Density::adaptive && searches_slices(settings) && spacing_of(settings) > 1;
 }
 
-bool fits_sites(const EstimatorSettings& settings) {
-  constexpr int kWidest = 16;
-  return settings.denoise == Denoise::bilateral && settings.denoise_kernel.empty() && settings.denoise_radius == 0 &&
-         settings.denoise_depth_sigma == 0 && is_adaptive(settings) && spacing_of(settings) == kWidest;
-}
-
-int wide_slices_of(const EstimatorSettings& settings) {
-  return settings.slices + (fits_sites(settings) ? settings.slices / 2 : 0);
-}
-
 int site_reach_of(const EstimatorSettings& settings) {
   return is_adaptive(settings) ? int(settings.resolution) * kSiteReach : 0;
 }
 
 SiteRule site_rule_of(const EstimatorSettings& settings, int turn) {
-  return {spacing_of(settings), is_adaptive(settings), kShifts[std::size_t(turn) % kShifts.size()]};
+  return {spacing_of(settings), is_adaptive(settings), kShifts[std::size_t(turn) % kShifts.size()], !settings.no_skip,
+          settings.radius ? kStoodFor * radii_of(settings).front() : HUGE_VAL};
 }
 
-Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, const std::string& prefix) {
+std::size_t site_bytes(const SiteGrid& grid, std::size_t value) {
+  return value * kBlock * kBlock * std::size_t(grid.blocks.x) * std::size_t(grid.blocks.y);
+}
+
+Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, const std::string& prefix,
+            const gpu::Buffer* wide) {
   if (rule.spacing == 1) return {};
   const View& view = gbuffer.view;
-  const gpu::Buffer* rows = &links(gpu, gbuffer, rule, prefix);
-  const gpu::Extent strips{groups_of(view.size.x, uint(kTile * kSitesTiles)), groups_of(view.size.y, uint(kTile))};
-  for (int spacing = rule.spacing / 2; rule.is_adaptive && spacing > 0; spacing /= 2) {
-    // Each pass reads what the one before it wrote.
-    const bool is_odd = std::countr_zero(unsigned(rule.spacing / spacing)) % 2 == 1;
-    gpu::Buffer& more = gpu.buffer(prefix + (is_odd ? "more sites" : "sites"), rows_bytes(view));
-    // On the denser lattices a path may lead over round surfaces.
-    const gpu::Buffer& links = spacing >= 4 ? flat_links(gpu, view, prefix) : *rows;
-    gpu.dispatch("sites", SitesParams{view.size, moved_by(gbuffer.grid.origin, rule.shift), spacing},
-                 {{"Rows", rows}, {"Links", links}, {"Result", more}}, strips);
-    rows = &more;
-  }
-  return {rows, rule.spacing, rule.shift};
-}
-
-const gpu::Buffer& links(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, const std::string& prefix) {
-  const View& view = gbuffer.view;
-  gpu::Buffer& rows = gpu.buffer(prefix + "sites", rows_bytes(view));
-  gpu.dispatch("links", LinksParams{view, moved_by(gbuffer.grid.origin, rule.shift)},
-               {{"Depth", gbuffer.depth},
-                {"Normal", gbuffer.normal},
-                {"Rows", rows},
-                {"Flat", gpu::Optional(rule.is_adaptive ? &flat_links(gpu, view, prefix) : nullptr)}},
-               {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))},
-               {uint(rule.spacing), rule.is_adaptive ? 1u : 0u});
-  return rows;
+  const ivec2 begin{gbuffer.grid.origin.x + rule.shift.x, gbuffer.grid.origin.y + rule.shift.y};
+  const ivec2 overhang{begin.x & (kBlock - 1), begin.y & (kBlock - 1)};
+  Sites sites;
+  sites.grid = {
+      overhang,
+      {int(groups_of(view.size.x + overhang.x, uint(kBlock))), int(groups_of(view.size.y + overhang.y, uint(kBlock)))}};
+  sites.spacing = rule.spacing;
+  sites.origin = {begin.x - kFirst.x, begin.y - kFirst.y};
+  const ivec2 blocks = sites.grid.blocks;
+  sites.words = &gpu.buffer(prefix + "sites", sizeof(uint) * std::size_t(blocks.x) * std::size_t(blocks.y));
+  if (rule.is_adaptive)
+    sites.planes = &gpu.buffer(prefix + "planes of sites", site_bytes(sites.grid, 4 * sizeof(float)));
+  sites.list = &gpu.buffer(prefix + "sites of blocks", plane_bytes(view));
+  sites.counts = &gpu.buffer(prefix + "block site counts", sizeof(SiteCounts));
+  const uint most = groups_of(view.size.x * view.size.y, kGroupX * kGroupY);
+  sites.extent = {*sites.counts, std::min(most, kListedRow), groups_of(int(most), kListedRow)};
+  const gpu::Buffer* needed = rule.skips ? gbuffer.needed : nullptr;
+  gpu.clear(*sites.counts);
+  gpu.dispatch(
+      "sites",
+      SitesParams{view, sites.grid, lattice_of(rule.spacing), float(rule.within / double(view.tangent_per_pixel.x))},
+      {{"Depth", gbuffer.depth},
+       {"Normal", gbuffer.normal},
+       {"Needed", gpu::Optional(needed)},
+       {"Wide", gpu::Optional(wide)},
+       {"Blocks", sites.words},
+       {"Planes", gpu::Optional(sites.planes)},
+       {"List", sites.list},
+       {"Counts", sites.counts}},
+      {uint(blocks.x), uint(blocks.y)}, {needed ? 1u : 0u, rule.is_adaptive ? 1u : 0u, wide ? 1u : 0u});
+  return sites;
 }
 
 void list_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, TileList& list,
                 const std::string& prefix) {
-  if (!sites.rows) return;
+  if (!sites.words) return;
   const View& view = gbuffer.view;
-  list.sites = &gpu.buffer("listed sites", tiles_in(view) * kTile * kTile * sizeof(uint));
+  const std::size_t tiles =
+      std::size_t(groups_of(view.size.x, uint(kTile))) * std::size_t(groups_of(view.size.y, uint(kTile)));
+  list.sites = &gpu.buffer("listed sites", tiles * kTile * kTile * sizeof(uint));
   list.site_counts = &gpu.buffer(prefix + "site counts", sizeof(SiteCounts));
   gpu.clear(*list.site_counts);
-  gpu.dispatch("list_sites", ListSitesParams{view.size, moved_by(gbuffer.grid.origin, sites.shift)},
-               {{"Rows", sites.rows},
+  gpu.dispatch("list_sites", ListSitesParams{view.size, sites.grid, sites.origin},
+               {{"Blocks", sites.words},
                 {"Tiles", list.tiles},
                 {"TileCountsBuffer", list.counts},
                 {"List", list.sites},

@@ -8,7 +8,6 @@
 
 #include "core/chain/base/planes.h"
 #include "core/chain/estimate/sites.h"
-#include "core/chain/quick/quick.h"
 #include "kernels/estimate/exact.h"
 #include "kernels/filters/filters.h"
 
@@ -48,6 +47,15 @@ std::vector<double> reaching(std::vector<double> weights, int reach) {
   return weights;
 }
 
+std::optional<Denoiser::OfBlocks> of_blocks(const EstimatorSettings& settings) {
+  constexpr int kWidest = 16;
+  const bool is_free =
+      settings.denoise_kernel.empty() && settings.denoise_radius == 0 && settings.denoise_depth_sigma == 0;
+  if (!is_adaptive(settings) || !is_free || spacing_of(settings) != kWidest) return {};
+  // With few slices noise outweighs what changes from site to site.
+  return settings.slices < 3 ? Denoiser::OfBlocks{17, 8, 0.25F} : Denoiser::OfBlocks{14, 0.5F, 1};
+}
+
 /// The distance from which interpolate or denoise takes estimates of others, in pixels of the estimate: 0 without a
 /// denoiser. Where pixels share estimates it is at least 3 px with an adaptive density, in which each pixel then has
 /// one, and 8 with a uniform one, in which small surfaces may have none: these stay open.
@@ -55,6 +63,7 @@ int denoise_reach_of(const EstimatorSettings& settings) {
   // What has an estimated error is not mixed with its neighbours.
   if (settings.denoise == Denoise::none || settings.tolerance > 0) return 0;
   if (settings.denoise == Denoise::box) return 2;
+  if (of_blocks(settings)) return 0;
   const auto& kernel = settings.denoise_kernel;
   const int radius = kernel.empty() ? denoise_radius_of(settings) : int(kernel.size()) - 1;
   if (spacing_of(settings) == 1) return radius;
@@ -91,18 +100,6 @@ Params filter_params(const GBuffer& gbuffer, const Denoiser& denoiser) {
   return params;
 }
 
-/// The lattice of the widest sites.
-struct Lattice {
-  ivec2 first, sites;
-};
-Lattice lattice_of(const GBuffer& gbuffer, const Sites& sites) {
-  const ivec2 shifted{gbuffer.grid.origin.x + sites.shift.x, gbuffer.grid.origin.y + sites.shift.y};
-  const ivec2 first{-(shifted.x & (kLatticeStep - 1)), -(shifted.y & (kLatticeStep - 1))};
-  return {first,
-          {int(groups_of(gbuffer.view.size.x - first.x, uint(kLatticeStep))),
-           int(groups_of(gbuffer.view.size.y - first.y, uint(kLatticeStep)))}};
-}
-
 /// How many pixels wide Denoiser::within is at unit depth (orthographic: at any).
 float pixels_within(const GBuffer& gbuffer, const Denoiser& denoiser) {
   return float(denoiser.within / double(gbuffer.view.tangent_per_pixel.x));
@@ -121,7 +118,7 @@ gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& liste
 
 int denoise_radius_of(const EstimatorSettings& settings) {
   if (settings.denoise_radius > 0) return settings.denoise_radius;
-  return spacing_of(settings) > 1 && !fits_sites(settings) ? 8 : 4;
+  return spacing_of(settings) > 1 ? 8 : 4;
 }
 
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales) {
@@ -134,9 +131,7 @@ Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& e
 }
 
 int filter_reach_of(const EstimatorSettings& settings) {
-  const int spread = spacing_of(settings) > 1 ? kSpreadReach : 0;
-  const int quick = may_search_quickly(settings) ? kQuickReach : 0;
-  const int denoised = std::max({denoiser_of(settings).reach(), spread, quick});
+  const int denoised = denoiser_of(settings).reach();
   const int refined = settings.tolerance > 0 ? kRefineReach : 0;
   return int(settings.resolution) * (denoised + refined + (settings.resolution == Resolution::full ? 0 : 2));
 }
@@ -146,11 +141,11 @@ Denoiser denoiser_of(const EstimatorSettings& settings) {
           settings.denoise_depth_sigma,
           denoise_radius_of(settings),
           !settings.denoise_kernel.empty(),
-          fits_sites(settings),
+          of_blocks(settings),
           is_adaptive(settings) && settings.radius ? kFilteredPart * radii_of(settings).front() : HUGE_VAL};
 }
 
-int Denoiser::reach() const { return weights.empty() ? 0 : int(weights.size()) - 1 + (fits_sites ? kFitReach : 0); }
+int Denoiser::reach() const { return of_blocks ? kBlocksReach : std::max(int(weights.size()) - 1, 0); }
 
 FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const Denoiser& denoiser) {
   // A list costs as much as a twentieth of the filter: it pays where more than sky is left out.
@@ -215,22 +210,8 @@ gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& pl
   return result;
 }
 
-gpu::Buffer& fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
-                       const Denoiser& denoiser, const std::string& prefix) {
-  const Lattice lattice = lattice_of(gbuffer, sites);
-  const uint count = planes_in(planes, gbuffer.view);
-  gpu::Buffer& fitted = gpu.buffer(prefix + "fitted sites",
-                                   sizeof(float) * count * std::size_t(lattice.sites.x) * std::size_t(lattice.sites.y));
-  gpu.dispatch("fit_sites",
-               FitSitesParams{gbuffer.view, lattice.first, lattice.sites, pixels_within(gbuffer, denoiser)},
-               {{"Ao", planes}, {"Depth", gbuffer.depth}, {"Normal", gbuffer.normal}, {"Result", fitted}},
-               {groups_of(lattice.sites.x, uint(kFitRun)), uint(lattice.sites.y)}, {count});
-  return fitted;
-}
-
-gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const gpu::Buffer* fitted,
-                         const Sites& sites, const Denoiser& denoiser, const std::string& prefix,
-                         const FilterRuns& runs) {
+gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
+                         const Denoiser& denoiser, const std::string& prefix, const FilterRuns& runs, uint moments) {
   const auto radius = uint(denoiser.weights.size() - 1);
   InterpolateParams params = filter_params<InterpolateParams>(gbuffer, denoiser);
   const gpu::Buffer& written =
@@ -239,12 +220,9 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
   gpu.clear(written);
   params.most = float(denoiser.radius);
   params.reach = pixels_within(gbuffer, denoiser);
-  const Lattice lattice = lattice_of(gbuffer, sites);
-  params.first = lattice.first;
-  params.sites = lattice.sites;
+  params.grid = sites.grid;
   const uint mode =
       (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.looks_up ? kInterpolateLooksUp : 0);
-  const uint of_rows = fitted ? kInterpolateFitted : 0;
   gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
   gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
   const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
@@ -257,71 +235,56 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
                   {"List", gpu::Optional(listed.runs)},
                   {"Counts", gpu::Optional(listed.counts)},
                   {"Runs", written},
-                  {"Fitted", gpu::Optional(fitted)},
-                  {"Sites", sites.rows}},
+                  {"Blocks", sites.words}},
                  runs_extent(gbuffer, axis, listed),
-                 {radius, mode | (axis.y ? kInterpolateColumns : of_rows) | (listed.runs ? kInterpolateListed : 0),
-                  planes_in(planes, gbuffer.view)});
+                 {radius, mode | (axis.y ? kInterpolateColumns : 0) | (listed.runs ? kInterpolateListed : 0),
+                  planes_in(planes, gbuffer.view), moments});
   };
   along({1, 0}, runs.rows, planes, rows);
   along({0, 1}, runs.columns, rows, result);
   return result;
 }
 
-namespace {
+const gpu::Buffer& fit_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& planes, const Sites& sites,
+                              const Denoiser& denoiser, const std::string& prefix) {
+  const auto& of = *denoiser.of_blocks;
+  const uint count = planes_in(planes, gbuffer.view);
+  const gpu::Buffer& fitted = gpu.buffer(prefix + "fitted", site_bytes(sites.grid, 2 * sizeof(uint) * count));
+  gpu.dispatch("fit_blocks",
+               FitBlocksParams{gbuffer.view, sites.grid, pixels_within(gbuffer, denoiser), of.most, of.held},
+               {{"Blocks", sites.words},
+                {"Planes", sites.planes},
+                {"List", sites.list},
+                {"Counts", sites.counts},
+                {"Ao", planes},
+                {"Fitted", fitted}},
+               sites.extent, {count});
+  return fitted;
+}
 
-/// Filters all planes of a visibility, one member after the other; only those of the AO have runs.
-template <class Filter>
-Visibility filtered(const Visibility& visibility, const FilterRuns& runs, const Filter& filter) {
-  Visibility result;
-  result.ao = &filter(&Visibility::ao, "", runs);
-  if (visibility.scales) result.scales = &filter(&Visibility::scales, kScalesPrefix, FilterRuns{});
-  if (visibility.moments) result.moments = &filter(&Visibility::moments, kMomentsPrefix, FilterRuns{});
+gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& fitted, const Sites& sites,
+                           const Denoiser& denoiser, const std::string& prefix, uint moments) {
+  const std::size_t planes = fitted.bytes() / site_bytes(sites.grid, 2 * sizeof(uint));
+  gpu::Buffer& result = denoised(gpu, prefix, planes * plane_bytes(gbuffer.view));
+  gpu.dispatch("spread_blocks", SpreadBlocksParams{gbuffer.view, sites.grid, denoiser.of_blocks->slope},
+               {{"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"Blocks", sites.words},
+                {"Planes", sites.planes},
+                {"Fitted", fitted},
+                {"Result", result}},
+               {2 * uint(sites.grid.blocks.x), 2 * uint(sites.grid.blocks.y)}, {uint(planes), moments});
   return result;
 }
 
-using Planes = gpu::Buffer* Visibility::*;
-
-}  // namespace
-
-Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Denoiser& denoiser,
-                   const FilterRuns& runs) {
-  return filtered(visibility, runs, [&](Planes planes, const char* prefix, const FilterRuns& listed) -> gpu::Buffer& {
-    return denoise(gpu, gbuffer, *(visibility.*planes), denoiser, prefix, listed);
-  });
-}
-
-Visibility fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
-                     const Denoiser& denoiser) {
-  if (!sites.rows || !denoiser.fits_sites) return {};
-  return filtered(visibility, {}, [&](Planes planes, const char* prefix, const FilterRuns&) -> gpu::Buffer& {
-    return fit_sites(gpu, gbuffer, *(visibility.*planes), sites, denoiser, prefix);
-  });
-}
-
-Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
-                       const Visibility& fitted, const Sites& sites, const Denoiser& denoiser, const FilterRuns& runs) {
-  const Visibility scalar{visibility.ao, visibility.scales};
-  return filtered(scalar, runs, [&](Planes planes, const char* prefix, const FilterRuns& listed) -> gpu::Buffer& {
-    return interpolate(gpu, gbuffer, *(visibility.*planes), fitted.*planes, sites, denoiser, prefix, listed);
-  });
-}
-
-Visibility spread(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& noisy, const Visibility& fitted,
-                  const Sites& sites, Visibility smooth, uint order) {
-  if (!noisy.moments || !sites.rows) return smooth;
-  const Lattice lattice = lattice_of(gbuffer, sites);
-  smooth.moments = &denoised(gpu, kMomentsPrefix, noisy.moments->bytes());
-  gpu.dispatch("spread", SpreadParams{gbuffer.view, lattice.first, lattice.sites},
-               {{"Moments", noisy.moments},
-                {"Depth", gbuffer.depth},
-                {"Normal", gbuffer.normal},
-                {"Fitted", gpu::Optional(fitted.moments)},
-                {"Sites", sites.rows},
-                {"Result", smooth.moments}},
-               {uint(lattice.sites.x), uint(lattice.sites.y)},
-               {planes_in(*noisy.moments, gbuffer.view), fitted.moments ? 1u : 0u, uint(moments_in(order))});
-  return smooth;
+gpu::Buffer& smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
+                    const Denoiser& denoiser, const std::string& prefix, const FilterRuns& runs, uint moments) {
+  if (denoiser.of_blocks) {
+    const gpu::Buffer& fitted = fit_blocks(gpu, gbuffer, planes, sites, denoiser, prefix);
+    return spread_blocks(gpu, gbuffer, fitted, sites, denoiser, prefix, moments);
+  }
+  return sites.words ? interpolate(gpu, gbuffer, planes, sites, denoiser, prefix, runs, moments)
+                     : denoise(gpu, gbuffer, planes, denoiser, prefix, runs);
 }
 
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, gpu::Buffer& low_planes,
@@ -346,10 +309,32 @@ gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer&
   return planes;
 }
 
+namespace {
+
+/// Filters all planes of a visibility, one member after the other; only those of the AO have runs.
+template <class Filter>
+Visibility each_of(const Visibility& visibility, const FilterRuns& runs, const Filter& filter) {
+  Visibility result;
+  result.ao = filter(*visibility.ao, "", runs);
+  if (visibility.scales) result.scales = filter(*visibility.scales, kScalesPrefix, FilterRuns{});
+  if (visibility.moments) result.moments = filter(*visibility.moments, kMomentsPrefix, FilterRuns{});
+  return result;
+}
+
+}  // namespace
+
+Visibility smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
+                  const Denoiser& denoiser, const FilterRuns& runs, uint order) {
+  return each_of(visibility, runs, [&](gpu::Buffer& planes, const char* prefix, const FilterRuns& listed) {
+    const uint moments = &planes == visibility.moments ? uint(moments_in(order)) : 0;
+    return &smooth(gpu, gbuffer, planes, sites, denoiser, prefix, listed, moments);
+  });
+}
+
 Visibility upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const Visibility& visibility,
                     const FilterRuns& runs) {
-  return filtered(visibility, runs, [&](Planes planes, const char* prefix, const FilterRuns& listed) -> gpu::Buffer& {
-    return upsample(gpu, gbuffer, low, *(visibility.*planes), prefix, listed);
+  return each_of(visibility, runs, [&](gpu::Buffer& planes, const char* prefix, const FilterRuns& listed) {
+    return &upsample(gpu, gbuffer, low, planes, prefix, listed);
   });
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,21 +14,30 @@ namespace alcove {
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales);
 
 /// The reach of the bilateral denoiser to each side, in pixels of the estimate. The default is 8 if pixels share
-/// estimates, and 4 if each has its own or fit_sites smooths them first.
+/// estimates, and 4 if each has its own. Blocks of sites have their own reach: see Denoiser.
 int denoise_radius_of(const EstimatorSettings& settings);
 
-/// The reach of estimates beyond their own pixels, in px of the frame: of fit_sites and the denoiser, of upsampling
-/// (two pixels of the estimate), and of the choice of a tile's directions.
+/// The reach of estimates beyond their own pixels, in px of the frame: of the denoiser, of upsampling (two pixels of
+/// the estimate), and of the choice of a tile's directions.
 int filter_reach_of(const EstimatorSettings& settings);
 
 /// The parameters of the denoiser.
 struct Denoiser {
-  std::vector<double> weights;  // from the centre outwards, up to a common factor; empty: there is no filter
+  /// Of the blocks of sites: see fit_blocks.comp and spread_blocks.comp.
+  struct OfBlocks {
+    float most;   // px: from how far a site takes others at most
+    float held;   // px^2: by which slopes are held back
+    float slope;  // the part of them that pixels follow
+  };
+
+  std::vector<double> weights;  // from the centre outwards, up to a common factor; empty: there is no filter by pixels
   double depth_sigma;           // see EstimatorSettings::denoise_depth_sigma
   int radius;                   // px: see denoise_radius_of()
   bool looks_up;                // the weights are the user's, else interpolate's parabola
-  bool fits_sites;              // sites are smoothed among themselves first: see fit_sites.comp
-  double within;                // scene units: the largest reach of interpolate and fit_sites
+  std::optional<OfBlocks>
+      of_blocks;  // for adaptive sites at a spacing of 16, without a radius or weights of the user's
+  double within;  // scene units: the largest reach of interpolate and fit_blocks
+  bool smooths() const { return !weights.empty() || of_blocks; }
   /// The reach of all filters together, in px.
   int reach() const;
 };
@@ -47,35 +57,34 @@ struct FilterRuns {
 /// that of the estimate. A list that would not pay is left out.
 FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const Denoiser& denoiser);
 
-/// Runs both directions of the filter on any number of planes, or returns the input without a filter. `gbuffer` is that
-/// of the estimate. `runs`: from dilate, for the same visibility; without them the filter runs everywhere. `prefix`
-/// stands before the names of its buffers if others are filtered too.
+/// Smooths any number of planes, each surface by itself, and brings them from sites to all pixels; returns the input
+/// without a filter. `gbuffer` is that of the estimate. `runs`: from dilate, for the same visibility; without
+/// them filters run everywhere. `prefix` stands before the names of its buffers if others are smoothed too. The first
+/// `moments` planes are moments.
+gpu::Buffer& smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
+                    const Denoiser& denoiser, const std::string& prefix = "", const FilterRuns& runs = {},
+                    uint moments = 0);
+/// The same for all planes of a visibility, which has moments of that order.
+Visibility smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
+                  const Denoiser& denoiser, const FilterRuns& runs = {}, uint order = 0);
+
+// Its passes.
+
+/// Both directions of the filter, if every pixel has an estimate.
 gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Denoiser& denoiser,
                      const std::string& prefix = "", const FilterRuns& runs = {});
 
-Visibility denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Denoiser& denoiser,
-                   const FilterRuns& runs = {});
+/// Gives every pixel a visibility from the sites around it, by the reach and the weights of the settings.
+gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
+                         const Denoiser& denoiser, const std::string& prefix = "", const FilterRuns& runs = {},
+                         uint moments = 0);
 
-/// Smooths the visibility of the sites of the widest lattice among themselves: planes of the lattice's pixels. No
-/// planes if the denoiser does not fit sites.
-Visibility fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
-                     const Denoiser& denoiser);
-gpu::Buffer& fit_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
-                       const Denoiser& denoiser, const std::string& prefix = "");
-
-/// Gives every pixel a visibility from the sites around it, unless every pixel is one. `fitted`: from fit_sites, for
-/// the same visibility.
-Visibility interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
-                       const Visibility& fitted, const Sites& sites, const Denoiser& denoiser,
-                       const FilterRuns& runs = {});
-gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const gpu::Buffer* fitted,
-                         const Sites& sites, const Denoiser& denoiser, const std::string& prefix = "",
-                         const FilterRuns& runs = {});
-
-/// `smooth` with the moments of that order, and curvature, of every pixel, from those of the sites around it; unchanged
-/// without moments, or if every pixel is a site.
-Visibility spread(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& noisy, const Visibility& fitted,
-                  const Sites& sites, Visibility smooth, uint order);
+/// Smooths planes at sites among themselves: see fit_blocks.comp.
+const gpu::Buffer& fit_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& planes, const Sites& sites,
+                              const Denoiser& denoiser, const std::string& prefix = "");
+/// Gives every pixel the values of the sites around it. The first so many planes are moments.
+gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& fitted, const Sites& sites,
+                           const Denoiser& denoiser, const std::string& prefix = "", uint moments = 0);
 
 /// Brings any number of planes from the blocks of `low` to the pixels of `gbuffer`, or returns the input if both are
 /// the same.

@@ -46,10 +46,7 @@ gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameI
     out.listed = classify(gpu, gbuffer, skipping, reach, chosen, out, prefix);
     list_sites(gpu, gbuffer, chosen, out.listed, prefix);
     horizon(gpu, counted, reach, sampling, out);
-    if (!chosen.rows) return denoise(gpu, gbuffer, *out.ao, denoiser, prefix);
-    const gpu::Buffer* fitted =
-        denoiser.fits_sites ? &fit_sites(gpu, gbuffer, *out.ao, chosen, denoiser, prefix) : nullptr;
-    return interpolate(gpu, gbuffer, *out.ao, fitted, chosen, denoiser, prefix);
+    return smooth(gpu, gbuffer, *out.ao, chosen, denoiser, prefix);
   };
   const gpu::Buffer& thin = visibility(least, float(kThin * radius), Completion::none, "thin ");
   // Endless occluders block all that anything behind them does, but nothing beyond the border.

@@ -107,12 +107,13 @@ DebugPlane debug(gpu::Recorder& gpu, const DebugView& view, const GBuffer& gbuff
     case Source::tiles: values = stages.kinds; break;
   }
   gpu::Buffer& result = gpu.buffer(std::string("debug ") + view.name, plane_bytes(shown.view));
-  gpu.dispatch("debug", DebugParams{shown.view, view.kind, sites.rows ? 1u : 0u, shown.grid.origin, hidden},
+  gpu.dispatch("debug",
+               DebugParams{shown.view, sites.grid, view.kind, sites.words ? 1u : 0u, shown.grid.origin, hidden},
                {{"Depth", shown.depth},
                 {"Normal", shown.normal},
                 {"Values", values},
                 {"Result", result},
-                {"Rows", gpu::Optional(sites.rows)}},
+                {"Blocks", gpu::Optional(sites.words)}},
                extent_of(shown.view));
   return {&view, shown.view.size, &result};
 }
