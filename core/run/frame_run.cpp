@@ -128,7 +128,7 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
     const SiteCounts& sites = outputs.sites->as<SiteCounts>()[0];
     auto& estimates = report_.estimates ? *report_.estimates : report_.estimates.emplace();
     for (std::size_t k = 0; k < kLattices && !is_same; k++) estimates[k] += sites.of_lattice[k];
-    // Those of blocks lie on no lattice.
+    // A quick search does not count its sites by lattice.
     if (outputs.is_quick && !is_same) estimates.back() += sites.listed;
   }
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "core/gpu/recorder.h"
@@ -18,6 +19,10 @@ inline std::size_t plane_bytes(const View& view) { return pixels_of(view) * size
 inline uint planes_in(const gpu::Buffer& buffer, const View& view) { return uint(buffer.bytes() / plane_bytes(view)); }
 inline gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint(view.size.y)}; }
 inline uint groups_of(int pixels, uint size) { return (uint(pixels) + size - 1) / size; }
+/// The workgroups over a list, by the counts of the kernel that makes it; there are never more than `most`.
+inline gpu::Extent listed_extent(const gpu::Buffer& counts, uint most) {
+  return {counts, std::min(most, kListedRow), groups_of(int(most), kListedRow)};
+}
 inline vec3 to_vec3(const std::array<double, 3>& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
 
 /// The planes of moments up to an order: see moments.glsl.

@@ -145,13 +145,11 @@ double samples_of(const EstimatorSettings& settings, double estimates) {
 
 gpu::Extent estimate_extent(const TileList& list) {
   if (!list.sites) return list_extent(list);
-  const uint most = groups_of(int(list.sites->bytes() / sizeof(uint)), kGroupX * kGroupY);
-  return {*list.site_counts, std::min(most, kListedRow), groups_of(int(most), kListedRow)};
+  return listed_extent(*list.site_counts, groups_of(int(list.sites->bytes() / sizeof(uint)), kGroupX * kGroupY));
 }
 
 gpu::Extent list_extent(const TileList& list) {
-  const auto most = uint(list.tiles->bytes() / sizeof(uint));
-  return {*list.counts, std::min(most, kListedRow), groups_of(most, kListedRow)};
+  return listed_extent(*list.counts, uint(list.tiles->bytes() / sizeof(uint)));
 }
 
 Reach reach_of(const EstimatorSettings& settings, double radius) {
@@ -415,9 +413,7 @@ gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estima
   const View& view = gbuffer.view;
   const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
   gpu::Buffer& sums = gpu.buffer("completion", sizeof(vec2) * tiles.x * tiles.y);
-  gpu.dispatch("completion",
-               CompletionParams{view, sites.spacing > 1 ? sites.origin : gbuffer.grid.origin, sites.spacing,
-                                planes_in(*estimate.ao, view) - 1},
+  gpu.dispatch("completion", CompletionParams{view, sites.origin, sites.spacing, planes_in(*estimate.ao, view) - 1},
                {{"Depth", gbuffer.depth}, {"Ao", estimate.ao}, {"Completed", estimate.completed}, {"Sums", sums}},
                tiles);
   return &sums;

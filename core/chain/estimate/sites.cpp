@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/estimate/sites.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -87,8 +86,7 @@ Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, co
     sites.planes = &gpu.buffer(prefix + "planes of sites", site_bytes(sites.grid, 4 * sizeof(float)));
   sites.list = &gpu.buffer(prefix + "sites of blocks", plane_bytes(view));
   sites.counts = &gpu.buffer(prefix + "block site counts", sizeof(SiteCounts));
-  const uint most = groups_of(view.size.x * view.size.y, kGroupX * kGroupY);
-  sites.extent = {*sites.counts, std::min(most, kListedRow), groups_of(int(most), kListedRow)};
+  sites.extent = listed_extent(*sites.counts, groups_of(view.size.x * view.size.y, kGroupX * kGroupY));
   const gpu::Buffer* needed = rule.skips ? gbuffer.needed : nullptr;
   gpu.clear(*sites.counts);
   gpu.dispatch(
