@@ -15,8 +15,8 @@
 namespace alcove {
 namespace {
 
-constexpr int kSize = 64, kBlock = 8, kBlocks = kSize / kBlock;  // px, px, blocks
-constexpr double kStoredOne = 65535;                             // stands for 1
+constexpr int kSize = 64, kCell = 8, kCells = kSize / kCell;  // px, px, cells
+constexpr double kStoredOne = 65535;                          // stands for 1
 
 /// For each of kCheckedPresets what stored_text() gave on lavapipe. device_check_test writes the file anew, see there.
 constexpr std::string_view kStored[] = {
@@ -66,9 +66,9 @@ std::vector<double> check_values(gpu::Recorder& gpu, const EstimatorSettings& se
   EstimatorSettings with_radius = settings;
   with_radius.radius = 0.8;
   const std::vector<float> ao = compute_ao(gpu, room(), with_radius).ao;
-  std::vector<double> means(kBlocks * kBlocks);
+  std::vector<double> means(kCells * kCells);
   for (std::size_t i = 0; i < ao.size(); i++)
-    means[i / kSize / kBlock * kBlocks + i % kSize / kBlock] += double(ao[i]) / (kBlock * kBlock);
+    means[i / kSize / kCell * kCells + i % kSize / kCell] += double(ao[i]) / (kCell * kCell);
   return means;
 }
 
