@@ -86,7 +86,7 @@ Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, co
     sites.planes = &gpu.buffer(prefix + "planes of sites", site_bytes(sites.grid, 4 * sizeof(float)));
   sites.list = &gpu.buffer(prefix + "sites of blocks", plane_bytes(view));
   sites.counts = &gpu.buffer(prefix + "block site counts", sizeof(SiteCounts));
-  sites.extent = listed_extent(*sites.counts, groups_of(view.size.x * view.size.y, kGroupX * kGroupY));
+  sites.extent = listed_extent(*sites.counts, groups_of(int(plane_bytes(view) / sizeof(float)), kGroupX * kGroupY));
   const gpu::Buffer* needed = rule.skips ? gbuffer.needed : nullptr;
   gpu.clear(*sites.counts);
   gpu.dispatch(
