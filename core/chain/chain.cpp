@@ -53,9 +53,10 @@ Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces
                       : estimate(gpu, work, chosen, inputs, settings, order, with_completed, wanted.needs_curvature());
   seen.completion = completion(gpu, work, seen.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
-  const Visibility noisy = combine(gpu, work, seen.estimate, wanted.needs_scales());
+  const Visibility noisy{seen.estimate.ao, nullptr, seen.estimate.moments};
   const FilterRuns runs = dilate(gpu, work, seen.estimate.listed, denoiser);
-  const Visibility smoothed = smooth(gpu, work, noisy, chosen, denoiser, runs, order);
+  const Visibility of_radii = smooth(gpu, work, noisy, chosen, denoiser, runs, order);
+  const Visibility smoothed = combine(gpu, work, of_radii, wanted.needs_scales());
   seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smoothed, runs));
   if (wanted.has(&FrameOutputs::error)) seen.error = cut(gpu, frame, seen.estimate.error, "error");
   seen.stages = {work, noisy.ao, chosen, smoothed.ao, seen.estimate.completed, seen.estimate.listed.kinds};

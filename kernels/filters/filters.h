@@ -42,6 +42,7 @@ struct FitBlocksParams {
   float reach;  // px at unit depth (orthographic: at any): from so far a site takes others
   float most;   // px: the most of that
   float held;   // px^2: the slopes of the plane are held back by as much spread of the sites
+  int first;    // the first of the planes that are smoothed
 };
 
 struct SpreadBlocksParams {

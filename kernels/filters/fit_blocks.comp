@@ -18,7 +18,7 @@
 #include "kernels/base/site_planes.glsl"
 
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const int kPlanes = 1;  // how many planes; they share their weights
+layout(constant_id = 0) const int kPlanes = 1;  // how many planes from the first one on; they share their weights
 layout(scalar, push_constant) uniform Push { FitBlocksParams params; };
 readonly buffer Blocks { uint words[]; };   // from sites
 readonly buffer Planes { vec4 planes[]; };  // from sites
@@ -60,7 +60,7 @@ void write(int number, int all, Sums sums) {
     const vec2 rise = sums.rise[p] - sums.px * mean;
     const vec2 slopes = vec2(yy * rise.x - xy * rise.y, xx * rise.y - xy * rise.x) * per_determinant;
     const uvec2 packed = pack_fit(vec3(clamp(mean - dot(slopes, middle), 0.0, 1.0), slopes));
-    const int at = 2 * (p * all + number);
+    const int at = 2 * ((params.first + p) * all + number);
     fitted[at] = packed.x;
     fitted[at + 1] = packed.y;
   }
@@ -73,7 +73,7 @@ void main() {
   const uint at = (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
   if (at >= counts.listed) return;
   const ivec2 site = unpack_pixel(list[at]), block = (site + grid.overhang) / kBlock;
-  const int width = view.size.x, plane_size = width * view.size.y;
+  const int width = view.size.x, plane_size = width * view.size.y, begin = params.first * plane_size;
   const int own_block = word_of_pixel(grid, site), number = number_of_site(grid, own_block, bit_of_pixel(grid, site));
   const Plane here = unpack_plane(view, planes[number]);
   const float reach = clamp(params.reach / here.scale, kLeastReach, params.most);
@@ -94,7 +94,7 @@ void main() {
       const int o = there.y * grid.blocks.x + there.x;
       uint left = other == there ? words[o] : 0u;
       const vec2 away = vec2(other * kBlock - grid.overhang - site);
-      const int corner = index_of(view, other * kBlock - grid.overhang);
+      const int corner = begin + index_of(view, other * kBlock - grid.overhang);
       if (left != 0u) do {
           const int bit = findLSB(left);
           const ivec2 place = place_in_block(bit);

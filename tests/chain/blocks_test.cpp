@@ -93,7 +93,7 @@ TEST(Blocks, fit_a_plane_to_their_sites) {
       return visibility;
     });
     const auto& of = *chosen.denoiser.of_blocks;
-    const double reach = chosen.denoiser.within / chosen.frame.gbuffer.view.tangent_per_pixel.x / 5;
+    const double reach = chosen.denoiser.within.front() / chosen.frame.gbuffer.view.tangent_per_pixel.x / 5;
     ASSERT_THAT(reach, AllOf(testing::Gt(6), testing::Lt(9))) << "two blocks to each side";
     const auto fitted = downloaded<uint>(
         fit_blocks(recorder(), chosen.frame.gbuffer, chosen.upload(noise), chosen.sites, chosen.denoiser));

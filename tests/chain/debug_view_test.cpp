@@ -46,8 +46,10 @@ TEST_F(DebugViews, every_one_is_a_picture_beside_the_output_that_says_its_scale)
   done(joined(all_views(), {"--resolution", "full"}));
   for (const auto& name : names_of_one_frame()) EXPECT_EQ(shown(name).data, (Window{0, 0, 64, 36})) << name;
   const auto text = [&](const char* name) { return read_bytes(folder / fmt::format("ao.{}.png", name)); };
-  EXPECT_THAT(text("raw-ao"),
-              HasSubstr("raw AO: as estimated, at its own resolution; 1 is open. Darkest: 0, brightest: 1."));
+  EXPECT_THAT(
+      text("raw-ao"),
+      HasSubstr(
+          "raw AO: as estimated, of the smallest radius, at its own resolution; 1 is open. Darkest: 0, brightest: 1."));
   EXPECT_THAT(text("linear-depth"), AllOf(HasSubstr("scene units. Darkest: <= 3."), HasSubstr(", brightest: >= 6.")));
 }
 

@@ -135,7 +135,7 @@ double similarity(const Geometry& geometry, const Denoiser& denoiser, int x, int
 /// How far filters reach at a pixel: a part of the radius, in pixels.
 double reach_at(const Geometry& geometry, const Denoiser& denoiser, int x, int y) {
   const double scale = geometry.view.orthographic ? 1 : geometry.depth[geometry.index(x, y)];
-  return denoiser.within / (std::abs(geometry.view.tangent_per_pixel.x) * scale);
+  return denoiser.within.front() / (std::abs(geometry.view.tangent_per_pixel.x) * scale);
 }
 
 /// What a word of two numbers of 16 bits keeps of one.

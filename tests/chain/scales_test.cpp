@@ -65,10 +65,11 @@ std::function<double(std::size_t)> mean_of_three(const Values& planes) {
 
 TEST(Scales, ao_is_their_mean_shaped) {
   const HostFrame frame = furnished_room(121, 83).frame;
-  for (const Resolution resolution : {Resolution::full, Resolution::quarter}) {
+  for (const auto& [resolution, stride] :
+       {std::pair{Resolution::full, 0}, {Resolution::full, 1}, {Resolution::quarter, 1}}) {
     EstimatorSettings settings = settings_of({0.1, 0.6, 2});
     settings.resolution = resolution;
-    settings.stride = 1;
+    settings.stride = stride;
     const Planes plain = planes_of(frame, settings, "ao,ao-scales");
     const auto mean = mean_of_three(plain.scales);
     EXPECT_LE(difference(plain.ao, mean).max, 5e-5);
@@ -80,16 +81,14 @@ TEST(Scales, ao_is_their_mean_shaped) {
   }
 }
 
-// The filters that give pixels theirs from sites about them cut off what they find beyond 0 and 1: of each scale by
-// itself, and of the mean.
-TEST(Scales, ao_is_nearly_their_mean_where_pixels_share_estimates) {
+// The filter reaches as far as each radius lets it: beside a small radius, a large one is as smooth as alone.
+TEST(Scales, of_a_large_radius_is_as_alone) {
   const HostFrame frame = furnished_room(121, 83).frame;
-  const EstimatorSettings settings = settings_of({0.1, 0.6, 2});
-  ASSERT_TRUE(is_adaptive(settings));
-  const Planes result = planes_of(frame, settings, "ao,ao-scales");
-  const Difference d = difference(result.ao, mean_of_three(result.scales));
-  EXPECT_LE(d.rmse, 2e-3) << place(d, frame);
-  EXPECT_LE(d.max, 0.05) << place(d, frame);
+  const std::size_t pixels = frame.depth.size();
+  const Planes alone = planes_of(frame, settings_of({2}), "ao"),
+               both = planes_of(frame, settings_of({0.3, 2}), "ao-scales");
+  const Difference d = difference(alone.ao, [&](std::size_t i) { return double(both.scales[i + pixels]); });
+  EXPECT_LE(d.rmse, 0.02) << place(d, frame);
 }
 
 TEST(Scales, order_changes_no_bit) {
@@ -111,7 +110,7 @@ TEST(Scales, bent_normals_are_those_of_the_largest) {
   EXPECT_TRUE(same_bits(planes_of(frame, both, "bent-normal").bent, planes_of(frame, alone, "bent-normal").bent));
 }
 
-TEST(Scales, share_all_passes_but_the_search) {
+TEST(Scales, share_all_passes_but_the_search_and_the_fit) {
   const HostFrame frame = furnished_room(61, 47).frame;
   using Names = std::vector<std::string>;
   const auto expect_passes = [&](const EstimatorSettings& settings, const std::string& aovs,
@@ -121,14 +120,14 @@ TEST(Scales, share_all_passes_but_the_search) {
     EXPECT_EQ(planes_of(frame, settings, aovs).passes, expected);
   };
   const Names sites{"sites"}, search{"classify", "list_sites", "chains", "chain_ends", "backs", "horizon"},
-      dense_search{"classify", "chains", "chain_ends", "backs", "horizon"}, combine{"combine"},
-      filter{"fit_blocks", "spread_blocks"}, denoise{"denoise"};
-  expect_passes(settings_of({0.1, 0.6, 2}), "ao", {sites, search, search, search, combine, filter});
-  expect_passes(settings_of({0.1, 0.6, 2}), "ao,ao-scales", {sites, search, search, search, combine, filter, filter});
-  expect_passes(settings_of({0.6}), "ao,ao-scales", {sites, search, filter});
+      dense_search{"classify", "chains", "chain_ends", "backs", "horizon"}, combine{"combine"}, fit{"fit_blocks"},
+      spread{"spread_blocks"}, denoise{"denoise"};
+  for (const char* aovs : {"ao", "ao,ao-scales"})
+    expect_passes(settings_of({0.1, 0.6, 2}), aovs, {sites, search, search, search, fit, fit, fit, spread, combine});
+  expect_passes(settings_of({0.6}), "ao,ao-scales", {sites, search, fit, spread});
   EstimatorSettings dense = settings_of({0.1, 0.6});
   dense.stride = 1;
-  expect_passes(dense, "ao,ao-scales", {dense_search, dense_search, combine, denoise, denoise, denoise, denoise});
+  expect_passes(dense, "ao,ao-scales", {dense_search, dense_search, denoise, denoise, combine});
 }
 
 // Files and options.

@@ -107,7 +107,7 @@ TEST(Sites, stand_for_no_pixel_farther_away_than_a_part_of_the_radius) {
   EstimatorSettings settings;
   settings.radius = 2;
   settings.further_radii = {0.5};
-  EXPECT_DOUBLE_EQ(site_rule_of(settings).within, 0.25);
+  EXPECT_DOUBLE_EQ(site_rule_of(settings).within, 0.1);
 }
 
 TEST(Sites, are_listed_each_once) {
@@ -275,13 +275,13 @@ TEST(DenoiseRadius, left_open_is_wide_where_estimates_are_shared) {
   }
 }
 
-TEST(DenoiseRadius, ends_at_a_part_of_the_smallest_radius_where_sites_are_near) {
+TEST(DenoiseRadius, ends_at_a_part_of_each_radius_where_sites_are_near) {
   EstimatorSettings settings;
   settings.radius = 2;
   settings.further_radii = {0.5};
-  EXPECT_DOUBLE_EQ(denoiser_of(settings).within, 0.2);
+  EXPECT_EQ(denoiser_of(settings).within, (std::vector{0.2, 0.8}));
   settings.density = Density::uniform;
-  EXPECT_TRUE(std::isinf(denoiser_of(settings).within)) << "surfaces of few pixels may have no site so near";
+  EXPECT_TRUE(std::isinf(denoiser_of(settings).within.front())) << "surfaces of few pixels may have no site so near";
 }
 
 }  // namespace

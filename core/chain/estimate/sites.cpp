@@ -31,7 +31,7 @@ constexpr std::array<ivec2, 16> kShifts{{{0, 0},
                                          {0, 3}}};
 
 /// A site stands for pixels within this part of the smallest radius.
-constexpr double kStoodFor = 0.5;
+constexpr double kStoodFor = 0.2;
 
 /// The pixels of a block that lie on the lattice of a spacing: see tiles.glsl. That of spacing 16 has the one that is
 /// first in sites.comp.

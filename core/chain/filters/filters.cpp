@@ -100,9 +100,17 @@ Params filter_params(const GBuffer& gbuffer, const Denoiser& denoiser) {
   return params;
 }
 
-/// How many pixels wide Denoiser::within is at unit depth (orthographic: at any).
-float pixels_within(const GBuffer& gbuffer, const Denoiser& denoiser) {
-  return float(denoiser.within / double(gbuffer.view.tangent_per_pixel.x));
+/// How many pixels wide a length is at unit depth (orthographic: at any).
+float pixels_of(const GBuffer& gbuffer, double length) {
+  return float(length / double(gbuffer.view.tangent_per_pixel.x));
+}
+
+/// The largest reach of filters by radius; infinite where nothing is shared, or no radius is known.
+std::vector<double> within_of(const EstimatorSettings& settings) {
+  if (!is_adaptive(settings) || !settings.radius) return {HUGE_VAL};
+  std::vector<double> within = radii_of(settings);
+  for (double& radius : within) radius *= kFilteredPart;
+  return within;
 }
 
 /// The workgroups of a filter along one axis.
@@ -121,13 +129,13 @@ int denoise_radius_of(const EstimatorSettings& settings) {
   return spacing_of(settings) > 1 ? 8 : 4;
 }
 
-Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales) {
-  const uint radii = planes_in(*estimate.ao, gbuffer.view);
-  if (radii == 1) return {estimate.ao, nullptr, estimate.moments};
+Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& of_radii, bool keeps_scales) {
+  const uint radii = planes_in(*of_radii.ao, gbuffer.view);
+  if (radii == 1) return of_radii;
   gpu::Buffer& mean = gpu.buffer("combined", plane_bytes(gbuffer.view));
-  gpu.dispatch("combine", CombineParams{gbuffer.view.size, radii}, {{"Scales", estimate.ao}, {"Ao", mean}},
+  gpu.dispatch("combine", CombineParams{gbuffer.view.size, radii}, {{"Scales", of_radii.ao}, {"Ao", mean}},
                extent_of(gbuffer.view));
-  return {&mean, keeps_scales ? estimate.ao : nullptr, estimate.moments};
+  return {&mean, keeps_scales ? of_radii.ao : nullptr, of_radii.moments};
 }
 
 int filter_reach_of(const EstimatorSettings& settings) {
@@ -137,12 +145,9 @@ int filter_reach_of(const EstimatorSettings& settings) {
 }
 
 Denoiser denoiser_of(const EstimatorSettings& settings) {
-  return {weights_of(settings),
-          settings.denoise_depth_sigma,
-          denoise_radius_of(settings),
-          !settings.denoise_kernel.empty(),
-          of_blocks(settings),
-          is_adaptive(settings) && settings.radius ? kFilteredPart * radii_of(settings).front() : HUGE_VAL};
+  return {weights_of(settings),        settings.denoise_depth_sigma,
+          denoise_radius_of(settings), !settings.denoise_kernel.empty(),
+          of_blocks(settings),         within_of(settings)};
 }
 
 int Denoiser::reach() const { return of_blocks ? kBlocksReach : std::max(int(weights.size()) - 1, 0); }
@@ -219,7 +224,7 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
                  sizeof(uint) * groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32));
   gpu.clear(written);
   params.most = float(denoiser.radius);
-  params.reach = pixels_within(gbuffer, denoiser);
+  params.reach = pixels_of(gbuffer, denoiser.within.front());
   params.grid = sites.grid;
   const uint mode =
       (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.looks_up ? kInterpolateLooksUp : 0);
@@ -246,19 +251,26 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
 }
 
 const gpu::Buffer& fit_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& planes, const Sites& sites,
-                              const Denoiser& denoiser, const std::string& prefix) {
+                              const Denoiser& denoiser, const std::string& prefix, uint moments) {
   const auto& of = *denoiser.of_blocks;
   const uint count = planes_in(planes, gbuffer.view);
   const gpu::Buffer& fitted = gpu.buffer(prefix + "fitted", site_bytes(sites.grid, 2 * sizeof(uint) * count));
-  gpu.dispatch("fit_blocks",
-               FitBlocksParams{gbuffer.view, sites.grid, pixels_within(gbuffer, denoiser), of.most, of.held},
-               {{"Blocks", sites.words},
-                {"Planes", sites.planes},
-                {"List", sites.list},
-                {"Counts", sites.counts},
-                {"Ao", planes},
-                {"Fitted", fitted}},
-               sites.extent, {count});
+  const bool by_radius = moments == 0 && count == denoiser.within.size();
+  const uint together = by_radius ? 1 : count;
+  const bool is_of_largest = moments == count;  // moments alone: see of_radius()
+  for (uint first = 0; first < count; first += together) {
+    const float reach = pixels_of(gbuffer, by_radius       ? denoiser.within[first]
+                                           : is_of_largest ? denoiser.within.back()
+                                                           : denoiser.within.front());
+    gpu.dispatch("fit_blocks", FitBlocksParams{gbuffer.view, sites.grid, reach, of.most, of.held, int(first)},
+                 {{"Blocks", sites.words},
+                  {"Planes", sites.planes},
+                  {"List", sites.list},
+                  {"Counts", sites.counts},
+                  {"Ao", planes},
+                  {"Fitted", fitted}},
+                 sites.extent, {together});
+  }
   return fitted;
 }
 
@@ -280,7 +292,7 @@ gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu
 gpu::Buffer& smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
                     const Denoiser& denoiser, const std::string& prefix, const FilterRuns& runs, uint moments) {
   if (denoiser.of_blocks) {
-    const gpu::Buffer& fitted = fit_blocks(gpu, gbuffer, planes, sites, denoiser, prefix);
+    const gpu::Buffer& fitted = fit_blocks(gpu, gbuffer, planes, sites, denoiser, prefix, moments);
     return spread_blocks(gpu, gbuffer, fitted, sites, denoiser, prefix, moments);
   }
   return sites.words ? interpolate(gpu, gbuffer, planes, sites, denoiser, prefix, runs, moments)

@@ -10,8 +10,8 @@
 
 namespace alcove {
 
-/// Takes the mean over the radii of an estimate, and keeps their planes where `keeps_scales`.
-Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, bool keeps_scales);
+/// Takes the mean over the radii, of which `of_radii.ao` has a plane each, and keeps these where `keeps_scales`.
+Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& of_radii, bool keeps_scales);
 
 /// The reach of the bilateral denoiser to each side, in pixels of the estimate. The default is 8 if pixels share
 /// estimates, and 4 if each has its own. Blocks of sites have their own reach: see Denoiser.
@@ -36,7 +36,8 @@ struct Denoiser {
   bool looks_up;                // the weights are the user's, else interpolate's parabola
   std::optional<OfBlocks>
       of_blocks;  // for adaptive sites at a spacing of 16, without a radius or weights of the user's
-  double within;  // scene units: the largest reach of interpolate and fit_blocks
+  /// Scene units: the largest reach of fit_blocks by radius, from the smallest on, and of interpolate for all of them.
+  std::vector<double> within;
   bool smooths() const { return !weights.empty() || of_blocks; }
   /// The reach of all filters together, in px.
   int reach() const;
@@ -64,7 +65,7 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
 gpu::Buffer& smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
                     const Denoiser& denoiser, const std::string& prefix = "", const FilterRuns& runs = {},
                     uint moments = 0);
-/// The same for all planes of a visibility, which has moments of that order.
+/// The same for all planes of a visibility, which has moments of that order, and a plane of AO for each radius.
 Visibility smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
                   const Denoiser& denoiser, const FilterRuns& runs = {}, uint order = 0);
 
@@ -79,9 +80,10 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
                          const Denoiser& denoiser, const std::string& prefix = "", const FilterRuns& runs = {},
                          uint moments = 0);
 
-/// Smooths planes at sites among themselves: see fit_blocks.comp.
+/// Smooths planes at sites among themselves: see fit_blocks.comp. A plane for each radius reaches as far as that radius
+/// lets it, moments alone as far as the largest one does, and all others as far as the smallest one.
 const gpu::Buffer& fit_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& planes, const Sites& sites,
-                              const Denoiser& denoiser, const std::string& prefix = "");
+                              const Denoiser& denoiser, const std::string& prefix = "", uint moments = 0);
 /// Gives every pixel the values of the sites around it. The first so many planes are moments.
 gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& fitted, const Sites& sites,
                            const Denoiser& denoiser, const std::string& prefix = "", uint moments = 0);
