@@ -43,7 +43,8 @@ class RampCutter {
     inverse_.reserve(raw.size());
     for (int y = 0; y < view_.size.y; y++)
       for (int x = 0; x < view_.size.x; x++) inverse_.push_back(inverse_of(raw_[index_of(view_, x, y)], x, y));
-    for (std::size_t i = 0; i < weights_.size(); i++) weights_[i] = std::exp(-0.5 * double(i * i) / (kSpread * kSpread));
+    for (std::size_t i = 0; i < weights_.size(); i++)
+      weights_[i] = std::exp(-0.5 * double(i * i) / (kSpread * kSpread));
     is_ramp_.resize(raw.size());
     steepness_.resize(raw.size());
   }
@@ -71,7 +72,9 @@ class RampCutter {
   }
 
   Line line_of(std::size_t first, std::size_t stride, std::size_t count) const {
-    Line line{.raw = std::vector<float>(count), .inverse = std::vector<double>(count)};
+    Line line;
+    line.raw.resize(count);
+    line.inverse.resize(count);
     for (std::size_t i = 0; i < count; i++) {
       line.raw[i] = raw_[first + i * stride];
       line.inverse[i] = inverse_[first + i * stride];
@@ -116,7 +119,8 @@ class RampCutter {
   static Ramp widened(std::span<const double> u, Ramp ramp, std::size_t least, std::size_t most) {
     const double from = u[ramp.first], to = u[ramp.last], far = kSame * std::abs(to - from);
     const auto tail = std::size_t(std::lround(kTail * double(ramp.last - ramp.first)));
-    for (std::size_t i = 0; i < tail && ramp.first > least && std::abs(u[ramp.first - 1] - from) <= far; i++) ramp.first--;
+    for (std::size_t i = 0; i < tail && ramp.first > least && std::abs(u[ramp.first - 1] - from) <= far; i++)
+      ramp.first--;
     for (std::size_t i = 0; i < tail && ramp.last < most && std::abs(u[ramp.last + 1] - to) <= far; i++) ramp.last++;
     return ramp;
   }
