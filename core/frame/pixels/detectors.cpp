@@ -343,7 +343,7 @@ constexpr std::array kTable{
     Detector{NoteCode::enlarged_depth, "equal neighbours on slanted surfaces",
              "they stand in the same rows or columns all over the picture", "depth in its own resolution",
              enlarged_depth},
-    Detector{NoteCode::smoothed_depth, "outlines", "hardly any is a step between two pixels",
+    Detector{NoteCode::smoothed_depth, "outlines", "hardly any is a step between two pixels, or ramps were cut",
              "rendering depth without a filter; --set ramps=cut; --depth-channel where the file has another depth",
              smoothed_depth},
     Detector{NoteCode::antialiased_depth, "steps between two smooth surfaces", "more than 30 % have a pixel in between",

@@ -30,7 +30,7 @@ struct BorderCounts {
 void count_repeats(const Line& line, BorderCounts& counts);
 Repeats repeats_of(const BorderCounts& counts, std::size_t lines);
 
-/// A stretch of pixels along which depth changes in one direction, by steps that are no less than a tenth of its largest.
+/// A stretch of pixels along which depth changes in one direction, by steps of at least a tenth of its largest one.
 struct Ramp {
   std::size_t first, last;  // pixels
   bool is_sharp = false;    // nearly all of the change is one step
