@@ -188,11 +188,10 @@ void FrameTally::note_repairs(const FrameSource& source) {
         {NoteCode::repaired_depth,
          fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth)});
   if (counts_.repaired_normals)
-    notes.push_back(
-        {NoteCode::repaired_normals,
-         fmt::format("{} pixels with a surface by their depth had no usable normal; it was reconstructed from depth{}",
-                     counts_.repaired_normals, window_of_normals(source)),
-         source.normal_file()});
+    notes.push_back({NoteCode::repaired_normals,
+                     fmt::format("{} pixels had no usable normal; it was reconstructed from depth{}",
+                                 counts_.repaired_normals, window_of_normals(source)),
+                     source.normal_file()});
   if (counts_.turned_normals)
     notes.push_back(
         {NoteCode::turned_normals,
