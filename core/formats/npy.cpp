@@ -58,7 +58,7 @@ class NpyReader : public RowReader {
     const auto size_of = [&](std::size_t i) {
       return std::uint32_t(std::min(1e6, std::max(0.0, number_of(sizes[i]).value_or(0))));
     };
-    if (sizes.size() != 3 || shape.find('.') != shape.npos || size_of(2) < 1 || size_of(2) > 4)
+    if (sizes.size() != 3 || shape.find_first_not_of("0123456789, ") != shape.npos || size_of(2) < 1 || size_of(2) > 4)
       refuse(
           fmt::format("its shape is ({}), and a picture has (height, width), or 1 to 4 channels behind these: "
                       "save array.squeeze(), or numpy.moveaxis(array, 0, -1) where channels come first",

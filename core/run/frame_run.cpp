@@ -176,7 +176,7 @@ static std::string window_of_normals(const FrameSource& source) {
   if (source.channels[RawPlane::normal].empty()) return "";
   const Window& data = source.part_of(source.channels[RawPlane::normal][0]).data;
   if (common_part(data, source.reading.data) == source.reading.data) return "";
-  return fmt::format(": the normals of {} cover {} only, and the depth {}",
+  return fmt::format(" (those of {} cover {} only, and the depth {})",
                      source.files[source.channels[RawPlane::normal][0].file].path(), to_string(data),
                      to_string(source.reading.data));
 }
@@ -189,7 +189,8 @@ void FrameTally::note_repairs(const FrameSource& source) {
          fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth)});
   if (counts_.repaired_normals)
     notes.push_back({NoteCode::repaired_normals,
-                     fmt::format("{} pixels had no usable normal; it was reconstructed from depth{}",
+                     fmt::format("{} pixels had no usable normal{}; it was reconstructed from depth: give all "
+                                 "surfaces normals (--normal), or if these are the sky, its depth (--sky)",
                                  counts_.repaired_normals, window_of_normals(source)),
                      source.normal_file()});
   if (counts_.turned_normals)

@@ -78,6 +78,7 @@ TEST_F(Npy, that_is_no_picture_is_refused_with_what_to_do) {
            {npy("|b1", "2, 3", numbers), "type |b1"},
            {npy("", "2, 3", numbers), "records"},
            {npy("<f4", "2.9, 3", numbers), "(height, width)"},
+           {npy("<f4", "2e0, 3", numbers), "its shape is (2e0, 3)"},
            {records, "records"},
            {npy("<f4", "6,", numbers), "(height, width)"},
            {npy("<f4", "", numbers), "(height, width)"},

@@ -122,7 +122,7 @@ TEST_F(Doubts, depth_is_clamped_where_many_pixels_have_its_largest_value_and_not
 TEST_F(Doubts, what_depth_may_be_is_told_by_its_values_its_program_and_its_camera_file) {
   const std::string normalized = "--depth-kind normalized --near 0 --far F",
                     reversed = "--depth-kind normalized --reversed-z --near 0 --far F";
-  const std::vector<std::string> all_kinds{normalized, "--reversed-z", "--depth-kind planar"};
+  const std::vector<std::string> all_kinds{normalized, "--reversed-z", "--depth-kind planar", "--depth-kind disparity"};
   std::vector<double> distances;
   for (const auto& hit : rendering().hits)
     if (hit.primitive >= 0) distances.push_back(hit.distance / 100);

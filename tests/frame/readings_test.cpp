@@ -285,7 +285,7 @@ TEST_F(Readings, with_a_flip_and_no_space_are_noted_too) {
 TEST_F(Readings, of_a_z_buffer_need_its_planes_and_take_its_direction_from_the_sky) {
   Written device = all_depths()[3];
   write(device);
-  expect(Reply::refused, {"device", "inverse", "--near", "--far", "frame.exr"});
+  expect(Reply::refused, {"device", "inverse", "--near", "--far", "frame.exr", "--depth-kind disparity"});
   for (const bool reversed : {false, true}) {
     device = all_depths()[reversed ? 4 : 3];
     write(device);

@@ -14,6 +14,7 @@
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/pixels/walk.h"
 #include "core/frame/samples.h"
+#include "core/frame/settle/depth_settlement.h"
 
 namespace alcove {
 namespace {
@@ -29,8 +30,8 @@ void refuse_8_bits(std::span<const float> depth, const std::string& name) {
   }
   if (levels.size() >= kLeastLevels)
     fail(ErrorKind::input,
-         "{} holds only values of 8 bits, too few distances for AO: give --depth as floats, as EXR and DDS hold them",
-         name);
+         "{} holds only values of 8 bits, too few distances for AO: give --depth as floats, as EXR and DDS hold them{}",
+         name, kDisparityHint);
 }
 
 /// Takes down how the values were rounded.
