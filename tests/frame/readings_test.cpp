@@ -111,6 +111,9 @@ TEST_F(Readings, of_every_kind_of_depth_by_every_other_are_noted) {
 
 TEST_F(Readings, of_inverse_depth_beyond_1_need_no_option) {
   write({DepthKind::inverse, false, [](double z, double) { return 30 / z; }, 0});
+  std::string guesses;
+  for (const Note& note : settled().notes) guesses += note.text;
+  EXPECT_THAT(guesses, HasSubstr("a / z + b, --depth-kind disparity"));
   EXPECT_EQ(settled().reading.depth_kind, DepthKind::inverse);
 }
 
