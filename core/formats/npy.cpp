@@ -55,9 +55,7 @@ class NpyReader : public RowReader {
     auto sizes = split(shape);
     std::erase(sizes, "");  // behind the last comma
     if (sizes.size() == 2) sizes.emplace_back("1");
-    const auto size_of = [&](std::size_t i) {
-      return std::uint32_t(std::min(1e6, std::max(0.0, number_of(sizes[i]).value_or(0))));
-    };
+    const auto size_of = [&](std::size_t i) { return std::uint32_t(std::min(1e6, number_of(sizes[i]).value_or(0))); };
     if (sizes.size() != 3 || shape.find_first_not_of("0123456789, ") != shape.npos || size_of(2) < 1 || size_of(2) > 4)
       refuse(
           fmt::format("its shape is ({}), and a picture has (height, width), or 1 to 4 channels behind these: "

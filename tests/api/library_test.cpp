@@ -30,8 +30,8 @@ TEST_F(Library, cuts_ramps_in_a_copy_and_says_so) {
   give_planes(handle);
   EXPECT_OK(handle, alcove_set(handle.get(), "ramps", "cut"));
   HostFrame cut = frame();
-  cut.reading.cuts_ramps = true;
-  cut_ramps(cut.reading, cut.depth);
+  cut.cuts_ramps = true;
+  cut_ramps(cut, cut.depth);
   EstimatorSettings settings;
   settings.radius = 0.35;
   const std::vector<float> wanted = compute_ao(recorder(), cut, settings).ao;

@@ -1,5 +1,6 @@
 // Frames that are computed in tiles have the bits of frames that are computed at once.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/frame_files.h"
 #include "tests/support/exr_header.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/walked_shot.h"
