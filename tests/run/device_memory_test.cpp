@@ -153,10 +153,6 @@ TEST_F(MemoryLimit, holds_for_a_frame_in_tiles) {
             1);
 }
 
-TEST_F(MemoryLimit, holds_where_ramps_are_cut) {
-  EXPECT_GT(run_within(400, 1, {0, 0, 2400, 1600}, "--slices 1 --steps 2 --set ramps=cut")["frames"][0]["parts"], 1);
-}
-
 TEST_F(MemoryLimit, holds_for_several_frames_at_once) {
   EXPECT_GT(run_within(360, 6, {0, 0, 800, 600}, "--threads 4 --noise animated")["totals"]["at_once"], 1);
 }
