@@ -158,6 +158,9 @@ TEST_F(Notes, on_a_file_that_another_option_gives_name_it) {
   broken.write(depth);
   EXPECT_THAT(lines_of(done(said).err),
               Contains(AllOf(StartsWith("alcove: warning: " + depth), testing::EndsWith("[repaired-depth]"))));
+  const Options without_input = typed("run --radius 1 --chunk 1/2 --camera " + camera + " -o " + ao);
+  EXPECT_THAT(run_program(joined(without_input, {"--depth", folder / "missing.exr"})).err,
+              HasSubstr("missing.exr: file not found (--depth)"));
 }
 
 TEST_F(Notes, that_are_allowed_by_their_codes_are_no_errors) {
