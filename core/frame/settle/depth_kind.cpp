@@ -48,9 +48,8 @@ class DepthKindSettlement : private DepthSettlement {
     if (usual_ == DepthKind::inverse) return take_passed_on(best.kind, why);
     if (expected.straight >= kAsGood * best.straight) return take_usual(why);
     if (best.straight < kClear * second.straight)
-      fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}{}",
-           path_, word_of(best.kind), word_of(second.kind), why, word_of(best.kind), word_of(second.kind),
-           best.kind == DepthKind::inverse || second.kind == DepthKind::inverse ? kDisparityHint : "");
+      fail(ErrorKind::input, "{}: the depth may be {} or {} ({}): say which with --depth-kind {} or --depth-kind {}",
+           path_, word_of(best.kind), word_of(second.kind), why, word_of(best.kind), word_of(second.kind));
     reading_.depth_kind = best.kind;
     if (best.kind == DepthKind::inverse && values_.all.least >= 0 && is_fraction()) return settle_device(why);
     const bool may_be_other = best.kind == DepthKind::inverse && !reading_.camera.orthographic;
