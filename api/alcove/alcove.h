@@ -67,8 +67,8 @@ ALCOVE_API alcove_code alcove_plane(alcove_session* handle, const char* name, co
 
 // Sets a perspective camera: focal lengths and principal point in px of the planes from their upper left corner, and
 // world_to_camera, four rows of four for column vectors, a rotation with a translation; null for none. Without a
-// camera, the options fov, vertical-fov, focal with aperture, or ortho-width give one whose axis is in the middle.
-// alcove_run() checks it.
+// camera, the options fov, vertical-fov, focal with aperture, focal-px, or ortho-width give one whose axis is in the
+// middle. alcove_run() checks it.
 ALCOVE_API alcove_code alcove_camera(alcove_session* handle, double fx, double fy, double cx, double cy,
                                      const double* world_to_camera);
 // Sets the camera by the text of a camera file, which also tells orthographic cameras, left-handed ones, near and far,

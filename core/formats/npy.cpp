@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "core/base/half.h"
 #include "core/base/text.h"
@@ -15,6 +17,12 @@ namespace {
 
 constexpr std::size_t kMostHeader = 4096;  // bytes; that of a plain array has 118
 
+/// Infinite where it is beyond a float's range.
+float as_float(double number) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return std::isfinite(number) && std::abs(number) > kMost ? float(std::copysign(INFINITY, number)) : float(number);
+}
+
 struct Type {
   const char* name;  // a letter, and the bytes of a number
   float (*value)(const char*);
@@ -22,7 +30,7 @@ struct Type {
 constexpr Type kTypes[] = {
     {"f2", [](const char* at) { return from_half(number_at<std::uint16_t>(at)); }},
     {"f4", [](const char* at) { return number_at<float>(at); }},
-    {"f8", [](const char* at) { return float(number_at<double>(at)); }},
+    {"f8", [](const char* at) { return as_float(number_at<double>(at)); }},
     {"u1", [](const char* at) { return float(number_at<std::uint8_t>(at)) / 255; }},
     {"u2", [](const char* at) { return float(number_at<std::uint16_t>(at)) / 65535; }},
     {"i4", [](const char* at) { return float(number_at<std::int32_t>(at)); }},
@@ -39,16 +47,16 @@ class NpyReader : public RowReader {
     next(header.data(), header.size());
     const std::string type = text_of(header, "'descr':", '\'', '\''), shape = text_of(header, "'shape':", '(', ')');
     type_ = std::ranges::find(kTypes, type.substr(std::min<std::size_t>(1, type.size())), &Type::name);
-    if (size > kMostHeader || type_ == std::end(kTypes))
-      refuse(fmt::format("its numbers are of the type {}: save array.astype('float32')", type));
+    if (size > kMostHeader) refuse(fmt::format("its header has {} bytes, and that of a plain array has 118", size));
+    if (type_ == std::end(kTypes))
+      refuse(fmt::format("its numbers are {}: save array.astype('float32')",
+                         type.empty() ? "records" : "of the type " + type));
     if (header.find("True") != header.npos) refuse("it is in Fortran's order: save numpy.ascontiguousarray(array)");
     auto sizes = split(shape);
     std::erase(sizes, "");  // behind the last comma
     if (sizes.size() == 2) sizes.emplace_back("1");
-    const auto size_of = [&](std::size_t i) {
-      return std::uint32_t(std::min(1e6, std::max(0.0, number_of(sizes[i]).value_or(0))));
-    };
-    if (sizes.size() != 3 || size_of(2) < 1 || size_of(2) > 4)
+    const auto size_of = [&](std::size_t i) { return std::uint32_t(std::min(1e6, number_of(sizes[i]).value_or(0))); };
+    if (sizes.size() != 3 || shape.find_first_not_of("0123456789, ") != shape.npos || size_of(2) < 1 || size_of(2) > 4)
       refuse(
           fmt::format("its shape is ({}), and a picture has (height, width), or 1 to 4 channels behind these: "
                       "save array.squeeze(), or numpy.moveaxis(array, 0, -1) where channels come first",
@@ -64,8 +72,9 @@ class NpyReader : public RowReader {
 
   /// What stands between two marks behind a key; "" where nothing does.
   static std::string text_of(const std::string& header, const std::string& key, char from, char to) {
-    const std::size_t name = std::min(header.find(key), header.size()), begin = header.find(from, name + key.size());
-    const std::size_t end = begin == header.npos ? begin : header.find(to, begin + 1);
+    const std::size_t name = std::min(header.find(key), header.size()),
+                      begin = header.find_first_not_of(' ', name + key.size());
+    const std::size_t end = begin == header.npos || header[begin] != from ? header.npos : header.find(to, begin + 1);
     return end == header.npos ? "" : header.substr(begin + 1, end - begin - 1);
   }
 

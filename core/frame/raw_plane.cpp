@@ -14,6 +14,12 @@ const std::string& main_input(const InputSettings& settings) {
   return settings.position.empty() ? settings.deep.front() : settings.position;
 }
 
+const char* main_option(const InputSettings& settings) {
+  if (!settings.input.empty()) return "INPUT";
+  if (!settings.depth.empty()) return "--depth";
+  return settings.position.empty() ? "--deep" : "--position";
+}
+
 bool wants_normals(const InputSettings& settings) { return lower_case(settings.normal) != "none"; }
 
 bool wants_matte(const InputSettings& settings) {

@@ -70,6 +70,8 @@ static_assert(rows_are_in_order());
 
 /// The file that a frame is called after: its INPUT, or else its depth, its positions or its deep samples.
 const std::string& main_input(const InputSettings& settings);
+/// The option that names it.
+const char* main_option(const InputSettings& settings);
 
 /// Whether the frame's normals are read; `--normal none` leaves them out.
 bool wants_normals(const InputSettings& settings);

@@ -178,6 +178,15 @@ double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, doubl
   return map.along_ray ? z / ray_length : z;
 }
 
+double raw_of(const DepthMap& map, double planar, double ray_length) {
+  const double z = map.along_ray ? planar * ray_length : planar;
+  switch (map.form) {
+    case kDepthReciprocal: return map.origin + (1 / z - map.base) / map.slope;
+    case kDepthExponential: return map.origin + std::log1p(z / map.base) / map.slope;
+    default: return map.origin + (z - map.base) / map.slope;
+  }
+}
+
 bool lacks_sign(std::size_t components, NormalEncoding encoding) {
   return components == 2 && encoding != NormalEncoding::octahedral && encoding != NormalEncoding::spheremap;
 }

@@ -73,6 +73,8 @@ bool is_all_sky(const DepthMap& map, std::span<const float> raw);
 /// Planar depth of a raw value, or of a position; infinite for sky. `ray_length`: the length of the pixel's ray at unit
 /// depth.
 double planar_depth(const DepthMap& map, const std::array<double, 3>& raw, double ray_length);
+/// The raw value of a planar depth; not of positions.
+double raw_of(const DepthMap& map, double planar, double ray_length);
 
 /// Half a step of floats, and of half floats, as a part of the raw value.
 constexpr double kFloatPrecision = 0x1p-24, kHalfPrecision = 0x1p-11;

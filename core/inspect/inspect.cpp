@@ -224,10 +224,12 @@ struct Inspector {
     try {
       find_source();
     } catch (const Error& error) {
-      for (const std::string& path :
-           {settings.input, settings.depth, wants_normals(settings) ? settings.normal : "", settings.position})
+      for (const auto& [option, path] : {std::pair("INPUT", settings.input),
+                                         {"--depth", settings.depth},
+                                         {"--normal", wants_normals(settings) ? settings.normal : ""},
+                                         {"--position", settings.position}})
         if (!path.empty())
-          source.files.push_back(open_image(path, "INPUT", Formats::of_frames));  // what cannot be read fails here
+          source.files.push_back(open_image(path, option, Formats::of_frames));  // what cannot be read fails here
       found.missing.push_back(error.what());
       return false;
     }

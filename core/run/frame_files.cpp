@@ -498,6 +498,7 @@ void read_sky(FrameSource& source, const std::string& path) {
 
 /// Whether planes are all that the frame needs.
 bool are_of(const ReadPlanes& planes, const FrameSource& source) {
+  if (source.reading.cuts_ramps && !source.evidence) return false;  // these are cut, and do not settle a frame
   return std::ranges::all_of(kRawPlanes, [&](const auto& row) {
     return source.channels[row.plane].empty() ||
            planes[row.plane].size() == source.channels[row.plane].size() * source.reading.data.pixels();
@@ -549,11 +550,13 @@ void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& k
       reads.push_back({&source.channels[row.plane], planes[row.plane].data()});
     }
     read_planes(source, source.reading.data, reads);
+    if (!source.evidence)
+      settle_by_planes(source, settings.input, planes[RawPlane::depth], planes[RawPlane::normal], most_bytes);
+    cut_ramps(source.reading, planes[RawPlane::depth]);
     known = std::move(planes);
-  }
-  if (!source.evidence)
+  } else if (!source.evidence) {
     settle_by_planes(source, settings.input, known[RawPlane::depth], known[RawPlane::normal], most_bytes);
-  if (is_read) cut_ramps(source.reading, known[RawPlane::depth]);
+  }
 }
 
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& window, const Settings& settings,

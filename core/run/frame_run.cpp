@@ -176,7 +176,7 @@ static std::string window_of_normals(const FrameSource& source) {
   if (source.channels[RawPlane::normal].empty()) return "";
   const Window& data = source.part_of(source.channels[RawPlane::normal][0]).data;
   if (common_part(data, source.reading.data) == source.reading.data) return "";
-  return fmt::format(": the normals of {} cover {} only, and the depth {}",
+  return fmt::format(" (those of {} cover {} only, and the depth {})",
                      source.files[source.channels[RawPlane::normal][0].file].path(), to_string(data),
                      to_string(source.reading.data));
 }
@@ -186,31 +186,36 @@ void FrameTally::note_repairs(const FrameSource& source) {
   if (counts_.repaired_depth)
     notes.push_back(
         {NoteCode::repaired_depth,
-         fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth)});
+         fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth),
+         source.note_file(RawPlane::depth)});
   if (counts_.repaired_normals)
     notes.push_back({NoteCode::repaired_normals,
-                     fmt::format("{} pixels had no usable normal; it was reconstructed from depth{}",
+                     fmt::format("{} pixels had no usable normal{}; it was reconstructed from depth: give all "
+                                 "surfaces normals (--normal), or if these are the sky, its depth (--sky)",
                                  counts_.repaired_normals, window_of_normals(source)),
-                     source.normal_file()});
+                     source.note_file(RawPlane::normal)});
   if (counts_.turned_normals)
     notes.push_back(
         {NoteCode::turned_normals,
          fmt::format("the normals of {} pixels faced away from the eye, as on mirrored things and the backs of cards; "
                      "they were turned round",
                      counts_.turned_normals),
-         source.normal_file()});
+         source.note_file(RawPlane::normal)});
   if (counts_.repaired_material)
     notes.push_back(
         {NoteCode::repaired_material_ao,
-         fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material)});
+         fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material),
+         source.note_file(RawPlane::material_ao)});
   if (counts_.repaired_beauty)
     notes.push_back({NoteCode::repaired_beauty,
                      fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
-                                 counts_.repaired_beauty)});
+                                 counts_.repaired_beauty),
+                     source.note_file(RawPlane::beauty)});
   if (has_alpha_ && !has_coverage_ && counts_.sky < report_.pixels)
     notes.push_back({NoteCode::transparent_beauty,
                      "the beauty's alpha is 0 in all pixels, so no pixel is covered by a surface, and the composite is "
-                     "the beauty as it was: give --beauty a picture without alpha, or with that of the surfaces"});
+                     "the beauty as it was: give --beauty a picture without alpha, or with that of the surfaces",
+                     source.note_file(RawPlane::beauty)});
 }
 
 Notes FrameTally::notes_on(const FrameSource& source, const InputSettings& settings) {
@@ -224,7 +229,8 @@ Notes FrameTally::notes_on(const FrameSource& source, const InputSettings& setti
       settings.ambient.empty())
     notes.push_back({NoteCode::no_indirect_light,
                      "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims "
-                     "direct light too; --set ambient names its ambient light, or beauty for all of it"});
+                     "direct light too; --set ambient names its ambient light, or beauty for all of it",
+                     source.note_file(RawPlane::beauty)});
   return notes;
 }
 

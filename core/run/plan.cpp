@@ -172,7 +172,7 @@ void FramePlan::find_inputs(const std::vector<int>& own) {
   // A chunk without frames of its own fails as all others do where no frame is there.
   const std::vector<int>& chunk = own.empty() && evidence_.empty() ? all_ : own;
   if (const std::string& input = main_input(settings_.input); own.empty() && !is_sequence_ && !exists(input))
-    fail(ErrorKind::input, "{}: file not found (INPUT)", input);
+    fail(ErrorKind::input, "{}: file not found ({})", input, main_option(settings_.input));
   std::string complaint;
   for (const auto& pattern : patterns_) {
     if (!pattern.is_input()) continue;

@@ -4,6 +4,7 @@
 
 #include "core/base/half.h"
 #include "core/base/version.h"
+#include "core/frame/pixels/ramps.h"
 #include "tests/support/difference.h"
 #include "tests/support/library.h"
 
@@ -22,6 +23,25 @@ TEST_F(Library, gives_the_bits_of_the_chain) {
   EXPECT_TRUE(std::isnan(alcove_number(handle.get(), "nothing")));
   EXPECT_STRNE(alcove_device(handle.get()), "");
   EXPECT_STREQ(alcove_version(), kVersion);
+}
+
+TEST_F(Library, cuts_ramps_in_a_copy_and_says_so) {
+  const Handle handle = with_camera();
+  give_planes(handle);
+  EXPECT_OK(handle, alcove_set(handle.get(), "ramps", "cut"));
+  HostFrame cut = frame();
+  cut.cuts_ramps = true;
+  cut_ramps(cut, cut.depth);
+  EstimatorSettings settings;
+  settings.radius = 0.35;
+  const std::vector<float> wanted = compute_ao(recorder(), cut, settings).ao;
+  EXPECT_NE(wanted, truth());
+  for (int run = 0; run < 2; run++) {
+    EXPECT_EQ(ao_of(handle), wanted) << run;
+    EXPECT_THAT(alcove_notes(handle.get()), HasSubstr("lay on ramps"));
+  }
+  EXPECT_OK(handle, alcove_set(handle.get(), "ramps", "keep"));
+  EXPECT_EQ(ao_of(handle), truth());
 }
 
 TEST_F(Library, takes_planes_however_they_lie) {

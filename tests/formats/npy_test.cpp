@@ -54,6 +54,8 @@ TEST_F(Npy, has_the_numbers_of_each_type_and_order_of_bytes) {
   EXPECT_THAT(read(npy(">u2", "1, 2", std::string("\xff\xff\x33\x33", 4))).pixels, ElementsAre(1, 0.2f));
   EXPECT_THAT(read(npy("<i4", "2, 1", bytes_of<std::int32_t>({-70000, 5}))).pixels, ElementsAre(-70000, 5));
   EXPECT_THAT(read(npy("<f4", "1, 2, 3", bytes_of(numbers))).plane("G"), ElementsAre(0.25f, 0));
+  const float inf = std::numeric_limits<float>::infinity();
+  EXPECT_THAT(read(npy("<f8", "1, 3", bytes_of<double>({1e300, -1e39, 3}))).pixels, ElementsAre(inf, -inf, 3));
   std::string second = npy("<f4", "2, 3", bytes_of(numbers));
   second[6] = 2;
   second.insert(10, 2, '\0');
@@ -62,6 +64,8 @@ TEST_F(Npy, has_the_numbers_of_each_type_and_order_of_bytes) {
 
 TEST_F(Npy, that_is_no_picture_is_refused_with_what_to_do) {
   const std::string numbers(64, '\0'), plain = npy("<f4", "2, 3", numbers);
+  std::string records = plain;
+  records.replace(records.find("'<f4', "), 7, "[('<f4'");
   const auto with = [&](std::size_t at, char byte) {
     std::string bytes = plain;
     bytes[at] = byte;
@@ -72,20 +76,23 @@ TEST_F(Npy, that_is_no_picture_is_refused_with_what_to_do) {
            {npy("<c8", "2, 3", numbers), "array.astype('float32')"},
            {npy("<i8", "2, 3", numbers), "type <i8"},
            {npy("|b1", "2, 3", numbers), "type |b1"},
-           {npy("", "2, 3", numbers), "type "},
+           {npy("", "2, 3", numbers), "records"},
+           {npy("<f4", "2.9, 3", numbers), "(height, width)"},
+           {npy("<f4", "2e0, 3", numbers), "its shape is (2e0, 3)"},
+           {records, "records"},
            {npy("<f4", "6,", numbers), "(height, width)"},
            {npy("<f4", "", numbers), "(height, width)"},
            {npy("<f4", "3, 2, 3, 1", numbers), "array.squeeze()"},
            {npy("<f4", "1, 2, 7", numbers), "numpy.moveaxis(array, 0, -1)"},
            {npy("<f4", "2, 3, 0", numbers), "(2, 3, 0)"},
            {npy("<f4", "0, 3", numbers), "empty"},
-           {npy("<f4", "-2, 3", numbers), "empty"},
-           {npy("<f4", "nan, 3", numbers), "empty"},
+           {npy("<f4", "-2, 3", numbers), "its shape"},
+           {npy("<f4", "nan, 3", numbers), "its shape"},
            {npy("<f4", "2, 99999999999999999999", numbers), "wider"},
            {npy("<f4", "65536, 65536, 4", numbers), "ends too early"},
            {npy("<f4", "5, 4", numbers), "4 x 5 pixels"},
-           {npy("<f4', 'x': (" + std::string(5000, ' '), "2, 3", numbers), "type <f4"},
-           {with(8, '\0').substr(0, 20), "type "},
+           {npy("<f4', 'x': (" + std::string(5000, ' '), "2, 3", numbers), "header"},
+           {with(8, '\0').substr(0, 20), "records"},
            {with(6, 2), "ends too early"},
        })
     expect_error(ErrorKind::input, {path, word, "--depth"}, [&, &given = bytes] { read(given); });

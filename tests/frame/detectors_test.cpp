@@ -40,6 +40,20 @@ using Codes = std::set<std::string>;
 
 TEST(Detectors, nothing_is_said_of_a_sound_frame) { EXPECT_EQ(spoken(sound()), Codes{}); }
 
+TEST(Detectors, ramps_that_a_cut_leaves_are_told_and_so_is_the_cut) {
+  Findings f = sound();
+  f.cut_pixels = 1234;
+  const Notes cut = detected(f);
+  ASSERT_EQ(cut.size(), 1U);
+  EXPECT_EQ(cut[0].code, NoteCode::smoothed_depth);
+  EXPECT_THAT(cut[0].text, HasSubstr("1234 pixels"));
+  f.outlines[1] = {300, 5, 0, 0};
+  f.outlines[0] = {400, 100, 300, 250};
+  EXPECT_EQ(spoken(f), (Codes{"smoothed-depth", "antialiased-depth"}));
+  for (const Note& note : detected(f))
+    EXPECT_THAT(note.text, AllOf(HasSubstr("1234 pixels"), Not(HasSubstr("--set ramps=cut"))));
+}
+
 TEST(Detectors, each_fault_is_told_by_its_numbers_and_by_nothing_else) {
   struct Case {
     const char* code;

@@ -131,7 +131,7 @@ TEST_F(Disparity, of_8_bits_says_what_that_does_to_ao) {
   EXPECT_THAT(said(), ElementsAre()) << "nor do they where the shift is said";
   settings.depth_range = {};
   settings.depth_kind = DepthKind::inverse;
-  expect(Reply::refused, {"8 bits"});
+  expect(Reply::refused, {"8 bits", "--depth-kind disparity"});
 }
 
 TEST_F(Disparity, is_refused_where_nothing_tells_its_shift) {

@@ -122,7 +122,7 @@ TEST_F(Doubts, depth_is_clamped_where_many_pixels_have_its_largest_value_and_not
 TEST_F(Doubts, what_depth_may_be_is_told_by_its_values_its_program_and_its_camera_file) {
   const std::string normalized = "--depth-kind normalized --near 0 --far F",
                     reversed = "--depth-kind normalized --reversed-z --near 0 --far F";
-  const std::vector<std::string> all_kinds{normalized, "--reversed-z", "--depth-kind planar"};
+  const std::vector<std::string> all_kinds{normalized, "--reversed-z", "--depth-kind planar", "--depth-kind disparity"};
   std::vector<double> distances;
   for (const auto& hit : rendering().hits)
     if (hit.primitive >= 0) distances.push_back(hit.distance / 100);
@@ -146,6 +146,13 @@ TEST_F(Doubts, what_depth_may_be_is_told_by_its_values_its_program_and_its_camer
            {"below 1, said planar", "", is_planar, hundredths, 1e12f, Reply::noted, {normalized, "[depth-below-1]"}},
            {"near is 1", "", nothing, [](double z) { return (z - 1) / 99; }, 1e12f, Reply::refused, all_kinds},
            {"bent", "", nothing, root, 1e12f, Reply::refused, all_kinds},
+           {"around 0",
+            "",
+            nothing,
+            [](double z) { return 3 / z - 0.6; },
+            -1,
+            Reply::refused,
+            {"below 0", "--depth-kind disparity"}},
            {"near is 2, falls", "", nothing, [](double z) { return 1 - (z - 2) / 99; }, 1e12f, Reply::refused,
             all_kinds},
            {"straight", "", nothing, hundredths, 1e12f, Reply::noted, {normalized, "[depth-below-1]"}},

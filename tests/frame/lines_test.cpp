@@ -130,8 +130,8 @@ TEST(Lines, normals_change_where_depth_does_or_beside_it) {
 
 constexpr Window kPicture{0, 0, 128, 96};
 
-std::optional<EmptyRectangle> rectangle_in(const std::function<double(int, int)>& depth,
-                                           const Window& frame = kPicture) {
+std::optional<EmptyRectangle> rectangle_in(const std::function<double(int, int)>& depth, const Window& frame = kPicture,
+                                           bool is_sky_0 = false) {
   std::vector<float> plane;
   std::vector<PlacedRuns> rows;
   for (int y = 0; y < kPicture.height; y++) {
@@ -139,7 +139,7 @@ std::optional<EmptyRectangle> rectangle_in(const std::function<double(int, int)>
     plane.insert(plane.end(), line.raw.begin(), line.raw.end());
     if (y % 2) rows.push_back({y, empty_runs(line)});
   }
-  return empty_rectangle(plane, kPicture, frame, rows);
+  return empty_rectangle(plane, kPicture, frame, rows, is_sky_0);
 }
 
 TEST(Lines, a_rectangle_of_0_is_no_sky_if_the_sky_has_another_value) {
@@ -149,6 +149,8 @@ TEST(Lines, a_rectangle_of_0_is_no_sky_if_the_sky_has_another_value) {
   EXPECT_TRUE(tile->is_unlike_sky);
   EXPECT_EQ((std::array{tile->left, tile->top, tile->right, tile->bottom}), (std::array{41, 33, 83, 62}));
   EXPECT_FALSE(rectangle_in([&](int, int y) { return sky(y); }));
+  const auto window = [&](int x, int y) { return x >= 41 && x < 83 && y >= 33 && y < 62 ? 0 : sky(y); };
+  EXPECT_FALSE(rectangle_in(window, kPicture, true)) << "disparity of a window is 0";
 }
 
 TEST(Lines, a_window_is_no_tile_unless_its_sides_stand_on_the_grid) {

@@ -111,6 +111,9 @@ TEST_F(Readings, of_every_kind_of_depth_by_every_other_are_noted) {
 
 TEST_F(Readings, of_inverse_depth_beyond_1_need_no_option) {
   write({DepthKind::inverse, false, [](double z, double) { return 30 / z; }, 0});
+  std::string guesses;
+  for (const Note& note : settled().notes) guesses += note.text;
+  EXPECT_THAT(guesses, HasSubstr("a / z + b, --depth-kind disparity"));
   EXPECT_EQ(settled().reading.depth_kind, DepthKind::inverse);
 }
 
@@ -285,7 +288,7 @@ TEST_F(Readings, with_a_flip_and_no_space_are_noted_too) {
 TEST_F(Readings, of_a_z_buffer_need_its_planes_and_take_its_direction_from_the_sky) {
   Written device = all_depths()[3];
   write(device);
-  expect(Reply::refused, {"device", "inverse", "--near", "--far", "frame.exr"});
+  expect(Reply::refused, {"device", "inverse", "--near", "--far", "frame.exr", "--depth-kind disparity"});
   for (const bool reversed : {false, true}) {
     device = all_depths()[reversed ? 4 : 3];
     write(device);

@@ -224,7 +224,8 @@ TEST_F(Sources, nuke_without_flat_surfaces_is_read_as_its_normals_say) {
   }
   planes.erase("N.X");
   for (float& d : planes["depth.Z"]) d = 0.3f + 0.1f * d;
-  expect_refused(Reply::refused, {"nuke", "--depth-kind inverse", "--depth-kind normalized --near 0 --far"});
+  expect_refused(Reply::refused,
+                 {"nuke", "--depth-kind inverse", "--depth-kind normalized --near 0 --far", "--depth-kind disparity"});
 }
 
 TEST_F(Sources, pbrt_with_positions_and_matrices_for_column_vectors) {

@@ -494,6 +494,10 @@ TEST_F(Inspect, bad_files_and_arguments_have_their_exit_codes) {
                                         {2, "inspect --nonsense " + frame},
                                         {0, "inspect --help"}})
     EXPECT_EQ(run_program(typed(arguments)).code, code) << arguments;
+  for (const char* option : {"--depth", "--normal", "--position"}) {
+    const Finished finished = run_program({"inspect", frame, option, folder / "missing.exr"});
+    EXPECT_THAT(finished.err, AllOf(HasSubstr("missing.exr"), HasSubstr(option), Not(HasSubstr("INPUT")))) << finished;
+  }
 }
 
 }  // namespace

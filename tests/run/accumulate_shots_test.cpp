@@ -197,6 +197,23 @@ TEST_F(AccumulatedShots, a_damaged_frame_fails_all_that_take_it_by_name) {
   }
 }
 
+// A rendered frame: what a cut leaves of it, a second one changes.
+TEST_F(AccumulatedShots, ramps_are_cut_once_for_the_estimate_and_its_frame_as_a_whole_and_in_tiles) {
+  const std::string example = ALCOVE_SOURCE_DIR "/examples/interior.";
+  for (int frame = 1; frame <= 3; frame++) fs::copy_file(example + "gbuffer.exr", input(frame));
+  const auto made = [&](const std::string& more, std::uint64_t mebibytes) {
+    const Options all = typed("--radius 0.08 --frames 2 --type float --set ramps=cut --camera " + example +
+                              "camera.json --stats " + folder / "stats.json" + " " + more);
+    const RunReport report = run_here(arguments(all), mebibytes << 20);
+    EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
+    EXPECT_EQ(report.done == 1 && report.frames[0].parts > 1, mebibytes > 0);
+    EXPECT_THAT(attribute_of_whole_exr(output(2), "alcove/notes").value_or(""), HasSubstr("smoothed-depth"));
+    return read_exr_image(output(2)).pixels;
+  };
+  EXPECT_TRUE(made("--aov depth --accumulate 1", 0) == made("--aov depth", 0));
+  EXPECT_TRUE(made("--aov ao,depth --accumulate 1", 118) == made("--aov ao,depth --accumulate 1", 0));
+}
+
 TEST_F(AccumulatedShots, a_run_that_stops_ends_among_the_estimates_of_its_first_frame) {
   constexpr int kFrames = 9, kStop = 8;
   write_shot(kFrames);

@@ -65,6 +65,7 @@ TEST_F(DisparityRun, with_blurred_outlines_has_about_the_ao_of_sharp_ones_once_r
     const Finished finished = done(typed("--depth-kind disparity --set disparity-shift=0.7 --radius 10% --camera " +
                                          example + "camera.json " + more));
     EXPECT_EQ(finished.err.find("--set ramps=cut") != std::string::npos, is_told) << finished;
+    EXPECT_EQ(finished.err.find("lay on ramps") != std::string::npos, more.starts_with("--set ramps=cut")) << finished;
     return ao(1);
   };
   const auto wanted = ao_with(sharp, "", false), kept = ao_with(soft, "", true),

@@ -1,6 +1,7 @@
 // The memory that a frame is expected to take, before its pixels are read, is no less than what its buffers then take.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/estimate/estimate.h"
+#include "core/frame/pixels/ramps.h"
 #include "core/run/frame_files.h"
 #include "core/run/frame_run.h"
 #include "core/run/shot.h"
@@ -220,6 +221,13 @@ TEST_F(Memory, of_parts_stays_within_any_limit_and_below_the_whole) {
     EXPECT_LE(peak, limits.room.bytes) << share;
     EXPECT_LT(peak, whole) << share;
   }
+}
+
+TEST_F(Memory, of_a_cut_of_ramps_counts) {
+  const auto bytes = [&] { return memory_of(open_frame(settings, 0), settings).fixed_bytes; };
+  const std::uint64_t kept = bytes();
+  settings.input.ramps = "cut";
+  EXPECT_EQ(bytes() - kept, kRampBytes * window.pixels());
 }
 
 // A look that shapes has a buffer that one without shaping does not have.

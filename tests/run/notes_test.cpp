@@ -140,6 +140,29 @@ TEST_F(Notes, that_are_warnings_fail_where_they_count_as_errors) {
   EXPECT_EQ(run({"--set", "warnings-as-errors=true"}).code, 0) << "a note is no warning";
 }
 
+TEST_F(Notes, on_a_file_that_another_option_gives_name_it) {
+  wall_frame().write(frame);
+  const std::string depth = folder / "depth.exr", beauty = folder / "beauty.exr";
+  write_with_averaged_edges(depth);
+  FrameFile other = wall_frame();
+  add_beauty(other);
+  for (auto& [name, plane] : other.planes)
+    if (name.ends_with("Combined.R")) plane[900] = std::nanf("");
+  other.write(beauty);
+  const Options said{"--depth", depth, "--beauty", beauty, "--composite", folder / "c.exr"};
+  const auto lines = lines_of(done(said).err);
+  for (const auto& [file, code] : {std::pair(depth, "[antialiased-depth]"), {beauty, "[repaired-beauty]"}})
+    EXPECT_THAT(lines, Contains(AllOf(StartsWith("alcove: warning: " + file + ": "), testing::EndsWith(code)))) << code;
+  FrameFile broken = wall_frame();
+  broken.planes.at("ViewLayer.Depth.Z")[900] = std::nanf("");
+  broken.write(depth);
+  EXPECT_THAT(lines_of(done(said).err),
+              Contains(AllOf(StartsWith("alcove: warning: " + depth), testing::EndsWith("[repaired-depth]"))));
+  const Options without_input = typed("run --radius 1 --chunk 1/2 --camera " + camera + " -o " + ao);
+  EXPECT_THAT(run_program(joined(without_input, {"--depth", folder / "missing.exr"})).err,
+              HasSubstr("missing.exr: file not found (--depth)"));
+}
+
 TEST_F(Notes, that_are_allowed_by_their_codes_are_no_errors) {
   half_frame().write(frame);
   const auto strictly = [&](const std::string& codes, const char* more = "--no-skip") {

@@ -1,5 +1,6 @@
 // Frames that are computed in tiles have the bits of frames that are computed at once.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/frame_files.h"
 #include "tests/support/exr_header.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/walked_shot.h"
@@ -101,21 +102,39 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
     expect_same(typed("--radius 0.06 " + more));
 }
 
-// Cards before the wall, whose outlines were blurred along rows.
 TEST_F(Tiles, give_the_bits_of_the_whole_where_ramps_are_cut) {
-  FrameFile cards = wall_frame(data, display);
-  std::vector<float>& depth = cards.planes.at("ViewLayer.Depth.Z");
-  for (std::size_t i = 0; i < depth.size(); i++) {
-    const std::size_t column = i % std::size_t(data.width) % 50;
-    depth[i] *= 1 - 0.05f * float(std::clamp<std::size_t>(column < 25 ? column : 50 - column, 8, 15) - 8);
-  }
-  cards.write(frame);
+  with_soft_cards(data, display).write(frame);
   little_memory = 2 * kLittleMemory;
   done_in_tiles(typed("--radius 0.06"));
   const std::string kept = read_bytes(ao);
   expect_same(typed("--radius 0.06 --set ramps=cut"));
   EXPECT_NE(read_bytes(ao), kept);
   expect_same(typed("--radius 0.06 --set ramps=cut --roi 13,5,410,230"));
+}
+
+// Planes are kept from run to run, and each run settles the frame by them.
+TEST_F(Tiles, keep_planes_only_once_they_are_settled_and_cut_and_settle_no_frame_by_cut_ones) {
+  with_soft_cards(data, display).write(frame);
+  RunOptions options;
+  ASSERT_TRUE(parse_run_options({frame, "-o", ao, "--camera", camera, "--set", "ramps=cut"}, options));
+  ReadPlanes planes;
+  const auto texts = [&] {
+    FrameSource source = open_frame(options.settings, 0);
+    read_for_parts(source, options.settings, planes, std::uint64_t(1) << 40);
+    std::string all;
+    for (const Note& note : source.suspicious) all += note.text + '\n';
+    for (const Note& note : source.notes) all += note.text + '\n';
+    return all;
+  };
+  const std::string first = texts();
+  const auto cut = planes[RawPlane::depth];
+  EXPECT_THAT(first, HasSubstr("lay on ramps"));
+  EXPECT_EQ(texts(), first);
+  EXPECT_EQ(planes[RawPlane::depth], cut);
+  options.settings.input.depth_kind = DepthKind::disparity;
+  planes = {};
+  EXPECT_THROW(texts(), Error) << "larger values are farther away";
+  EXPECT_TRUE(planes[RawPlane::depth].empty()) << "a run after it would take them as cut";
 }
 
 TEST_F(Tiles, give_the_bits_of_the_whole_with_a_beauty_of_another_window) {

@@ -38,6 +38,17 @@ inline FrameFile with_board(int frame, const Window& window = kWallWindow) {
   return file;
 }
 
+/// Cards before the wall, whose outlines were blurred along rows: ramps of the depth alone.
+inline FrameFile with_soft_cards(const Window& window, const Window& display) {
+  FrameFile file = wall_frame(window, display);
+  std::vector<float>& depth = file.planes.at("ViewLayer.Depth.Z");
+  for (std::size_t i = 0; i < depth.size(); i++) {
+    const std::size_t column = i % std::size_t(window.width) % 50;
+    depth[i] *= 1 - 0.05f * float(std::clamp<std::size_t>(column < 25 ? column : 50 - column, 8, 15) - 8);
+  }
+  return file;
+}
+
 /// A run within this process. With `bytes`, frames may take no more than these, which no option says.
 inline RunReport run_here(const Options& arguments, std::uint64_t bytes = 0, const RunWatch& watch = {}) {
   RunOptions options;

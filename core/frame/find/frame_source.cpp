@@ -229,7 +229,8 @@ void doubt_depth_of_three(FrameSource& source, const ChannelSearch& search, cons
         {NoteCode::said_otherwise,
          fmt::format("{} is taken as depth, and stands beside X and Y: where the three are positions, give the file to "
                      "--position instead; --depth-channel {} says that it is depth",
-                     depth.channel, depth.channel)});
+                     depth.channel, depth.channel),
+         source.note_file(RawPlane::depth)});
     return;
   }
   if (!are_colours(planes)) return;
@@ -239,7 +240,7 @@ void doubt_depth_of_three(FrameSource& source, const ChannelSearch& search, cons
       "--depth-channel {} takes this one as depth",
       layer.empty() ? "the file" : "layer " + layer.substr(0, layer.size() - 1), depth.channel);
   if (layer.empty()) fail(ErrorKind::input, "{}: {}", path, text);
-  source.suspicious.push_back({NoteCode::said_otherwise, text});
+  source.suspicious.push_back({NoteCode::said_otherwise, text, source.note_file(RawPlane::depth)});
 }
 
 // The frame.
@@ -567,6 +568,7 @@ bool FrameSource::is_half(const ChannelRef& ref) const {
 
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo) {
   FrameSource source;
+  source.main_file = main_input(settings);
   ChannelSearch search(settings, source.files);
   const std::string& depth_path = settings.depth.empty() ? main_input(settings) : settings.depth;
   const auto path_of = [&](const std::string& own) -> const std::string& {
@@ -631,7 +633,8 @@ InputSettings with_some_camera(const InputSettings& settings) {
 bool may_tell_camera(const InputSettings& settings) {
   std::vector<ExrFile> files;
   ChannelSearch search(settings, files);
-  const std::size_t place = search.open(settings.depth.empty() ? main_input(settings) : settings.depth, "INPUT");
+  const std::size_t place = search.open(settings.depth.empty() ? main_input(settings) : settings.depth,
+                                        settings.depth.empty() ? main_option(settings) : "--depth");
   const ExrFile& file = files[place];
   for (std::size_t part = 0; part < file.parts().size(); part++) {
     const auto attributes = file.attribute_texts(int(part));

@@ -76,10 +76,9 @@ struct OpenQuestions {
 struct FrameSource {
   /// The file of the depth or the positions, after which the frame is called in messages.
   const std::string& depth_path() const { return path_of(RawPlane::depth); }
-  /// The file of the normals for notes on them: "" where it is the frame's own, or where there are none.
-  std::string normal_file() const {
-    const auto& normal = channels[RawPlane::normal];
-    return normal.empty() || path_of(RawPlane::normal) == depth_path() ? "" : path_of(RawPlane::normal);
+  /// The file of a plane for notes on it: "" where it is the one that the frame is called after, or there is none.
+  std::string note_file(RawPlane plane) const {
+    return channels[plane].empty() || path_of(plane) == main_file ? "" : path_of(plane);
   }
   /// The file of a channel, and of a plane.
   ExrFile& file_of(const ChannelRef& ref) { return files[ref.file]; }
@@ -92,6 +91,7 @@ struct FrameSource {
   /// The name of a channel without its last part, which a part's name stands for; "" where it has no layer.
   std::string layer_of(const ChannelRef& ref) const;
 
+  std::string main_file;  // see main_input()
   std::vector<ExrFile> files;
   FrameChannels channels;  // of those files
   Reading reading;         // over all pixels that the files hold

@@ -72,7 +72,19 @@ Sentence enlarged_depth(const Findings& f) {
       across, down);
 }
 
-constexpr const char* kOrCut = ", or --set ramps=cut gives such pixels to the surfaces on both sides";
+std::string or_cut(const Findings& f) {
+  return f.cut_pixels ? fmt::format("; {} pixels of ramps were cut already", f.cut_pixels)
+                      : ", or --set ramps=cut gives such pixels to the surfaces on both sides";
+}
+
+/// Measured on six rendered scenes that were blurred by 1 to 3 px.
+Sentence cut_ramps_text(const Findings& f) {
+  if (f.cut_pixels == 0) return std::nullopt;
+  return fmt::format(
+      "{} pixels lay on ramps across outlines, and were given to the surfaces on both sides: where these end is an "
+      "estimate, and AO of blurred scenes was off by .05 to .2 (RMS) after it, of foliage by .35",
+      f.cut_pixels);
+}
 
 Sentence smoothed_depth(const Findings& f) {
   constexpr std::size_t kLeast = 60;  // outlines of one direction
@@ -80,13 +92,13 @@ Sentence smoothed_depth(const Findings& f) {
   const auto is_soft = [](const Outlines& o) {
     return o.count >= kLeast && double(o.sharp) < kMostSharp * double(o.count);
   };
-  if (f.are_ramps_cut || !std::ranges::any_of(f.outlines, is_soft)) return std::nullopt;
+  if (!std::ranges::any_of(f.outlines, is_soft)) return cut_ramps_text(f);
   const Outlines& o = is_soft(f.outlines[0]) ? f.outlines[0] : f.outlines[1];
   return fmt::format(
       "{:.0f} % of the outlines are ramps over several pixels: depth was blurred, interpolated or "
-      "filtered, and AO shows seams there; render it without filtering, one sample at each pixel's "
-      "centre{}{}",
-      percent(double(o.count - o.sharp), double(o.count)), kOrCut, hint_at_others(f));
+      "filtered, and AO shows seams there (off by .07 to .4 RMS in blurred scenes); render it without filtering, one "
+      "sample at each pixel's centre{}{}",
+      percent(double(o.count - o.sharp), double(o.count)), or_cut(f), hint_at_others(f));
 }
 
 Sentence antialiased_depth(const Findings& f) {
@@ -94,11 +106,11 @@ Sentence antialiased_depth(const Findings& f) {
   constexpr std::size_t kLeastEdges = 100;
   const std::size_t steps = f.outlines[0].steps + f.outlines[1].steps;
   const std::size_t blended = f.outlines[0].blended + f.outlines[1].blended;
-  if (f.are_ramps_cut || steps < kLeastEdges || double(blended) <= kMostBlended * double(steps)) return std::nullopt;
+  if (steps < kLeastEdges || double(blended) <= kMostBlended * double(steps)) return std::nullopt;
   return fmt::format(
       "{:.0f} % of the depth's edges have a pixel in between: the depth is anti-aliased, and AO shows "
       "seams there; render it without filtering{}{}",
-      percent(double(blended), double(steps)), kOrCut, hint_at_others(f));
+      percent(double(blended), double(steps)), or_cut(f), hint_at_others(f));
 }
 
 Sentence noisy_depth(const Findings& f) {
@@ -332,7 +344,7 @@ constexpr std::array kTable{
     Detector{NoteCode::enlarged_depth, "equal neighbours on slanted surfaces",
              "they stand in the same rows or columns all over the picture", "depth in its own resolution",
              enlarged_depth},
-    Detector{NoteCode::smoothed_depth, "outlines", "hardly any is a step between two pixels",
+    Detector{NoteCode::smoothed_depth, "outlines", "hardly any is a step between two pixels, or ramps were cut",
              "rendering depth without a filter; --set ramps=cut; --depth-channel where the file has another depth",
              smoothed_depth},
     Detector{NoteCode::antialiased_depth, "steps between two smooth surfaces", "more than 30 % have a pixel in between",

@@ -149,7 +149,7 @@ bool has_other_values(std::span<const PlacedRuns> rows, float value) {
 }  // namespace
 
 std::optional<EmptyRectangle> empty_rectangle(std::span<const float> depth, const Window& window, const Window& frame,
-                                              std::span<const PlacedRuns> rows) {
+                                              std::span<const PlacedRuns> rows, bool is_sky_0) {
   if (depth.size() != window.pixels()) return std::nullopt;
   std::optional<EmptyRectangle> best;
   double area = 0;
@@ -169,7 +169,7 @@ std::optional<EmptyRectangle> empty_rectangle(std::span<const float> depth, cons
     if ((r.top == 0 && above > 0) || (r.bottom == window.height && below > 0)) continue;
     r.top += above;
     r.bottom += above;
-    const bool is_nothing = stack.run.value == 0 || std::isnan(stack.run.value);
+    const bool is_nothing = (stack.run.value == 0 && !is_sky_0) || std::isnan(stack.run.value);
     r.is_unlike_sky = is_nothing && has_other_values(rows, stack.run.value);
     r.is_on_grid = is_on_grid(r, frame, stacks.size());
     if (!r.is_unlike_sky && !r.is_on_grid) continue;

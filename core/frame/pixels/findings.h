@@ -95,7 +95,7 @@ struct Findings {
   std::string depth_channel{};
   DepthKind depth_kind = DepthKind::planar;
   bool has_half_type = false;               // of the depth's samples
-  bool are_ramps_cut = false;               // before AO is computed: see cut_ramps()
+  std::size_t cut_pixels = 0;               // of ramps, which were cut before the rest was looked at: see cut_ramps()
   std::vector<std::string> other_depths{};  // channels of the same file that are depth by their names
 
   Grain grain{};

@@ -22,6 +22,8 @@ bool are_surfaces(const Line& line, std::size_t first, std::size_t end) {
   return true;
 }
 
+constexpr double kSharp = 0.9;  // of an outline's change
+
 bool are_close(double a, double b, double part) { return std::abs(a - b) < part * std::min(a, b); }
 
 }  // namespace
@@ -69,36 +71,65 @@ Repeats repeats_of(const BorderCounts& counts, std::size_t lines) {
 
 namespace {
 
-Ramp ramp_about(std::span<const double> u, std::size_t step) {
+/// The size of a step between two pixels. NaN between two that are infinite.
+template <class Value>
+double step(std::span<const Value> values, std::size_t i) {
+  return std::abs(double(values[i + 1]) - double(values[i]));
+}
+
+/// The stretch about a step, within another one, along which steps are no less than a tenth of it.
+template <class Value>
+Ramp ramp_about(std::span<const Value> values, std::size_t peak, const Ramp& within) {
   constexpr double kEnds = 0.1;
-  const auto change = [&](std::size_t i) { return u[i + 1] - u[i]; };
-  const double sign = change(step) > 0 ? 1 : -1;
-  std::size_t peak = step;
-  while (peak + 2 < u.size() && sign * change(peak + 1) > sign * change(peak)) peak++;
-  const double largest = sign * change(peak);
-  std::size_t first = peak, last = peak + 1;
-  while (first > 0 && sign * change(first - 1) > kEnds * largest) first--;
-  while (last + 1 < u.size() && sign * change(last) > kEnds * largest) last++;
-  return {first, last, largest};
+  const double least = kEnds * step(values, peak);
+  Ramp ramp{peak, peak + 1};
+  while (ramp.first > within.first && step(values, ramp.first - 1) > least) ramp.first--;
+  while (ramp.last < within.last && step(values, ramp.last) > least) ramp.last++;
+  const double change = std::abs(double(values[ramp.last]) - double(values[ramp.first]));
+  ramp.is_sharp = step(values, peak) > kSharp * change;
+  return ramp;
+}
+
+template <class Value>
+std::size_t largest_step(std::span<const Value> values, const Ramp& within) {
+  std::size_t largest = within.first;
+  for (std::size_t i = within.first; i < within.last; i++)
+    if (step(values, i) > step(values, largest)) largest = i;
+  return largest;
+}
+
+/// Adds the ramps of a stretch along which the raw value changes in one direction.
+void add_ramps(std::span<const double> u, std::span<const float> raw, const Ramp& within, std::vector<Ramp>& ramps) {
+  constexpr double kLeastStep = 0.02, kLeastChange = 0.08;  // of 1/z
+  constexpr std::size_t kWidest = 24;                       // px; wider ones are slopes
+  constexpr double kGoesOn = 0.4;                           // of its largest step
+  const std::size_t peak = largest_step(u, within);
+  if (!(step(u, peak) > kLeastStep * std::min(u[within.first], u[within.last]))) return;
+  Ramp ramp = ramp_about(u, peak, within);
+  // Distances that were blurred are a ramp in them: in 1/z all of it lies at the nearer end.
+  const double going_on = kGoesOn * step(raw, largest_step(raw, ramp));
+  if ((ramp.first > within.first && step(raw, ramp.first - 1) > going_on) ||
+      (ramp.last < within.last && step(raw, ramp.last) > going_on)) {
+    const Ramp in_raw = ramp_about(raw, largest_step(raw, ramp), within);
+    ramp = {std::min(ramp.first, in_raw.first), std::max(ramp.last, in_raw.last), in_raw.is_sharp};
+  }
+  if (ramp.first > within.first) add_ramps(u, raw, {within.first, ramp.first}, ramps);
+  const double from = u[ramp.first], to = u[ramp.last], least = kLeastStep * std::max(u[peak], u[peak + 1]);
+  const bool is_whole = ramp.first > 0 && ramp.last + 1 < u.size(), is_narrow = ramp.last - ramp.first <= kWidest;
+  if (is_whole && is_narrow && step(u, peak) >= least && std::abs(to - from) >= kLeastChange * std::max(from, to))
+    ramps.push_back(ramp);
+  if (ramp.last < within.last) add_ramps(u, raw, {ramp.last, within.last}, ramps);
 }
 
 }  // namespace
 
-std::vector<Ramp> ramps_in(std::span<const double> u) {
-  constexpr double kLeastStep = 0.02, kLeastChange = 0.08;  // of 1/z
-  constexpr double kSharp = 0.9;                            // of the change
-  constexpr std::size_t kWidest = 24;                       // px; wider ones are slopes
+std::vector<Ramp> ramps_in(std::span<const double> u, std::span<const float> raw) {
   std::vector<Ramp> ramps;
-  for (std::size_t i = 0; i + 1 < u.size(); i++) {
-    if (!(std::abs(u[i + 1] - u[i]) >= kLeastStep * std::max(u[i], u[i + 1])) || u[i] == u[i + 1]) continue;
-    Ramp ramp = ramp_about(u, i);
-    i = std::max(i, ramp.last - 1);
-    const double change = std::abs(u[ramp.last] - u[ramp.first]);
-    const bool is_whole = ramp.first > 0 && ramp.last + 1 < u.size();
-    if (!is_whole || change < kLeastChange * std::max(u[ramp.first], u[ramp.last])) continue;
-    if (ramp.last - ramp.first > kWidest) continue;
-    ramp.is_sharp = ramp.largest > kSharp * change;
-    ramps.push_back(ramp);
+  for (std::size_t first = 0, last = 1; last < raw.size(); first = last++) {
+    const bool rises = raw[last] > raw[first];
+    if (!rises && !(raw[last] < raw[first])) continue;
+    while (last + 1 < raw.size() && (rises ? raw[last + 1] > raw[last] : raw[last + 1] < raw[last])) last++;
+    add_ramps(u, raw, {first, last}, ramps);
   }
   return ramps;
 }
@@ -129,7 +160,8 @@ void count_outlines(const Line& line, Outlines& outlines) {
     std::size_t end = first;
     while (end < line.size() && line.is_surface(end)) end++;
     const auto surfaces = std::span(line.inverse).subspan(first, end - first);
-    for (const Ramp& ramp : ramps_in(surfaces)) outlines.count++, outlines.sharp += ramp.is_sharp;
+    for (const Ramp& ramp : ramps_in(surfaces, std::span(line.raw).subspan(first, end - first)))
+      outlines.count++, outlines.sharp += ramp.is_sharp;
     count_steps(surfaces, outlines);
     first = end;
   }

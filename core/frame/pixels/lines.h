@@ -30,14 +30,14 @@ struct BorderCounts {
 void count_repeats(const Line& line, BorderCounts& counts);
 Repeats repeats_of(const BorderCounts& counts, std::size_t lines);
 
-/// A stretch of pixels along which 1/z changes in one direction, by steps that are no less than a tenth of its largest.
+/// A stretch of pixels along which depth changes in one direction, by steps of at least a tenth of its largest one.
 struct Ramp {
   std::size_t first, last;  // pixels
-  double largest;           // step
-  bool is_sharp = false;    // nearly all of the change is that step
+  bool is_sharp = false;    // nearly all of the change is one step
 };
-/// Those across outlines: by much of 1/z over a few pixels, with others before and behind.
-std::vector<Ramp> ramps_in(std::span<const double> inverse);
+/// Those across outlines: by much of 1/z over a few pixels, with others before and behind. In order; those of the line
+/// read backwards are the same.
+std::vector<Ramp> ramps_in(std::span<const double> inverse, std::span<const float> raw);
 
 void count_outlines(const Line& line, Outlines& outlines);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "core/base/error.h"
@@ -18,128 +19,170 @@ namespace {
 /// step, and within so much of its change a pixel belongs to the surface there. Measured on rendered scenes.
 constexpr double kTail = 0.15, kSame = 0.15;
 constexpr double kMiddle = 0.25;
-constexpr int kReach = 12;      // px, of the pixels that a plane goes through
+constexpr int kReach = 8;       // px, of the pixels that a plane goes through
 constexpr double kSpread = 4;   // px, by which their weight falls to exp(-1/2)
 constexpr double kRidge = 0.3;  // px^2: pixels in a row tell no slope across it
 
-/// A pixel of a ramp, and that ramp's ends, all as places in the plane. The first end is that on the pixel's side.
-struct RampPixel {
-  std::size_t at;
-  std::array<std::size_t, 2> ends;
-  float steepest;   // step of 1/z between two pixels
-  float value = 0;  // that it gets
+/// A row or a column of the picture.
+struct PictureLine {
+  std::size_t first, stride;
+  Line values;
+
+  std::size_t place(std::size_t i) const { return first + i * stride; }
+};
+
+/// 1/z about the end of a ramp, of the surface there: affine in the picture, as that of planes is.
+struct Plane {
+  double value = 0, across = 0, down = 0;  // at the end, and by pixel
 };
 
 class RampCutter {
  public:
   RampCutter(const Reading& reading, std::span<float> raw)
-      : map_(depth_map_of(reading)), view_(view_of(reading, reading.data)), raw_(raw), inverse_(raw.size()) {
+      : map_(depth_map_of(reading)), view_(view_of(reading, reading.data)), raw_(raw), cut_(raw.begin(), raw.end()) {
+    inverse_.reserve(raw.size());
     for (int y = 0; y < view_.size.y; y++)
-      for (int x = 0; x < view_.size.x; x++)
-        inverse_[index_of(view_, x, y)] = inverse_of(raw_[index_of(view_, x, y)], x, y);
+      for (int x = 0; x < view_.size.x; x++) inverse_.push_back(inverse_of(raw_[index_of(view_, x, y)], x, y));
+    for (std::size_t i = 0; i < weights_.size(); i++)
+      weights_[i] = std::exp(-0.5 * double(i * i) / (kSpread * kSpread));
+    is_ramp_.resize(raw.size());
+    steepness_.resize(raw.size());
   }
 
   void cut() {
-    std::vector<RampPixel> pixels = all_pixels();
-    is_ramp_.resize(raw_.size());
-    for (const auto& pixel : pixels) is_ramp_[pixel.at] = true;
-    for (auto& pixel : pixels) pixel.value = value_of(pixel);
-    for (const auto& pixel : pixels) raw_[pixel.at] = pixel.value;
+    for_each_ramp([&](const PictureLine& line, const Ramp& ramp, std::size_t) {
+      for (std::size_t i = ramp.first + 1; i < ramp.last; i++) is_ramp_[line.place(i)] = true;
+    });
+    // The ends within other ramps are cut by then.
+    for (const bool has_cut_ends : {false, true})
+      for_each_ramp([&](const auto&... ramp) { cut_ramp(ramp..., has_cut_ends); });
+    std::ranges::copy(cut_, raw_.begin());
   }
 
  private:
+  double ray_at(int x, int y) const { return map_.along_ray ? ray_length(view_, x, y) : 1; }
   float inverse_of(float value, int x, int y) const {
-    return float(1 / planar_depth(map_, {value, 0, 0}, map_.along_ray ? ray_length(view_, x, y) : 1));
+    return float(1 / planar_depth(map_, {value, 0, 0}, ray_at(x, y)));
   }
 
-  /// The pixels of all ramps; of the ramps of a pixel, the steeper one counts.
-  std::vector<RampPixel> all_pixels() const {
-    const auto [width, height] = view_.size;
-    std::vector<RampPixel> pixels;
-    for (int y = 0; y < height; y++) take_line(std::size_t(y) * std::size_t(width), 1, std::size_t(width), pixels);
-    for (int x = 0; x < width; x++) take_line(std::size_t(x), std::size_t(width), std::size_t(height), pixels);
-    std::ranges::stable_sort(
-        pixels, [](const auto& a, const auto& b) { return a.at != b.at ? a.at < b.at : a.steepest > b.steepest; });
-    const auto are_one = [](const auto& a, const auto& b) { return a.at == b.at; };
-    pixels.erase(std::unique(pixels.begin(), pixels.end(), are_one), pixels.end());
-    return pixels;
+  void for_each_ramp(const auto& take) const {
+    const auto width = std::size_t(view_.size.x), height = std::size_t(view_.size.y);
+    for (std::size_t y = 0; y < height; y++) take_line({y * width, 1, line_of(y * width, 1, width)}, take);
+    for (std::size_t x = 0; x < width; x++) take_line({x, width, line_of(x, width, height)}, take);
   }
 
-  void take_line(std::size_t first, std::size_t stride, std::size_t count, std::vector<RampPixel>& pixels) const {
-    std::vector<double> u(count);
-    for (std::size_t i = 0; i < count; i++) u[i] = inverse_[first + i * stride];
-    const auto place = [&](std::size_t i) { return first + i * stride; };
-    for (Ramp ramp : ramps_in(u)) {
-      const std::size_t middle = middle_of(ramp, place);
-      // Before a rounded outline the surface itself turns away, and the step is the ramp's end.
-      const double where = (double(middle - ramp.first) - 0.5) / double(ramp.last - ramp.first);
-      if (std::abs(where - 0.5) > kMiddle) continue;
-      widen(u, ramp);
-      for (std::size_t i = ramp.first + 1; i < ramp.last; i++) {
-        const bool is_before = i < middle;
-        pixels.push_back({place(i),
-                          {place(is_before ? ramp.first : ramp.last), place(is_before ? ramp.last : ramp.first)},
-                          float(ramp.largest)});
+  Line line_of(std::size_t first, std::size_t stride, std::size_t count) const {
+    Line line;
+    line.raw.resize(count);
+    line.inverse.resize(count);
+    for (std::size_t i = 0; i < count; i++) {
+      line.raw[i] = raw_[first + i * stride];
+      line.inverse[i] = inverse_[first + i * stride];
+    }
+    return line;
+  }
+
+  /// Takes the widened ramps of a line.
+  void take_line(const PictureLine& line, const auto& take) const {
+    const auto ramps = ramps_in(line.values.inverse, line.values.raw);
+    const auto rises = [&](const Ramp& ramp) { return line.values.raw[ramp.last] > line.values.raw[ramp.first]; };
+    for (std::size_t i = 0; i < ramps.size(); i++) {
+      // Not beyond the crest of a wire.
+      const bool turns_before = i > 0 && rises(ramps[i - 1]) != rises(ramps[i]);
+      const bool turns_behind = i + 1 < ramps.size() && rises(ramps[i + 1]) != rises(ramps[i]);
+      const std::size_t least = turns_before ? ramps[i - 1].last : 1;
+      const std::size_t most = turns_behind ? ramps[i + 1].first : line.values.size() - 2;
+      if (const auto middle = middle_of(line, ramps[i]))
+        take(line, widened(line.values.inverse, ramps[i], least, most), *middle);
+    }
+  }
+
+  /// The first pixel of the surface at the ramp's end: by raw values, or by 1/z where these have their half at one end.
+  /// None: at an end both have it. Before a rounded outline the surface itself turns away, and the step is the end.
+  static std::optional<std::size_t> middle_of(const PictureLine& line, const Ramp& ramp) {
+    const Line& values = line.values;
+    const bool is_last_nearer = values.inverse[ramp.last] > values.inverse[ramp.first];
+    for (const bool is_raw : {true, false}) {
+      const auto value = [&](std::size_t i) { return is_raw ? double(values.raw[i]) : values.inverse[i]; };
+      const double from = value(ramp.first), to = value(ramp.last);
+      std::size_t i = ramp.first + 1;
+      for (; i < ramp.last; i++) {
+        const double before = std::abs(value(i) - from), behind = std::abs(value(i) - to);
+        if (before > behind || (before == behind && is_last_nearer)) break;
+      }
+      const double where = (double(i - ramp.first) - 0.5) / double(ramp.last - ramp.first);
+      if (std::abs(where - 0.5) <= kMiddle) return i;
+    }
+    return std::nullopt;
+  }
+
+  static Ramp widened(std::span<const double> u, Ramp ramp, std::size_t least, std::size_t most) {
+    const double from = u[ramp.first], to = u[ramp.last], far = kSame * std::abs(to - from);
+    const auto tail = std::size_t(std::lround(kTail * double(ramp.last - ramp.first)));
+    for (std::size_t i = 0; i < tail && ramp.first > least && std::abs(u[ramp.first - 1] - from) <= far; i++)
+      ramp.first--;
+    for (std::size_t i = 0; i < tail && ramp.last < most && std::abs(u[ramp.last + 1] - to) <= far; i++) ramp.last++;
+    return ramp;
+  }
+
+  void cut_ramp(const PictureLine& line, const Ramp& ramp, std::size_t middle, bool has_cut_ends) {
+    const double change = std::abs(line.values.inverse[ramp.last] - line.values.inverse[ramp.first]);
+    const auto steepness = float(change / double(ramp.last - ramp.first));
+    for (const bool is_last : {false, true}) {
+      const std::size_t end = line.place(is_last ? ramp.last : ramp.first);
+      if (is_ramp_[end] != has_cut_ends) continue;
+      std::optional<Plane> plane;
+      for (std::size_t i = is_last ? middle : ramp.first + 1; i < (is_last ? ramp.last : middle); i++) {
+        const std::size_t at = line.place(i);
+        if (steepness_[at] >= steepness) continue;  // that of another line is steeper
+        steepness_[at] = steepness;
+        if (!plane) plane = plane_about(end, kSame * change);
+        cut_[at] = value_of(*plane, at, end, change);
       }
     }
   }
 
-  /// The first pixel beyond half of the ramp's change.
-  std::size_t middle_of(const Ramp& ramp, const auto& place) const {
-    const float first = raw_[place(ramp.first)], half = 0.5f * (raw_[place(ramp.last)] - first);
-    std::size_t i = ramp.first + 1;
-    while (i < ramp.last && std::abs(raw_[place(i)] - first) < std::abs(half)) i++;
-    return i;
-  }
+  int x_of(std::size_t at) const { return int(at % std::size_t(view_.size.x)); }
+  int y_of(std::size_t at) const { return int(at / std::size_t(view_.size.x)); }
 
-  static void widen(std::span<const double> u, Ramp& ramp) {
-    const double change = std::abs(u[ramp.last] - u[ramp.first]), first = u[ramp.first], last = u[ramp.last];
-    const auto tail = std::size_t(std::lround(kTail * double(ramp.last - ramp.first)));
-    for (std::size_t i = 0; i < tail && ramp.first > 1; i++, ramp.first--)
-      if (std::abs(u[ramp.first - 1] - first) > kSame * change) break;
-    for (std::size_t i = 0; i < tail && ramp.last + 2 < u.size(); i++, ramp.last++)
-      if (std::abs(u[ramp.last + 1] - last) > kSame * change) break;
-  }
-
-  /// The value of the plane through the surface about a pixel; that of the ramp's end where there is none.
-  float value_of(const RampPixel& pixel) const {
-    const float at_end = raw_[pixel.ends[0]], u = inverse_[pixel.ends[0]];
-    const float change = std::abs(u - inverse_[pixel.ends[1]]);
-    if (u == 0) return at_end;
-    const int x = int(pixel.at % std::size_t(view_.size.x)), y = int(pixel.at / std::size_t(view_.size.x));
+  Plane plane_about(std::size_t end, double same) const {
+    const int x = x_of(end), y = y_of(end);
+    const double u = inverse_of(cut_[end], x, y);
     double all = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, sv = 0, sxv = 0, syv = 0;
     for (int dy = std::max(-kReach, -y); dy <= std::min(kReach, view_.size.y - 1 - y); dy++)
       for (int dx = std::max(-kReach, -x); dx <= std::min(kReach, view_.size.x - 1 - x); dx++) {
         const std::size_t i = index_of(view_, x + dx, y + dy);
-        if (is_ramp_[i] || inverse_[i] == 0 || std::abs(inverse_[i] - u) > kSame * change) continue;
-        const double weight = kWeights[std::size_t(std::abs(dx))] * kWeights[std::size_t(std::abs(dy))];
-        const double v = raw_[i] - at_end;
+        if (is_ramp_[i] || std::abs(inverse_[i] - u) > same) continue;
+        const double weight = weights_[std::size_t(std::abs(dx))] * weights_[std::size_t(std::abs(dy))];
+        const double v = inverse_[i] - u;
         all += weight, sx += weight * dx, sy += weight * dy, sv += weight * v;
         sxx += weight * dx * dx, sxy += weight * dx * dy, syy += weight * dy * dy;
         sxv += weight * dx * v, syv += weight * dy * v;
       }
-    if (!(all > 0)) return at_end;
+    if (!(all > 0)) return {u};
     const double mx = sx / all, my = sy / all, mv = sv / all;
     const double xx = sxx / all - mx * mx + kRidge, yy = syy / all - my * my + kRidge, xy = sxy / all - mx * my;
     const double xv = sxv / all - mx * mv, yv = syv / all - my * mv, whole = xx * yy - xy * xy;
-    const auto value = float(at_end + mv - ((xv * yy - yv * xy) * mx + (yv * xx - xv * xy) * my) / whole);
-    return std::abs(inverse_of(value, x, y) - u) < 0.5 * change ? value : at_end;
+    const double across = (xv * yy - yv * xy) / whole, down = (yv * xx - xv * xy) / whole;
+    return {u + mv - across * mx - down * my, across, down};
   }
 
-  static const std::array<double, kReach + 1> kWeights;
+  /// The raw value on a plane; that of the ramp's end where there is none.
+  float value_of(const Plane& plane, std::size_t at, std::size_t end, double change) const {
+    const double u = plane.value + plane.across * (x_of(at) - x_of(end)) + plane.down * (y_of(at) - y_of(end));
+    const float at_end = inverse_of(cut_[end], x_of(end), y_of(end));
+    if (at_end == 0 || !(u > 0 && std::abs(u - at_end) < 0.5 * change)) return cut_[end];
+    return float(raw_of(map_, 1 / u, ray_at(x_of(at), y_of(at))));
+  }
 
+  std::array<double, kReach + 1> weights_;
   const DepthMap map_;
   const View view_;
   const std::span<float> raw_;
-  std::vector<float> inverse_;  // 1/z; 0 of the sky
+  std::vector<float> cut_, inverse_;  // raw values as they are to be; 1/z, 0 of the sky
+  std::vector<float> steepness_;      // of the ramp that gave the pixel its value, 1/z by pixel
   std::vector<bool> is_ramp_;
 };
-
-const std::array<double, kReach + 1> RampCutter::kWeights = [] {
-  std::array<double, kReach + 1> weights;
-  for (int i = 0; i <= kReach; i++) weights[std::size_t(i)] = std::exp(-0.5 * i * i / (kSpread * kSpread));
-  return weights;
-}();
 
 }  // namespace
 

@@ -15,7 +15,7 @@ namespace alcove {
 /// that parts of a frame have the bits of the whole. Fails with ErrorKind::usage for positions.
 void cut_ramps(const Reading& reading, std::span<float> depth);
 
-/// The bytes that this takes for each pixel where a quarter of them is of ramps.
-constexpr std::uint64_t kRampBytes = 24;
+/// The bytes that this takes for each pixel: four floats, of which one is the copy that settling looks at, and a bit.
+constexpr std::uint64_t kRampBytes = 17;
 
 }  // namespace alcove

@@ -254,7 +254,8 @@ void walk(const WalkedPlanes& planes, Findings& findings) {
   std::vector<PlacedRuns> placed;
   for (int i = 0; i < int(rows.empty.size()); i++)
     placed.push_back({source.place(false, i), std::move(rows.empty[std::size_t(i)])});
-  findings.rectangle = empty_rectangle(planes.depth, planes.reading.data, planes.frame, placed);
+  findings.rectangle = empty_rectangle(planes.depth, planes.reading.data, planes.frame, placed,
+                                       planes.reading.depth_kind == DepthKind::disparity);
 }
 
 }  // namespace alcove

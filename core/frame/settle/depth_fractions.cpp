@@ -33,8 +33,8 @@ class FractionRules : private DepthSettlement {
       fail(ErrorKind::input,
            "{}: {}, and no flat surfaces show that these are distances: if it is 0 at the eye, give {}; if it is 1 at "
            "the eye, {}; if it is a distance, --depth-kind planar; if it is 1/z, --depth-kind inverse; if it is a "
-           "z-buffer, --depth-kind device with --near and --far",
-           path_, text_of_range(), normalized_line(false), normalized_line(true));
+           "z-buffer, --depth-kind device with --near and --far{}",
+           path_, text_of_range(), normalized_line(false), normalized_line(true), kDisparityHint);
     refuse_before_near_plane();
     note_fractions();
   }

@@ -52,9 +52,9 @@ class DepthKindSettlement : private DepthSettlement {
            path_, word_of(best.kind), word_of(second.kind), why, word_of(best.kind), word_of(second.kind));
     reading_.depth_kind = best.kind;
     if (best.kind == DepthKind::inverse && values_.all.least >= 0 && is_fraction()) return settle_device(why);
-    const bool may_be_orthographic = best.kind == DepthKind::inverse && !reading_.camera.orthographic;
-    guess("depth kind", word_of(best.kind), may_be_orthographic ? fmt::format("{}; {}", why, kOrthographicHint) : why,
-          "--depth-kind", true);
+    const bool may_be_other = best.kind == DepthKind::inverse && !reading_.camera.orthographic;
+    guess("depth kind", word_of(best.kind),
+          may_be_other ? fmt::format("{}{}; {}", why, kDisparityHint, kOrthographicHint) : why, "--depth-kind", true);
   }
 
   /// Reads the depth as the program that wrote the frame, or most programs, write it. It is no guess where the user
@@ -108,8 +108,8 @@ class DepthKindSettlement : private DepthSettlement {
     if (is_fraction())
       fail(ErrorKind::input,
            "{}: {}, and neither flat surfaces nor normals tell whether it is 1/z, as {} writes it: give --depth-kind "
-           "inverse; if it is normalized, {}",
-           path_, text_of_range(), facts_.program.rules->name, normalized_line(false));
+           "inverse; if it is normalized, {}{}",
+           path_, text_of_range(), facts_.program.rules->name, normalized_line(false), kDisparityHint);
     take_passed_on(DepthKind::planar, why + ", and it holds more than 1");
     note_assumption(why);
   }
@@ -153,8 +153,9 @@ class DepthKindSettlement : private DepthSettlement {
          "{}: depth goes from {:.3g} to {:.3g}, {:.0f} % of it below 0, so these are no distances: if it is normalized "
          "and goes on beyond its planes, as V-Ray writes it without clamp, give --depth-kind normalized --near N --far "
          "F, the distances of 0 and of 1 (with --reversed-z, of 1 and of 0); if values below 0 are no surfaces, give "
-         "--depth-kind planar",
-         path_, values_.all.least, values_.surfaces.most, 100 * double(values_.below_0.count) / double(all));
+         "--depth-kind planar{}",
+         path_, values_.all.least, values_.surfaces.most, 100 * double(values_.below_0.count) / double(all),
+         kDisparityHint);
   }
 
   /// What the normals need beside the depth's kind, so that it is no error of its own.
@@ -173,8 +174,8 @@ class DepthKindSettlement : private DepthSettlement {
       fail(ErrorKind::input,
            "{}: the depth may be device or inverse (all in 0 to 1, {}): say --depth-kind device with --near and --far "
            "(inf where there is none) and, "
-           "where near is 1, --reversed-z; or --depth-kind inverse{}",
-           path_, why, text_of_normals());
+           "where near is 1, --reversed-z; or --depth-kind inverse{}{}",
+           path_, why, kDisparityHint, text_of_normals());
     reading_.depth_range.reversed = reversed;
     reading_.depth_kind = DepthKind::device;
     guess("depth kind", reversed ? "device with --reversed-z" : "device", "all in 0 to 1, --near is given, and " + why,

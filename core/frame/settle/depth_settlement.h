@@ -48,6 +48,8 @@ inline constexpr double kPlateau = 0.001;
 inline constexpr const char* kOrthographicHint =
     "distances of an orthographic camera would look the same: for one, give --ortho-width, or a --camera file with "
     "\"projection\": \"orthographic\"";
+/// What helps where the depth may be that of a network.
+inline constexpr const char* kDisparityHint = "; if a network estimated it, as a / z + b, --depth-kind disparity";
 /// A range of 0 to 1 may exceed 1 by so much because it was computed.
 inline constexpr double kRounded = 1e-3;
 /// If a smaller part of the values lies on the other side of 0, or none of them is so far from it as rounding may

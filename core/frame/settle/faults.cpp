@@ -57,13 +57,13 @@ Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
         {NoteCode::scaled_normals,
          fmt::format("the normals' length is {:.3g} on {:.0f} %: they were scaled, and AO uses their direction only",
                      s.usual_length, 100 * s.usual_share),
-         source.normal_file()}};
+         source.note_file(RawPlane::normal)}};
   const bool is_usual = source.program.rules->normal_averaged;
   return {{is_usual ? NoteCode::averaged_normals : NoteCode::shortened_normals,
            fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over the pixel, at edges "
                        "over several surfaces{}",
                        100 * (1 - unit), is_usual ? ", as " + source.program.rules->name + " always does" : ""),
-           source.normal_file()}};
+           source.note_file(RawPlane::normal)}};
 }
 
 /// Channels that DWA has quantized, and files that end too early.
@@ -78,7 +78,7 @@ Notes damage(FrameSource& source) {
             {NoteCode::lossy_compression,
              fmt::format("{} is compressed by DWA, which is lossy for a channel of that name; write data with zip",
                          channel.channel),
-             plane == RawPlane::normal ? source.normal_file() : ""});
+             source.note_file(plane)});
     }
   for (std::size_t file = 0; file < source.files.size(); file++)
     std::ranges::move(cut_parts(source.files[file], needed[file]), std::back_inserter(found));

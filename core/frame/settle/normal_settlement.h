@@ -31,7 +31,7 @@ class NormalSettlement : protected Settlement {
  public:
   NormalSettlement(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen)
       : Settlement({source.reading, source.notes, settings, raw, seen, source.path_of(RawPlane::normal),
-                    source.normal_file()}),
+                    source.note_file(RawPlane::normal)}),
         source_(source) {}
 
  protected:

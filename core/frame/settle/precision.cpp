@@ -10,9 +10,11 @@
 #include "core/frame/pixels/detectors.h"
 #include "core/frame/pixels/empty.h"
 #include "core/frame/pixels/flatness.h"
+#include "core/frame/pixels/ramps.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/pixels/walk.h"
 #include "core/frame/samples.h"
+#include "core/frame/settle/depth_settlement.h"
 
 namespace alcove {
 namespace {
@@ -28,8 +30,8 @@ void refuse_8_bits(std::span<const float> depth, const std::string& name) {
   }
   if (levels.size() >= kLeastLevels)
     fail(ErrorKind::input,
-         "{} holds only values of 8 bits, too few distances for AO: give --depth as floats, as EXR and DDS hold them",
-         name);
+         "{} holds only values of 8 bits, too few distances for AO: give --depth as floats, as EXR and DDS hold them{}",
+         name, kDisparityHint);
 }
 
 /// Takes down how the values were rounded.
@@ -91,7 +93,6 @@ Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& s
   Findings found{.depth_channel = name,
                  .depth_kind = reading.depth_kind,
                  .has_half_type = reading.depth_is_half,
-                 .are_ramps_cut = reading.cuts_ramps,
                  .grain = seen.grain,
                  .curve = seen.curve,
                  .begins_behind = begins_behind(reading, raw.depth),
@@ -102,7 +103,14 @@ Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& s
   found.jitter = jitter_of(raw.depth, depth_map_of(reading), view_of(reading, raw.window), seen.grain);
   if (raw.window == frame.data && raw.depth.size() == raw.window.pixels())
     found.borders = borders_of(raw.depth, raw.window, depth_map_of(reading));
-  walk({reading, frame.data, raw.depth, raw.normal, has_read_normals}, found);
+  std::vector<float> depth;
+  if (reading.cuts_ramps) {
+    depth.assign(raw.depth.begin(), raw.depth.end());
+    cut_ramps(reading, depth);
+    for (std::size_t i = 0; i < depth.size(); i++)
+      found.cut_pixels += !std::isnan(depth[i]) && depth[i] != raw.depth[i];
+  }
+  walk({reading, frame.data, reading.cuts_ramps ? depth : raw.depth, raw.normal, has_read_normals}, found);
   return found;
 }
 

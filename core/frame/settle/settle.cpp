@@ -36,7 +36,7 @@ Findings findings_of(const FrameSource& source, const RawPart& raw, const Eviden
 /// Adds what the detectors say of a settled frame.
 void note_findings(FrameSource& source, const RawPart& raw, const Evidence& seen) {
   for (Note& note : detected(findings_of(source, raw, seen, true))) {
-    if (note.code == NoteCode::displaced_normals) note.file = source.normal_file();
+    note.file = source.note_file(note.code == NoteCode::displaced_normals ? RawPlane::normal : RawPlane::depth);
     source.suspicious.push_back(std::move(note));
   }
 }
@@ -60,7 +60,7 @@ std::string reasons_of(const FrameSource& source, const RawPart& raw, const Evid
 void settle_meaning(FrameSource& source, const InputSettings& settings, const RawPart& raw,
                     std::span<const SeenPoint> points, Evidence& seen) {
   settle_depth(
-      {source.reading, source.notes, settings, raw, seen, source.depth_path()},
+      {source.reading, source.notes, settings, raw, seen, source.depth_path(), source.note_file(RawPlane::depth)},
       {source.program, source.open.depth_kind, [&] { return kind_by_positions(source, settings, raw, points); }});
   settle_deep(source, raw);
   if (source.channels[RawPlane::normal].empty())

@@ -128,7 +128,7 @@ class DisparitySettlement : private DepthSettlement {
     const double part = uncertainty(score), ao = std::max(kAoOfShift * part, kAoOfMisfit * (1 - score.agreement));
     take_down("disparity's shift", fmt::format("{:.5g}", score.shift),
               fmt::format("{}; the error is {:.2g} % of the median value above it, and by this and what does not fit "
-                          "AO is off by up to {:.1g}",
+                          "AO is off by up to {:.1g}, beside the errors along blurred outlines",
                           text_of(score), 100 * part, ao),
               "--set disparity-shift", true, part < kProven && ao < kLittleAo);
   }
