@@ -31,5 +31,9 @@ uint row_of_block(uint word, int y) { return word >> uint(y * kBlock) & (1u << u
 /// `row` adds its bits to `bits`, so many places from the lowest on.
 uint with_row(uint bits, uint row, int from) { return bits | (from < 0 ? row >> uint(-from) : row << uint(from)); }
 
-uint pack_pixel(ivec2 pixel) { return uint(pixel.x) | uint(pixel.y) << 16; }
-ivec2 unpack_pixel(uint packed) { return ivec2(packed & 0xffffu, packed >> 16); }
+/// The pixel of a site, by the site's number.
+ivec2 pixel_of_site(SiteGrid grid, int number) {
+  const int blocks = grid.blocks.x * grid.blocks.y, block = number % blocks;
+  return ivec2(block % grid.blocks.x, block / grid.blocks.x) * kBlock - grid.overhang +
+         place_in_block(number / blocks);
+}

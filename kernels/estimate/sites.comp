@@ -32,7 +32,7 @@ readonly buffer Needed { uint needed[]; };   // one uint per tile; only if it se
 writeonly buffer Wide { float wide[]; };     // one float per pixel of the image with its margin: see margin.comp
 writeonly buffer Blocks { uint words[]; };   // one uint per block
 writeonly buffer Planes { vec4 planes[]; };  // by the sites' numbers, see pack_plane; only if adaptive
-writeonly buffer List { uint list[]; };      // the sites' pixels, see pack_pixel, in no order
+writeonly buffer List { uint list[]; };      // the sites' numbers, in no order
 buffer Counts { SiteCounts counts; };        // zeros before
 
 /// A site stands for a pixel that is at least so alike: on a plane, one less than .6 pixels' widths off. Error and time
@@ -50,13 +50,13 @@ bool is_needed(View view, ivec2 first) {
           needed[to.y * tiles.x + to.x]) != 0u;
 }
 
-/// Lists the sites of a block. The invocation whose sites begin a workgroup counts it.
-void list_sites(ivec2 first, uint sites) {
+/// Lists the sites of a block, which has this number. The invocation whose sites begin a workgroup counts it.
+void list_sites(int block, uint sites) {
   if (sites == 0u) return;
   const uint count = uint(bitCount(sites)), group = kGroupX * kGroupY;
   const uint begin = atomicAdd(counts.listed, count), end = begin + count;
   for (uint at = begin; at < end; at++, sites &= sites - 1u)
-    list[at] = pack_pixel(first + place_in_block(findLSB(sites)));
+    list[at] = uint(number_of_site(params.grid, block, findLSB(sites)));
   if ((begin + group - 1u) / group == (end + group - 1u) / group) return;
   const uvec2 groups = dispatch_of((end + group - 1u) / group);
   atomicMax(counts.groups.x, groups.x);
@@ -119,5 +119,5 @@ void main() {
       left &= ~(covered & ~lattice | 1u << at);
     } while (left != 0u);
   words[number] = sites;
-  list_sites(first, sites);
+  list_sites(number, sites);
 }

@@ -72,9 +72,9 @@ void main() {
   const SiteGrid grid = params.grid;
   const uint at = (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
   if (at >= counts.listed) return;
-  const ivec2 site = unpack_pixel(list[at]), block = (site + grid.overhang) / kBlock;
+  const int number = int(list[at]), own_block = number % (grid.blocks.x * grid.blocks.y);
+  const ivec2 site = pixel_of_site(grid, number), block = (site + grid.overhang) / kBlock;
   const int width = view.size.x, plane_size = width * view.size.y, begin = params.first * plane_size;
-  const int own_block = word_of_pixel(grid, site), number = number_of_site(grid, own_block, bit_of_pixel(grid, site));
   const Plane here = unpack_plane(view, planes[number]);
   const float reach = clamp(params.reach / here.scale, kLeastReach, params.most);
   const float narrow = 1.0 / (reach * reach);

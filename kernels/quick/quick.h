@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_QUICK_H
 #define ALCOVE_QUICK_H
+#include "kernels/base/blocks.h"
 #include "kernels/base/shared.h"
 ALCOVE_BEGIN
 
@@ -15,6 +16,7 @@ struct MarginParams {
 
 struct QuickParams {
   View view;
+  SiteGrid grid;
   float radius;          // scene units
   float bias;            // sine of the elevation above the tangent plane below which nothing blocks
   ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern

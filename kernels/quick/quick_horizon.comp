@@ -10,7 +10,6 @@
 //  7. Nothing goes on behind others. Beyond the border samples find the depths that margin.comp has put there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/base/blocks.h"
 #include "kernels/quick/quick.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
@@ -115,7 +114,7 @@ void main() {
   const View view = params.view;
   const uint at = (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex;
   if (at >= counts.listed) return;
-  const ivec2 pixel = unpack_pixel(list[at]);
+  const ivec2 pixel = pixel_of_site(params.grid, int(list[at]));
   View around = view;
   around.size += 2 * kDepthMargin;
   const float z = wide[index_of(around, pixel + kDepthMargin)];

@@ -31,7 +31,7 @@ Values plane_of(const Values& planes, std::size_t i, const HostFrame& frame) {
 
 TEST(Scales, each_is_the_run_with_that_radius_alone_whatever_the_chain) {
   const HostFrame frame = furnished_room(96, 64).frame;
-  const std::vector<double> radii{1.2, 1.6, 2};  // with a smaller one there are more sites, for all of them
+  const std::vector<double> radii{3, 4, 5};  // with a smaller one there are more sites, for all of them
   for (const Estimator estimator : {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek})
     for (const Resolution resolution : {Resolution::full, Resolution::half})
       for (const auto& [denoise, stride] :

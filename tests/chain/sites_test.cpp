@@ -123,7 +123,12 @@ TEST(Sites, are_listed_each_once) {
     EXPECT_EQ(counts.groups.z, 1u);
     const std::set<uint> listed(list.begin(), list.begin() + counts.listed);
     EXPECT_EQ(listed.size(), counts.listed) << "none twice";
-    for (const uint pixel : listed) EXPECT_TRUE(picture.is_site(int(pixel & 0xffffu), int(pixel >> 16)));
+    const int blocks = sites.grid.blocks.x * sites.grid.blocks.y;
+    for (const uint number : listed) {
+      const int block = int(number) % blocks, bit = int(number) / blocks, columns = sites.grid.blocks.x;
+      EXPECT_TRUE(picture.is_site(block % columns * 4 - sites.grid.overhang.x + bit % 4,
+                                  block / columns * 4 - sites.grid.overhang.y + bit / 4));
+    }
   }
 }
 

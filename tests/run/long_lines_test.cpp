@@ -1,4 +1,5 @@
-// Exact searches count the pixels of a line in 16 bits: longer frames are cut, and never wrong in silence.
+// Exact searches count the pixels of a line in 16 bits: longer frames are cut, and never wrong in silence. Others take
+// them whole.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/compute.h"
 #include "tests/support/command_line.h"
@@ -60,6 +61,28 @@ TEST_F(LongLines, give_the_bits_of_their_parts) {
     const Image alone = read_exr_image(ao);
     EXPECT_EQ(alone.pixels, cropped(whole.pixels, whole.data, {x, 0, 64, height})) << x;
     EXPECT_LT(std::ranges::min(alone.pixels), 0.9) << "or else there is nothing to compare";
+  }
+}
+
+TEST_F(LongLines, give_the_bits_of_their_parts_where_pixels_share_estimates) {
+  const int length = 70000;
+  for (const auto& [width, height] : {std::pair{length, 4}, {4, length}}) {
+    write_steps(width, height);
+    for (const char* preset : {"draft", "standard"}) {
+      const auto image = [&](const std::string& more) {
+        const Finished finished = run_program(typed(
+            fmt::format("run {} -o {} --ortho-width {} --depth-channel Z --preset {} --radius 4 --type float {}", frame,
+                        ao, columns, preset, more)));
+        EXPECT_EQ(finished.code, 0) << finished;
+        return read_exr_image(ao);
+      };
+      const Image whole = image("");
+      const int end = length - 64;
+      const Window last = width > height ? Window{end, 0, 64, height} : Window{0, end, width, 64};
+      const Image alone = image(fmt::format("--roi {},{},{},{}", last.x, last.y, last.width, last.height));
+      EXPECT_EQ(alone.pixels, cropped(whole.pixels, whole.data, last)) << preset << " " << width;
+      EXPECT_LT(std::ranges::min(alone.pixels), 0.97) << "or else there is nothing to compare";
+    }
   }
 }
 

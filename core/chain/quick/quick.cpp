@@ -34,7 +34,7 @@ Estimate quick_horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& 
   result.listed.site_counts = sites.counts;
   gpu.dispatch(
       "quick_horizon",
-      QuickParams{gbuffer.view, reach.radius, reach.bias, gbuffer.grid.origin, sampling.noise_shift,
+      QuickParams{gbuffer.view, sites.grid, reach.radius, reach.bias, gbuffer.grid.origin, sampling.noise_shift,
                   gbuffer.depth_precision},
       {{"Wide", wide}, {"Normal", gbuffer.normal}, {"List", sites.list}, {"Counts", sites.counts}, {"Ao", result.ao}},
       sites.extent, {uint(sampling.slices), uint(sampling.steps)});
