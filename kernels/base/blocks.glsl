@@ -34,6 +34,5 @@ uint with_row(uint bits, uint row, int from) { return bits | (from < 0 ? row >> 
 /// The pixel of a site, by the site's number.
 ivec2 pixel_of_site(SiteGrid grid, int number) {
   const int blocks = grid.blocks.x * grid.blocks.y, block = number % blocks;
-  return ivec2(block % grid.blocks.x, block / grid.blocks.x) * kBlock - grid.overhang +
-         place_in_block(number / blocks);
+  return ivec2(block % grid.blocks.x, block / grid.blocks.x) * kBlock - grid.overhang + place_in_block(number / blocks);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <bit>
 
+#include "core/base/half.h"
 #include "core/chain/estimate/sites.h"
 #include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
@@ -66,8 +67,10 @@ TEST(Blocks, leave_a_straight_gradient_as_it_is) {
     }
 }
 
-/// The plane of least squares through sites about one of them, at that site; its slopes are held back by so many px^2.
-double fitted_slowly(const std::vector<std::array<double, 3>>& sites, double x, double y, double reach, double held) {
+/// The plane of least squares through sites about one of them: at that site, and its slopes, which are held back by so
+/// many px^2.
+std::array<double, 3> fitted_slowly(const std::vector<std::array<double, 3>>& sites, double x, double y, double reach,
+                                    double held) {
   double weight = 0, sum = 0, xs = 0, ys = 0, rise_x = 0, rise_y = 0, xx = 0, xy = 0, yy = 0;
   for (const auto& [u, v, blocked] : sites) {
     const double dx = u - x, dy = v - y, w = std::max(0.0, 1 - (dx * dx + dy * dy) / (reach * reach));
@@ -79,7 +82,7 @@ double fitted_slowly(const std::vector<std::array<double, 3>>& sites, double x, 
   rise_x -= xs * mean, rise_y -= ys * mean;
   const double whole = xx * yy - xy * xy;
   const double slope_x = (yy * rise_x - xy * rise_y) / whole, slope_y = (xx * rise_y - xy * rise_x) / whole;
-  return std::clamp(mean - (slope_x * xs + slope_y * ys) / weight, 0.0, 1.0);
+  return {std::clamp(mean - (slope_x * xs + slope_y * ys) / weight, 0.0, 1.0), slope_x, slope_y};
 }
 
 TEST(Blocks, fit_a_plane_to_their_sites) {
@@ -102,11 +105,32 @@ TEST(Blocks, fit_a_plane_to_their_sites) {
       const int u = x + grid.overhang.x, v = y + grid.overhang.y;
       return std::size_t((v % 4 * 4 + u % 4) * grid.blocks.x * grid.blocks.y + v / 4 * grid.blocks.x + u / 4);
     };
-    for (const auto& [x, y, blocked] : sites)
-      ASSERT_NEAR(std::bit_cast<float>(fitted[2 * number_of(int(x), int(y))]),
-                  fitted_slowly(sites, x, y, reach, of.held), 1e-4)
-          << x << " " << y;
+    for (const auto& [x, y, blocked] : sites) {
+      const uint* words = &fitted[2 * number_of(int(x), int(y))];
+      const auto expected = fitted_slowly(sites, x, y, reach, of.held);
+      ASSERT_NEAR(std::bit_cast<float>(words[0]), expected[0], 1e-4) << x << " " << y;
+      ASSERT_NEAR(from_half(std::uint16_t(words[1] & 0xffffu)), expected[1], 2e-4) << x << " " << y;
+      ASSERT_NEAR(from_half(std::uint16_t(words[1] >> 16)), expected[2], 2e-4) << x << " " << y;
+    }
   }
+}
+
+// The sites of a surface that others interrupt lie anywhere in their blocks: there slopes tell what pixels between them
+// have.
+TEST(Blocks, follow_slopes_between_sites_that_lie_anywhere) {
+  HostFrame host = wall_at(0, 0, 64, 48, {-1, 0, 0}, false);
+  const auto is_near = [](int x, int y) { return (x * 7 + y * 5) % 11 < 4; };
+  for (int y = 0; y < 48; y++)
+    for (int x = 0; x < 64; x++)
+      if (is_near(x, y)) host.depth[std::size_t(y * 64 + x)] *= 0.8f;
+  const Chosen chosen(host, 4, 2);
+  const auto gradient = [](int x, int y) { return 0.1 + 0.008 * x + 0.006 * y; };
+  const auto ao = chosen.filtered(gradient);
+  double squares = 0;
+  int count = 0;
+  for (int y = 8; y < 40; y++)
+    for (int x = 8; x < 56; x++, count++) squares += std::pow(ao[std::size_t(y * 64 + x)] - gradient(x, y), 2);
+  EXPECT_LT(std::sqrt(squares / count), 2e-3);
 }
 
 // Moments and scales go the way of AO, all together.
@@ -147,8 +171,12 @@ TEST(Blocks, share_their_noise) {
   EXPECT_LT(std::sqrt(squares), 0.045) << "sites have .1, and linear interpolation alone leaves .067";
 }
 
-TEST(Blocks, mix_no_surfaces) {
-  HostFrame host = wall_at(0, 0, 64, 48, {-1, 0, 0}, false);
+class BlocksOfLens : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Blocks, BlocksOfLens, testing::Values(false, true),
+                         [](const auto& orthographic) { return orthographic.param ? "orthographic" : "perspective"; });
+
+TEST_P(BlocksOfLens, mix_no_surfaces) {
+  HostFrame host = wall_at(0, 0, 64, 48, {-1, 0, 0}, GetParam());
   const auto is_near = [](int x, int y) { return (x + y / 3) % 23 < 10 || x % 17 == 0; };
   for (int y = 0; y < 48; y++)
     for (int x = 0; x < 64; x++)

@@ -98,12 +98,14 @@ TEST(Sites, of_a_plain_wall_are_those_of_the_widest_lattice_and_of_blocks_that_t
 
 // Else contact shadows of a few pixels would fall between sites.
 TEST(Sites, stand_for_no_pixel_farther_away_than_a_part_of_the_radius) {
-  const HostFrame wall = wall_at(0, 0, 32, 16, {-1, 0, 0}, true);
-  const double px = 4.0 / 32;
-  const auto count = [&](double within) { return chosen(wall, {16, true, {}, true, within}).count_of_sites(); };
-  EXPECT_EQ(count(0.9 * px), 32 * 16);
-  EXPECT_THAT(count(1.1 * px), AllOf(testing::Gt(32 * 16 / 5), testing::Lt(32 * 16 / 2)));
-  EXPECT_EQ(count(4.3 * px), 32 * 16 / 16);
+  for (const bool orthographic : {false, true}) {
+    const HostFrame wall = wall_at(0, 0, 32, 16, {-1, 0, 0}, orthographic);
+    const double px = orthographic ? 4.0 / 32 : wall.depth.front() / wall.camera.fx;
+    const auto count = [&](double within) { return chosen(wall, {16, true, {}, true, within}).count_of_sites(); };
+    EXPECT_EQ(count(0.9 * px), 32 * 16);
+    EXPECT_THAT(count(1.1 * px), AllOf(testing::Gt(32 * 16 / 5), testing::Lt(32 * 16 / 2)));
+    EXPECT_EQ(count(4.3 * px), 32 * 16 / 16);
+  }
   EstimatorSettings settings;
   settings.radius = 2;
   settings.further_radii = {0.5};

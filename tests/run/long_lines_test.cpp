@@ -70,9 +70,9 @@ TEST_F(LongLines, give_the_bits_of_their_parts_where_pixels_share_estimates) {
     write_steps(width, height);
     for (const char* preset : {"draft", "standard"}) {
       const auto image = [&](const std::string& more) {
-        const Finished finished = run_program(typed(
-            fmt::format("run {} -o {} --ortho-width {} --depth-channel Z --preset {} --radius 4 --type float {}", frame,
-                        ao, columns, preset, more)));
+        const Finished finished = run_program(
+            typed(fmt::format("run {} -o {} --ortho-width {} --depth-channel Z --preset {} --radius 4 --type float {}",
+                              frame, ao, columns, preset, more)));
         EXPECT_EQ(finished.code, 0) << finished;
         return read_exr_image(ao);
       };
