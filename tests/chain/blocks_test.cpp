@@ -176,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(Blocks, BlocksOfLens, testing::Values(false, true),
                          [](const auto& orthographic) { return orthographic.param ? "orthographic" : "perspective"; });
 
 TEST_P(BlocksOfLens, mix_no_surfaces) {
-  HostFrame host = wall_at(0, 0, 64, 48, {-1, 0, 0}, GetParam());
+  HostFrame host = wall_at(0, 0, 64, 48, unit({-1, 0.3, 0.2}), GetParam());
   const auto is_near = [](int x, int y) { return (x + y / 3) % 23 < 10 || x % 17 == 0; };
   for (int y = 0; y < 48; y++)
     for (int x = 0; x < 64; x++)
