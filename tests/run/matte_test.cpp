@@ -86,6 +86,31 @@ TEST_F(Matte, within_it_the_ao_is_that_of_the_whole_frame_and_elsewhere_what_is_
   }
 }
 
+// A pixel takes estimates from blocks around it, which lie in up to four tiles.
+TEST_F(Matte, a_single_pixel_has_the_bits_of_the_whole_wherever_it_lies_in_a_tile) {
+  const Window display{-3, -2, 165, 93};  // where blocks of 4 x 4 begin
+  FrameFile file = wall_frame(kWindow, display);
+  write_bytes(camera, wall_camera(display).dump());
+  for (std::size_t i = 0; i < kWindow.pixels(); i++)
+    if ((i % 160 / 6 + i / 160 / 5) % 3 == 0) file.planes["ViewLayer.Depth.Z"][i] *= 0.93F;
+  for (const char* more : {"--preset standard", "--preset draft", "--slices 6 --set denoise-radius=5"}) {
+    const Plane whole = ao_of(file, typed(more));
+    for (std::size_t turn = 0; turn < 16; turn++) {
+      Plane matte(kWindow.pixels(), 0);
+      std::vector<std::size_t> places;
+      for (std::size_t k = 0; k < 4; k++) {
+        const std::size_t place = turn * 4 + k;  // in a tile
+        places.push_back((24 + place / 8) * 160 + 16 + 40 * k + place % 8);
+        matte[places.back()] = 1;
+      }
+      FrameFile chosen = file;
+      chosen.planes["Matte.Y"] = matte;
+      const Plane ao = ao_of(chosen, typed(std::string("--set matte-channel=Matte.Y ") + more));
+      for (const std::size_t i : places) ASSERT_EQ(ao[i], whole[i]) << more << " " << i % 160 << "," << i / 160;
+    }
+  }
+}
+
 TEST_F(Matte, of_zeros_everything_is_outside_and_nothing_is_computed) {
   EXPECT_THAT(within(Plane(kWindow.pixels(), 0)), Each(1.0F));
   EXPECT_EQ(tiles()["computed"], 0);
