@@ -86,9 +86,9 @@ TEST(Scales, of_a_large_radius_is_as_alone) {
   const HostFrame frame = furnished_room(121, 83).frame;
   const std::size_t pixels = frame.depth.size();
   const Planes alone = planes_of(frame, settings_of({2}), "ao"),
-               both = planes_of(frame, settings_of({0.3, 2}), "ao-scales");
+               both = planes_of(frame, settings_of({0.1, 2}), "ao-scales");
   const Difference d = difference(alone.ao, [&](std::size_t i) { return double(both.scales[i + pixels]); });
-  EXPECT_LE(d.rmse, 0.02) << place(d, frame);
+  EXPECT_LE(d.rmse, 0.013) << place(d, frame);
 }
 
 TEST(Scales, order_changes_no_bit) {

@@ -257,11 +257,12 @@ const gpu::Buffer& fit_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const 
   const gpu::Buffer& fitted = gpu.buffer(prefix + "fitted", site_bytes(sites.grid, 2 * sizeof(uint) * count));
   const bool by_radius = moments == 0 && count == denoiser.within.size();
   const uint together = by_radius ? 1 : count;
-  const bool is_of_largest = moments == count;  // moments alone: see of_radius()
+  const auto within_of_plane = [&](uint plane) {
+    if (by_radius) return denoiser.within[plane];
+    return moments == count ? denoiser.within.back() : denoiser.within.front();  // moments alone: see of_radius()
+  };
   for (uint first = 0; first < count; first += together) {
-    const float reach = pixels_of(gbuffer, by_radius       ? denoiser.within[first]
-                                           : is_of_largest ? denoiser.within.back()
-                                                           : denoiser.within.front());
+    const float reach = pixels_of(gbuffer, within_of_plane(first));
     gpu.dispatch("fit_blocks", FitBlocksParams{gbuffer.view, sites.grid, reach, of.most, of.held, int(first)},
                  {{"Blocks", sites.words},
                   {"Planes", sites.planes},
