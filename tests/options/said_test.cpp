@@ -486,7 +486,7 @@ TEST_F(Said, lists_with_commas_are_what_repeated_options_are) {
   EXPECT_THAT(radii({"--radius", "0.1, 0.5", "--radius", "2"}), ElementsAre("0.1", "0.5", "2"));
   EXPECT_THAT(radii(preset("radii.toml", {{"radius", "0.1,0.5"}})), ElementsAre("0.1", "0.5"));
   EXPECT_THAT(refusal("--radius 0.1,,0.5"), HasSubstr("--radius: \"\" is not a number"));
-  EXPECT_EQ(read({"--preset", "draft,production"}).settings.estimator.slices, 16);
+  EXPECT_EQ(read({"--preset", "draft,production"}).settings.estimator.slices, 12);
   EXPECT_EQ(read({"--preset", "production,draft"}).settings.estimator.steps, 12);
   EXPECT_EQ(read({"--preset", "draft,standard"}).settings.estimator.search, SliceSearch::steps);
   const Words behind{"--behind", "a,b.exr", "--behind", "c.exr"};
