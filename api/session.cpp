@@ -266,12 +266,8 @@ void Session::run(int frame) {
   std::vector<float> behind;
   HostPlanes planes = planes_over(reading.data, behind);
   Notes notes = check_planes(reading, planes, all.input);
-  std::vector<float> cut;
-  if (reading.cuts_ramps) {
-    cut.assign(planes[RawPlane::depth].begin(), planes[RawPlane::depth].end());
-    cut_ramps(reading, cut);
-    planes[RawPlane::depth] = cut;
-  }
+  const std::vector<float> cut = with_ramps_cut(reading, planes[RawPlane::depth]);
+  if (reading.cuts_ramps) planes[RawPlane::depth] = cut;
   if (depends_on_depth(all.estimator)) {
     const auto radii = radii_by_depth(all.estimator, reading.camera, median_depth(reading, depth().values));
     take_radii(all.estimator, radii.empty() ? std::vector{1.0} : radii);  // without a surface there is no AO to compute

@@ -84,7 +84,7 @@ uint sites_of_row(ivec2 first) {
   for (int k = 0; k <= (kCount + 2) / kBlock; k++) {
     const bool exists = block + k >= 0 && block + k < grid.blocks.x;
     const uint word = exists ? words[row + clamp(block + k, 0, grid.blocks.x - 1)] : 0u;
-    if (k * kBlock - beside < 32) bits = with_row(bits, row_of_block(word, at.y % kBlock), k * kBlock - beside);
+    bits = with_row(bits, row_of_block(word, at.y % kBlock), k * kBlock - beside);
   }
   return bits;
 }

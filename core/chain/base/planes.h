@@ -19,6 +19,10 @@ inline std::size_t plane_bytes(const View& view) { return pixels_of(view) * size
 inline uint planes_in(const gpu::Buffer& buffer, const View& view) { return uint(buffer.bytes() / plane_bytes(view)); }
 inline gpu::Extent extent_of(const View& view) { return {uint(view.size.x), uint(view.size.y)}; }
 inline uint groups_of(int pixels, uint size) { return (uint(pixels) + size - 1) / size; }
+/// Tiles in x and y.
+inline gpu::Extent tile_extent(const View& view) {
+  return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
+}
 /// The workgroups over a list, by the counts of the kernel that makes it; there are never more than `most`.
 inline gpu::Extent listed_extent(const gpu::Buffer& counts, uint most) {
   return {counts, std::min(most, kListedRow), groups_of(int(most), kListedRow)};

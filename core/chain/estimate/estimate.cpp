@@ -70,11 +70,6 @@ uint completion_of(const Reach& reach) {
   return 0;
 }
 
-/// Tiles in x and y.
-gpu::Extent tile_extent(const View& view) {
-  return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
-}
-
 /// Blocks of tiles in x and y.
 gpu::Extent block_extent(const View& view) {
   return {groups_of(view.size.x, uint(kTile * kTileBlock)), groups_of(view.size.y, uint(kTile * kTileBlock))};
@@ -411,7 +406,7 @@ void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, cons
 gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, const Sites& sites) {
   if (!estimate.completed) return nullptr;
   const View& view = gbuffer.view;
-  const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
+  const gpu::Extent tiles = tile_extent(view);
   gpu::Buffer& sums = gpu.buffer("completion", sizeof(vec2) * tiles.x * tiles.y);
   gpu.dispatch("completion", CompletionParams{view, sites.origin, sites.spacing, planes_in(*estimate.ao, view) - 1},
                {{"Depth", gbuffer.depth}, {"Ao", estimate.ao}, {"Completed", estimate.completed}, {"Sums", sums}},

@@ -86,7 +86,7 @@ Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, co
     sites.planes = &gpu.buffer(prefix + "planes of sites", site_bytes(sites.grid, 4 * sizeof(float)));
   sites.list = &gpu.buffer(prefix + "sites of blocks", plane_bytes(view));
   sites.counts = &gpu.buffer(prefix + "block site counts", sizeof(SiteCounts));
-  sites.extent = listed_extent(*sites.counts, groups_of(int(plane_bytes(view) / sizeof(float)), kGroupX * kGroupY));
+  sites.extent = listed_extent(*sites.counts, groups_of(int(pixels_of(view)), kGroupX * kGroupY));
   const gpu::Buffer* needed = rule.skips ? gbuffer.needed : nullptr;
   gpu.clear(*sites.counts);
   gpu.dispatch(
@@ -108,9 +108,8 @@ void list_sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, 
                 const std::string& prefix) {
   if (!sites.words) return;
   const View& view = gbuffer.view;
-  const std::size_t tiles =
-      std::size_t(groups_of(view.size.x, uint(kTile))) * std::size_t(groups_of(view.size.y, uint(kTile)));
-  list.sites = &gpu.buffer("listed sites", tiles * kTile * kTile * sizeof(uint));
+  const gpu::Extent tiles = tile_extent(view);
+  list.sites = &gpu.buffer("listed sites", std::size_t(tiles.x) * tiles.y * kTile * kTile * sizeof(uint));
   list.site_counts = &gpu.buffer(prefix + "site counts", sizeof(SiteCounts));
   gpu.clear(*list.site_counts);
   gpu.dispatch("list_sites", ListSitesParams{view.size, sites.grid, sites.origin},

@@ -34,9 +34,9 @@ struct Denoiser {
   double depth_sigma;           // see EstimatorSettings::denoise_depth_sigma
   int radius;                   // px: see denoise_radius_of()
   bool looks_up;                // the weights are the user's, else interpolate's parabola
-  std::optional<OfBlocks>
-      of_blocks;  // for adaptive sites at a spacing of 16, without a radius or weights of the user's
-  /// Scene units: the largest reach of fit_blocks by radius, from the smallest on, and of interpolate for all of them.
+  /// For adaptive sites at a spacing of 16, without a radius or weights of the user's.
+  std::optional<OfBlocks> of_blocks;
+  /// Scene units, by radius from the smallest on: the largest reach of fit_blocks. That of interpolate is the first.
   std::vector<double> within;
   bool smooths() const { return !weights.empty() || of_blocks; }
   /// The reach of all filters together, in px.

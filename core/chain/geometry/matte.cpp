@@ -42,7 +42,7 @@ GBuffer needed(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& wi
   if (!matte.plane) return gbuffer;
   const View& view = gbuffer.view;
   const BlockGrid& grid = gbuffer.grid;
-  const gpu::Extent tiles{groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
+  const gpu::Extent tiles = tile_extent(view);
   GBuffer result = gbuffer;
   result.needed = &gpu.buffer("needed", sizeof(uint) * tiles.x * tiles.y);
   gpu.clear(*result.needed);

@@ -13,15 +13,11 @@
 namespace alcove {
 namespace {
 
-gpu::Extent tiles_of(const View& view) {
-  return {groups_of(view.size.x, uint(kTile)), groups_of(view.size.y, uint(kTile))};
-}
-
 /// The tiles of the largest of all frames of a group, and of the frame.
 gpu::Extent most_tiles(const EstimateSet& estimates, const SeenGroup& group) {
-  gpu::Extent most = tiles_of(estimates.view);
+  gpu::Extent most = tile_extent(estimates.view);
   for (const auto& frame : group.frames->as<const TakenFrame>().first(group.count)) {
-    const gpu::Extent of_frame = tiles_of(frame.view);
+    const gpu::Extent of_frame = tile_extent(frame.view);
     most = {std::max(most.x, of_frame.x), std::max(most.y, of_frame.y)};
   }
   return most;

@@ -193,4 +193,11 @@ void cut_ramps(const Reading& reading, std::span<float> depth) {
   RampCutter(reading, depth).cut();
 }
 
+std::vector<float> with_ramps_cut(const Reading& reading, std::span<const float> depth) {
+  if (!reading.cuts_ramps) return {};
+  std::vector<float> cut(depth.begin(), depth.end());
+  cut_ramps(reading, cut);
+  return cut;
+}
+
 }  // namespace alcove

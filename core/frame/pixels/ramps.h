@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/frame/reading.h"
 
@@ -14,6 +15,8 @@ namespace alcove {
 /// through those pixels about it that are of this surface and of no ramp. `depth` is over the whole data window, so
 /// that parts of a frame have the bits of the whole. Fails with ErrorKind::usage for positions.
 void cut_ramps(const Reading& reading, std::span<float> depth);
+/// The same in a copy; empty where the reading cuts none.
+std::vector<float> with_ramps_cut(const Reading& reading, std::span<const float> depth);
 
 /// The bytes that this takes for each pixel: four floats, of which one is the copy that settling looks at, and a bit.
 constexpr std::uint64_t kRampBytes = 17;

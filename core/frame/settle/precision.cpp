@@ -103,14 +103,9 @@ Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& s
   found.jitter = jitter_of(raw.depth, depth_map_of(reading), view_of(reading, raw.window), seen.grain);
   if (raw.window == frame.data && raw.depth.size() == raw.window.pixels())
     found.borders = borders_of(raw.depth, raw.window, depth_map_of(reading));
-  std::vector<float> depth;
-  if (reading.cuts_ramps) {
-    depth.assign(raw.depth.begin(), raw.depth.end());
-    cut_ramps(reading, depth);
-    for (std::size_t i = 0; i < depth.size(); i++)
-      found.cut_pixels += !std::isnan(depth[i]) && depth[i] != raw.depth[i];
-  }
-  walk({reading, frame.data, reading.cuts_ramps ? depth : raw.depth, raw.normal, has_read_normals}, found);
+  const std::vector<float> cut = with_ramps_cut(reading, raw.depth);
+  for (std::size_t i = 0; i < cut.size(); i++) found.cut_pixels += !std::isnan(cut[i]) && cut[i] != raw.depth[i];
+  walk({reading, frame.data, reading.cuts_ramps ? std::span(cut) : raw.depth, raw.normal, has_read_normals}, found);
   return found;
 }
 
