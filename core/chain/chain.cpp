@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/chain/estimate/shadow.h"
 #include "core/chain/filters/filters.h"
 #include "core/chain/geometry/matte.h"
 #include "core/chain/hidden/hidden.h"
@@ -119,6 +120,12 @@ FrameOutputs with_transfer(gpu::Recorder& gpu, const FrameInputs& frame, const G
   return out;
 }
 
+/// How far back the frame's pixels are solid, if its estimate has found that out for each of them.
+const gpu::Buffer* told_of(const Seen& seen) {
+  const gpu::Buffer* told = seen.estimate.told;
+  return told && told->bytes() == plane_bytes(seen.surfaces.wide.view) ? told : nullptr;
+}
+
 /// All that is wanted.
 FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen, const EstimatorSettings& settings,
                     const Wanted& wanted) {
@@ -141,6 +148,8 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& se
   if (wanted.has(&FrameOutputs::hidden)) out.hidden = &hidden_planes(gpu, gbuffer, layering_of(settings));
   if (wanted.has(&FrameOutputs::confidence))
     out.confidence = cut(gpu, frame, &confidence(gpu, seen.surfaces.wide, with_margin(frame), settings), "confidence");
+  if (wanted.has(&FrameOutputs::shadow))
+    out.shadow = cut(gpu, frame, &shadow(gpu, seen.surfaces.wide, with_margin(frame), settings, told_of(seen)), "shadow");
   if (wanted.has(&FrameOutputs::specular_occlusion))
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, open, *visibility.ao, settings.roughness);
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);

@@ -12,6 +12,7 @@
 #include "core/base/image.h"
 #include "core/base/system.h"
 #include "core/chain/estimate/estimate.h"
+#include "core/chain/estimate/shadow.h"
 #include "core/chain/filters/filters.h"
 #include "core/chain/results/confidence.h"
 #include "core/chain/results/outputs.h"
@@ -72,6 +73,13 @@ int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
   return occluders + (tells && settings.hidden > 0 ? kEndsReach + kEndsBeyond : 0);
 }
 
+/// How far surfaces block, in scene units: within the radius, or a light.
+double reach_of_occluders(const Settings& settings) {
+  const double radius = settings.estimator.radius ? radii_of(settings.estimator).back() : 0;
+  if (!settings.output.lights) return radius;
+  return std::max(radius, settings.estimator.shadow_reach.value_or(kEndlessReach));
+}
+
 /// The width, in radii, from which a run that begins within reach of a receiver is as good as endless: with `auto` more
 /// of it adds nothing to its thickness, and nothing else is told by its other end. It is a little more than 4 radii,
 /// twice the width from which runs level off, since exact.comp rounds. Where surfaces are completed, a run is half as
@@ -125,8 +133,9 @@ Surroundings::Surroundings(const FrameSource& source, const Settings& settings, 
       view_(view_of(source.reading, source.reading.data)),
       orthographic_(source.reading.camera.orthographic),
       radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
+      occluders_(reach_of_occluders(settings)),
       filters_(filter_reach(settings) + reduce_reach(settings.output.filter, source.reading.supersampling)),
-      lines_(line_reach(settings.estimator)),
+      lines_(std::max(line_reach(settings.estimator), settings.output.lights ? line_reach(bracket_of({})) : 0)),
       pairs_(pair_reach(source, settings.estimator)),
       widest_run_(widest_run(settings.estimator)) {}
 
@@ -166,7 +175,7 @@ const std::vector<Surroundings::Block>& Surroundings::blocks_of(int block_row) {
   for (int column = 0; column < columns_; column++) {
     const Window window = window_of(block_row, column);
     const double depth = nearest[std::size_t(column)];
-    blocks.push_back({reach(radius_, depth, window), reach(widest_run_ * radius_, depth, window)});
+    blocks.push_back({reach(occluders_, depth, window), reach(widest_run_ * radius_, depth, window)});
   }
   return blocks;
 }
@@ -426,7 +435,8 @@ TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowL
                   const FrameSource& source) {
   if (auto cut = Cutter(surroundings, limits).cut(whole); !cut.rows.empty()) return std::move(cut.rows);
   const std::string what = fmt::format(
-      "{}: within --radius a tile of the frame depends on too many pixels to compute at once: use a smaller --radius",
+      "{}: within --radius or --shadow-reach a tile of the frame depends on too many pixels to compute at once: use smaller "
+      "ones",
       source.depth_path());
   const MemoryNeeds needs = memory_needs(source, surroundings, limits);
   if (needs.least > limits.room.bytes) limits.refuse(what, needs);

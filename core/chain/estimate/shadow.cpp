@@ -1,0 +1,52 @@
+// Host side of shadow.comp.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/chain/estimate/shadow.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/chain/base/planes.h"
+#include "core/chain/geometry/matte.h"
+#include "core/chain/results/confidence.h"
+
+namespace alcove {
+gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                    const EstimatorSettings& settings, const gpu::Buffer* told) {
+  const EstimatorSettings sampled = bracket_of(settings);
+  const Reach reach = reach_of(sampled, radii_of(settings).back());
+  const Sampling sampling = sampling_of(sampled, frame.frame);
+  const GBuffer counted = occluders(gpu, gbuffer, frame);
+  if (!told && tells_backs(sampled)) {
+    const Chains links = chains(gpu, counted, reach, frame[RawPlane::normal] != nullptr);
+    chain_ends(gpu, counted, links);
+    told = &backs(gpu, counted, links);
+  }
+  ShadowParams params{};
+  params.view = gbuffer.view;
+  params.reach = float(settings.shadow_reach.value_or(kEndlessReach));
+  params.size = reach.radius;
+  params.bias = settings.estimator == Estimator::crytek ? 0 : reach.bias;
+  params.thickness = reach.thickness;
+  params.noise_origin = gbuffer.grid.origin;
+  params.noise_shift = sampling.noise_shift;
+  params.depth_precision = gbuffer.depth_precision;
+  gpu::Buffer& result = gpu.buffer("shadow", frame.lights.size() * plane_bytes(gbuffer.view));
+  const uint solid = solid_of(reach, told != nullptr) | kHiddenSurface * (gbuffer.surfaces - 1);
+  for (const Light& light : frame.lights) {
+    params.light = to_vec3(light.at);
+    params.is_lamp = light.is_lamp ? 1 : 0;
+    params.spread = float(light.is_lamp ? light.size : std::tan(light.size * std::numbers::pi / 360));
+    gpu.dispatch(gbuffer.surfaces > 1 ? "shadow_layers" : "shadow", params,
+                 {{"Depth", gbuffer.depth},
+                  {"Normal", gbuffer.normal},
+                  {"Occluders", occluder_depth_of(counted)},
+                  {"Hidden", gpu::Optional(occluder_hidden_of(counted))},
+                  {"Backs", gpu::Optional(told)},
+                  {"Result", result}},
+                 extent_of(gbuffer.view), {solid, 1u});
+    params.plane++;
+  }
+  return result;
+}
+
+}  // namespace alcove
