@@ -277,11 +277,15 @@ void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach,
   found.completed.sectors |= sectors_of(r, reach, before, draw.shift);
 }
 
+/// Steps from one of these samples to the next; the first one is at `border` steps from the receiver.
+float gap_beyond(Side side, Reach reach, float border) {
+  return (min(side.whole_reach, side.reach + float(reach.width)) - border) / float(kStepsBeyond);
+}
+
 /// Adds what goes on beyond the image's border.
 void complete_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw) {
   const Sample border = sample_at(r, side, reach, floor(side.reach));
-  const float most = min(side.whole_reach, side.reach + float(reach.width));
-  const float gap = (most - border.offset) / float(kStepsBeyond);
+  const float gap = gap_beyond(side, reach, border.offset);
   if (kThickness == kThicknessEndless)
     complete_endless_beyond(found, r, side, reach, draw, border, gap);
   else

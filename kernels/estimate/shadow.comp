@@ -104,6 +104,25 @@ bool is_any_before(Receiver r, Side side, Reach reach, Draw draw, int count, vec
   return found;
 }
 
+/// 4. The same of the samples beyond the border, each on the plane of the border's nearest pixel.
+bool is_any_beyond_before(Receiver r, Side side, Reach reach, Draw draw, vec3 position, vec3 direction, float sine_px) {
+  const float first = floor(side.reach), gap = gap_beyond(side, reach, first);
+  bool found = false;
+  int k = 0;
+  do {
+    const float offset = first + gap * (float(k) + draw.jitter);
+    const float far = r.perspective ? offset * r.z / (sine_px + offset * direction.z) : offset / sine_px;
+    const ivec2 pixel = r.pixel + ivec2(round(side.direction_px * offset));
+    const ivec2 nearest = clamp(pixel, ivec2(0), params.view.size - 1);
+    const int index = nearest.y * reach.width + nearest.x;
+    const vec3 n = octahedral_direction(unpackSnorm2x16(normal[index]));
+    const float z = occluder_depth[index];
+    const vec3 from = position_of(params.view, vec2(nearest) + 0.5, z);
+    found = both(z < kSkyDepth, dot(n, position + far * direction - from) <= 1e-5 * z) ? true : found;
+  } while (++k <= kStepsBeyond && !found);
+  return found;
+}
+
 /// Steps to the image of a place so far along the ray to the light; kEndless: it is behind the eye.
 float steps_to(Receiver r, Slice slice, vec3 direction, float sine, float far) {
   const float pixels = max(abs(slice.image_t.x), abs(slice.image_t.y));
@@ -112,7 +131,7 @@ float steps_to(Receiver r, Slice slice, vec3 direction, float sine, float far) {
 }
 
 /// Whether a light is blocked, from its direction and its distance, or that of the farthest place that may block.
-bool is_blocked(View view, Receiver r, vec3 direction, float far) {
+bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far) {
   const float cosine = dot(direction, r.eye);
   const vec3 across = direction - cosine * r.eye;
   const float sine = length(across);
@@ -128,9 +147,15 @@ bool is_blocked(View view, Receiver r, vec3 direction, float far) {
   const float sector = 0.5 * float(kSectorCount) * (slope + 1.0);
   const Draw draw = Draw(growth_of(side.reach), 1.0 - fract(sector));  // 5.
   const int count = steps_of(side.reach, draw.jitter);
-  const bool goes_beyond = kBeyondBorder && side.reach < side.whole_reach;
-  if (!goes_beyond && !is_any_before(r, side, reach, draw, count, vec2(sine, cosine))) return false;
-  const Blocked all = all_of(search(r, side, reach, draw, count));
+  const bool is_before = is_any_before(r, side, reach, draw, count, vec2(sine, cosine));
+  bool is_beyond = kBeyondBorder && side.reach < side.whole_reach;
+  if (is_beyond) {
+    const float pixels = max(abs(slice.image_t.x), abs(slice.image_t.y));
+    is_beyond = is_any_beyond_before(r, side, reach, draw, position, direction, sine * pixels);
+  }
+  if (!is_before && !is_beyond) return false;
+  side.whole_reach = is_beyond ? side.whole_reach : side.reach;
+  const Blocked all = all_of(search(r, side, reach, draw, is_before ? count : 0));
   return (all.sectors >> int(sector) & 1u) != 0u || both(all.near > slope, all.far <= slope);
 }
 
@@ -168,7 +193,7 @@ void main() {
   for (uint k = 0u; k < kDirections; k++) {
     const vec2 place = vec2((float(k) + noise.x) / float(kDirections), fract(noise.y + kGolden * float(k)));  // 6.
     const vec4 light = towards(position, place);
-    if (dot(light.xyz, r.normal) > 0.0 && !is_blocked(view, r, light.xyz, light.w)) seen += 1.0;  // 1.
+    if (dot(light.xyz, r.normal) > 0.0 && !is_blocked(view, r, position, light.xyz, light.w)) seen += 1.0;  // 1.
   }
   result[at] = seen / float(kDirections);
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "core/chain/base/planes.h"
 #include "core/chain/geometry/matte.h"
@@ -31,19 +32,19 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   params.noise_shift = sampling.noise_shift;
   params.depth_precision = gbuffer.depth_precision;
   gpu::Buffer& result = gpu.buffer("shadow", frame.lights.size() * plane_bytes(gbuffer.view));
+  std::vector<gpu::Binding> buffers{{"Depth", gbuffer.depth},
+                                    {"Normal", gbuffer.normal},
+                                    {"Occluders", occluder_depth_of(counted)},
+                                    {"Backs", gpu::Optional(told)},
+                                    {"Result", result}};
+  if (gbuffer.surfaces > 1) buffers.push_back({"Hidden", occluder_hidden_of(counted)});
   const uint solid = solid_of(reach, told != nullptr) | kHiddenSurface * (gbuffer.surfaces - 1);
   for (const Light& light : frame.lights) {
     params.light = to_vec3(light.at);
     params.is_lamp = light.is_lamp ? 1 : 0;
     params.spread = float(light.is_lamp ? light.size : std::tan(light.size * std::numbers::pi / 360));
-    gpu.dispatch(gbuffer.surfaces > 1 ? "shadow_layers" : "shadow", params,
-                 {{"Depth", gbuffer.depth},
-                  {"Normal", gbuffer.normal},
-                  {"Occluders", occluder_depth_of(counted)},
-                  {"Hidden", gpu::Optional(occluder_hidden_of(counted))},
-                  {"Backs", gpu::Optional(told)},
-                  {"Result", result}},
-                 extent_of(gbuffer.view), {solid, 1u});
+    gpu.dispatch(gbuffer.surfaces > 1 ? "shadow_layers" : "shadow", params, buffers, extent_of(gbuffer.view),
+                 {solid, 1u});
     params.plane++;
   }
   return result;

@@ -18,6 +18,13 @@ bool is_of_visibility(const DebugView* view) {
          view->source == DebugSource::count;
 }
 
+std::vector<std::string> shadow_channels(const OutputSettings& settings) {
+  std::vector<std::string> channels;
+  if (settings.lights)
+    for (const auto& light : settings.lights->lights) channels.push_back(fmt::format("shadow-{}.Y", light.name));
+  return channels;
+}
+
 }  // namespace
 
 std::vector<std::string> aov_names() {
@@ -38,9 +45,7 @@ std::vector<Aov> aovs_of(const OutputSettings& settings) {
            list_of(aov_names()));
     if (std::ranges::find(aovs, name, &Aov::name) != aovs.end()) continue;
     aovs.push_back({name, split(row->channels), row->planes, row->source, row->is_float});
-    if (name == "shadow" && settings.lights)
-      for (const auto& light : settings.lights->lights)
-        aovs.back().channels.push_back(fmt::format("shadow-{}.Y", light.name));
+    if (name == "shadow") aovs.back().channels = shadow_channels(settings);
     if (name == "ao" && !settings.ao_name.empty()) aovs.back().channels = {settings.ao_name};
     if (name != "ao" || settings.ao_channels == AoChannels::mono) continue;
     const std::string layer = settings.ao_name.empty() ? "" : settings.ao_name + ".";
