@@ -100,6 +100,10 @@ float offset_of(int k, int count, Side side, Draw draw) {
   return step_offset(k, int(kSteps), count, side.reach, draw.jitter);
 }
 
+// All that is blocked matters.
+bool is_settled(float near, uint sectors) { return false; }
+bool is_concerned(float slope) { return true; }
+
 #include "kernels/estimate/runs.glsl"
 
 /// 4. to 9. The blocked part of a side's integrals; in the last row of the second column the part of its arc that

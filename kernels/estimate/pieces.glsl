@@ -122,7 +122,7 @@ void take_down(inout Interruptions found, int k, Sample s, Sample last, bool con
   const bool is_near = (s.z > last.z ? s.distance_sq : last.distance_sq) < kFarEnd * kFarEnd * reach.radius_sq;
   const uint bit = 1u << uint(k & (kWordBits - 1));
   found.starts |= !connected || !s.above ? bit : 0u;
-  found.jumps |= both(is_jump, is_near) ? bit : 0u;
+  found.jumps |= both(is_jump, both(is_near, is_concerned(greater(s.slope, last.slope)))) ? bit : 0u;
 }
 
 /// The piece by which the deeper one of two neighbouring samples, `at` and the one before, goes on behind the nearer

@@ -5,7 +5,8 @@
 // The kernel has declared its buffers `occluder_depth`, `normal`, `hidden` and `backs`, and these constants: how many
 // surfaces a pixel has at most, kSurfaces; how many steps a side takes at most, kSteps, and by offset_of() where they
 // lie; kFalloff and kHard, kOrder, kCurved, kThickness, kBeyondBorder, kBehindOthers, kAllInSectors and kHasBacks. To be
-// included after sectors.glsl and backs.glsl.
+// included after sectors.glsl and backs.glsl. It has declared two functions, too: is_settled(), whether what is blocked
+// already is all that matters, and is_concerned(), whether slopes down from one may matter.
 
 /// A run is so many times as thick as it is wide.
 const float kThicknessPerWidth = 1.25;
@@ -429,7 +430,7 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
         complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
         interrupted = Interruptions(k + 1, 0u, 0u);
       }
-    } while (++k < count);
+    } while (++k < count && !is_settled(found.blocked.near, found.blocked.sectors));
   }
   if (kHard) {
     const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 0.0);
@@ -604,7 +605,7 @@ void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw d
         complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
         interrupted = Interruptions(k + 1, 0u, 0u);
       }
-    } while (++k < count);
+    } while (++k < count && !is_settled(found.blocked.near, found.blocked.sectors));
   }
   if (kHard) end_runs(found, before, slots, ends_of(r, reach, slots, 0.0, draw.shift), (1u << kSurfaces) - 1u);
   if (kHard) found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);

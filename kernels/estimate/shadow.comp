@@ -75,6 +75,13 @@ float offset_of(int k, int count, Side side, Draw draw) {
   return float(k + 1) + draw.jitter * beyond * beyond;
 }
 
+// The light in the slice that is searched.
+float light_slope;  // slope_of() its direction
+uint light_sector;  // its bit
+
+bool is_settled(float near, uint sectors) { return kThickness != kThicknessEndless && near > light_slope || (sectors & light_sector) != 0u; }
+bool is_concerned(float slope) { return slope >= light_slope; }
+
 #include "kernels/estimate/runs.glsl"
 
 /// A light so near to the eye's ray, by its sine, is seen wherever the eye sees.
@@ -143,8 +150,9 @@ bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far)
   Side side = side_of(view, r, slice, 1.0, reach);
   side.whole_reach = steps_to(r, slice, direction, sine, far);  // 2.
   side.reach = min(steps_to_border(view, r.pixel, side.direction_px), side.whole_reach);
-  const float slope = slope_of(vec2(sine, cosine));
-  const float sector = 0.5 * float(kSectorCount) * (slope + 1.0);
+  light_slope = slope_of(vec2(sine, cosine));
+  const float sector = 0.5 * float(kSectorCount) * (light_slope + 1.0);
+  light_sector = 1u << uint(sector);
   const Draw draw = Draw(growth_of(side.reach), 1.0 - fract(sector));  // 5.
   const int count = steps_of(side.reach, draw.jitter);
   const bool is_before = is_any_before(r, side, reach, draw, count, vec2(sine, cosine));
@@ -156,7 +164,7 @@ bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far)
   if (!is_before && !is_beyond) return false;
   side.whole_reach = is_beyond ? side.whole_reach : side.reach;
   const Blocked all = all_of(search(r, side, reach, draw, is_before ? count : 0));
-  return (all.sectors >> int(sector) & 1u) != 0u || both(all.near > slope, all.far <= slope);
+  return (all.sectors & light_sector) != 0u || both(all.near > light_slope, all.far <= light_slope);
 }
 
 /// A direction to the light, and how far away it is: with two numbers in [0, 1), a place of its disc.
