@@ -12,7 +12,6 @@
 #include "core/base/image.h"
 #include "core/base/system.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/chain/estimate/shadow.h"
 #include "core/chain/filters/filters.h"
 #include "core/chain/results/confidence.h"
 #include "core/chain/results/outputs.h"
@@ -37,6 +36,8 @@ constexpr int kGrid = 4;
 constexpr double kWidestAngle = 1.57;
 /// More pixels than any frame has.
 constexpr double kEverywhere = 1e9, kFarther = 1e6;
+/// Scene units: farther than any surface.
+constexpr double kEndlessReach = 1e30;
 
 Window grown(const Window& window, int margin_x, int margin_y, const Window& within) {
   const auto down = [](int x, int origin) { return origin + (x - origin) / kGrid * kGrid; };

@@ -35,6 +35,8 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 // behind the first
 layout(constant_id = 0) const uint kSolid = kThicknessWidth | kCompletesBorder | kCompletesHidden | kTellsBacks;
 layout(constant_id = 1) const uint kDirections = 1;  // of the light
+// So many samples of a side lie a pixel apart. Behind them each gap is larger than the one before.
+layout(constant_id = 2) const int kDense = 32;
 layout(scalar, push_constant) uniform Push { ShadowParams params; };
 readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
 readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
@@ -53,10 +55,8 @@ const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
 const bool kBehindOthers = (kSolid & kCompletesHidden) != 0u;
 const bool kHasBacks = (kSolid & kTellsBacks) != 0u;
 
-// So many samples of a side lie a pixel apart. Behind them each gap is larger than the one before.
-const int kDense = 32;
-const uint kSteps = 96u;        // of a side at most
-const float kGapGrowth = 0.25;  // px for each sample, of a side that needs no more than kSteps
+const uint kSteps = uint(kDense) + 64u;  // of a side at most
+const float kGapGrowth = 0.25;           // px for each sample, of a side that needs no more than kSteps
 
 /// The growth of gaps with which kSteps are enough for a side.
 float growth_of(float reach) {
@@ -167,6 +167,9 @@ bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far)
   return (all.sectors & light_sector) != 0u || both(all.near > light_slope, all.far <= light_slope);
 }
 
+/// Where nothing bounds the reach: depths of the receiver.
+const float kFarther = 1048576.0;
+
 /// A direction to the light, and how far away it is: with two numbers in [0, 1), a place of its disc.
 vec4 towards(vec3 position, vec2 place) {
   const bool is_lamp = params.is_lamp != 0u;
@@ -181,7 +184,8 @@ vec4 towards(vec3 position, vec2 place) {
                         direction_of(2.0 * kPi * place.y);
     direction = normalize(direction + offset.x * x + offset.y * y);
   }
-  return vec4(direction, is_lamp ? min(distance, params.reach) : params.reach);
+  const float reach = params.reach > 0.0 ? params.reach : kFarther * power_of_two(-position.z);
+  return vec4(direction, is_lamp ? min(distance, reach) : reach);
 }
 
 void main() {

@@ -185,6 +185,15 @@ TEST(Shadow, is_near_the_reference) {
     for (std::size_t k = 0; k < lights.size(); k++) {
       const auto& at = lights[k].at;
       const auto truth = reference_shadow(frame, exact, {lights[k].is_lamp, {at[0], at[1], at[2]}}, 1e6);
+      if (std::getenv("DUMP")) {
+        auto all = exact; all.pixels.clear();
+        const auto ref = reference_shadow(frame, all, {lights[k].is_lamp, {at[0], at[1], at[2]}}, 1e6);
+        FILE* f = fopen(fmt::format("/tmp/lights/{}{}.pgm", scene, k).c_str(), "wb");
+        fprintf(f, "P5 %d %d 255\n", frame.data.width, 2 * frame.data.height);
+        for (std::size_t i = 0; i < ref.size(); i++) fputc(int(planes[k * ref.size() + i] * 255), f);
+        for (float x : ref) fputc(int(x * 255), f);
+        fclose(f);
+      }
       int wrong = 0, dark = 0;
       for (const std::size_t i : exact.pixels) {
         wrong += std::abs(planes[k * frame.data.pixels() + i] - truth[i]) > 0.5;

@@ -22,13 +22,13 @@ void expect_refused(const std::string& text, const std::string& why) {
   expect_error(ErrorKind::input, {"lights.json", "--lights", why}, [&] { lights_of(text, "lights.json"); });
 }
 
-const std::string kSun = R"("kind": "sun", "direction": [0, 3, 4])";
+const std::string kSun = R"("kind": "sun", "direction": [0, 0, 4])";
 const std::string kLamp = R"("kind": "point", "position": [1, 2, 3])";
 
 TEST(Lights, are_suns_of_directions_one_long_and_lamps_at_places) {
   const std::string view = R"(, "space": "view")";
   EXPECT_EQ(in_view(file_of(kSun + R"(, "angular_diameter": 0.53)" + view))[0],
-            (Light{.in_world = false, .at = {0, 0.6, 0.8}, .size = 0.53}));
+            (Light{.in_world = false, .at = {0, 0, 1}, .size = 0.53}));
   EXPECT_EQ(in_view(file_of(kLamp + R"(, "radius": 0.1)" + view))[0],
             (Light{.is_lamp = true, .in_world = false, .at = {1, 2, 3}, .size = 0.1}));
 }
@@ -37,7 +37,7 @@ TEST(Lights, of_the_world_turn_with_the_camera_and_lamps_move_with_it) {
   Camera camera;
   camera.view_from_world = Matrix3{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
   camera.view_from_world_offset = {10, 20, 30};
-  EXPECT_EQ(in_view(file_of(kSun), camera)[0].at, (Vector3{0.6, 0.8, 0}));
+  EXPECT_EQ(in_view(file_of(kSun), camera)[0].at, (Vector3{0, 1, 0}));
   EXPECT_EQ(in_view(file_of(kLamp), camera)[0].at, (Vector3{12, 23, 31}));
   expect_error(ErrorKind::input, {"lights.json", "key", "world_to_camera", "--camera"}, [] { in_view(file_of(kLamp)); });
 }
@@ -46,7 +46,7 @@ TEST(Lights, change_from_frame_to_frame) {
   const std::string text = file_of(
       kSun + R"(, "space": "view", "angular_diameter": 1,
       "frames": [{"frame": 1001}, {"frame": 1002, "direction": [1, 0, 0]}, {"frame": 1003, "angular_diameter": 0}])");
-  EXPECT_EQ(in_view(text, {}, 1001)[0].at, (Vector3{0, 0.6, 0.8}));
+  EXPECT_EQ(in_view(text, {}, 1001)[0].at, (Vector3{0, 0, 1}));
   EXPECT_EQ(in_view(text, {}, 1002)[0].at, (Vector3{1, 0, 0}));
   EXPECT_EQ(in_view(text, {}, 1003)[0].size, 0);
   expect_error(ErrorKind::input, {"lights.json", "key", "1004", "1001"}, [&] { in_view(text, {}, 1004); });

@@ -11,6 +11,13 @@
 #include "core/chain/results/confidence.h"
 
 namespace alcove {
+namespace {
+
+// Samples of a ray that lie a pixel apart, of which an exact search has no others.
+constexpr uint kDense = 32, kDenseExact = 1 << 16;
+
+}  // namespace
+
 gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
                     const EstimatorSettings& settings, const gpu::Buffer* told) {
   const EstimatorSettings sampled = bracket_of(settings);
@@ -24,7 +31,7 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   }
   ShadowParams params{};
   params.view = gbuffer.view;
-  params.reach = float(settings.shadow_reach.value_or(kEndlessReach));
+  params.reach = float(settings.shadow_reach.value_or(0));
   params.size = reach.radius;
   params.bias = settings.estimator == Estimator::crytek ? 0 : reach.bias;
   params.thickness = reach.thickness;
@@ -44,7 +51,7 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
     params.is_lamp = light.is_lamp ? 1 : 0;
     params.spread = float(light.is_lamp ? light.size : std::tan(light.size * std::numbers::pi / 360));
     gpu.dispatch(gbuffer.surfaces > 1 ? "shadow_layers" : "shadow", params, buffers, extent_of(gbuffer.view),
-                 {solid, 1u});
+                 {solid, 1u, searches_exactly(settings) ? kDenseExact : kDense});
     params.plane++;
   }
   return result;

@@ -6,9 +6,6 @@
 
 namespace alcove {
 
-/// The reach where none is set: scene units. Its square is a finite float.
-inline constexpr double kEndlessReach = 1e15;
-
 /// Gives for each light of the frame a plane of the part of it that each pixel sees, 1 = lit; 0 where the surface faces
 /// away, 1 for sky. Surfaces block by the rules of the settings for samples, whatever their search. `told`: as
 /// Estimate::told, of this G-buffer; null: it is found here.

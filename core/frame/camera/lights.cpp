@@ -79,7 +79,7 @@ struct LightReader {
     if (result.is_lamp) return result;
     const double distance = length(result.at);
     if (!(distance > kShortestDirection)) refuse("\"direction\" has no length");
-    result.at = scaled(result.at, 1 / distance);
+    for (double& x : result.at) x /= distance;
     return result;
   }
 };
