@@ -51,9 +51,13 @@ Window grown(const Window& window, int margin_x, int margin_y, const Window& wit
 /// How far pixels count for what filters make of another one, in px: by their estimates, and by whether they have one.
 int reach_of_filters(const EstimatorSettings& settings) { return filter_reach_of(settings) + site_reach_of(settings); }
 
+/// The most pixels that the denoiser of soft shadows reaches.
+constexpr int kDenoiseMost = 8;
+
 /// The same for all that a frame's outputs are made from.
 int filter_reach(const Settings& settings) {
-  const int own = reach_of_filters(settings.estimator);
+  const int of_soft = settings.output.lights ? kDenoiseMost : 0;
+  const int own = std::max(reach_of_filters(settings.estimator), of_soft);
   if (!wants(settings.output, &FrameOutputs::confidence)) return own;
   return std::max(own, reach_of_filters(bracket_of(settings.estimator)));
 }

@@ -84,6 +84,10 @@ bool is_concerned(float slope) { return slope >= light_slope; }
 
 #include "kernels/estimate/runs.glsl"
 
+/// Beyond the border nothing goes on farther than this: as tangent, and with parallel rays in radii. Farther away it is
+/// more often wrong than right.
+const float kTangentBeyond = 0.3, kSizesBeyond = 4.0;
+
 /// A light so near to the eye's ray, by its sine, is seen wherever the eye sees.
 const float kLeastSine = 1e-4;
 
@@ -156,6 +160,8 @@ bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far)
   const Draw draw = Draw(growth_of(side.reach), 1.0 - fract(sector));  // 5.
   const int count = steps_of(side.reach, draw.jitter);
   const bool is_before = is_any_before(r, side, reach, draw, count, vec2(sine, cosine));
+  const float most = view.orthographic == 0 ? kTangentBeyond : kSizesBeyond * params.size;
+  side.whole_reach = min(side.whole_reach, side.reach + most / reach.pixel_size);
   bool is_beyond = kBeyondBorder && side.reach < side.whole_reach;
   if (is_beyond) {
     const float pixels = max(abs(slice.image_t.x), abs(slice.image_t.y));

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/estimate/shadow.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "core/chain/base/planes.h"
+#include "core/chain/filters/filters.h"
 #include "core/chain/geometry/matte.h"
 #include "core/chain/results/confidence.h"
 
@@ -15,12 +17,15 @@ namespace {
 
 // Samples of a ray that lie a pixel apart, of which an exact search has no others.
 constexpr uint kDense = 32, kDenseExact = 1 << 16;
+// Of a light of some size.
+constexpr uint kDirections = 4, kDirectionsExact = 16;
 
 }  // namespace
 
 gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
                     const EstimatorSettings& settings, const gpu::Buffer* told) {
-  const EstimatorSettings sampled = bracket_of(settings);
+  EstimatorSettings sampled = bracket_of(settings);
+  sampled.stride = 1;  // every pixel has a shadow of its own
   const Reach reach = reach_of(sampled, radii_of(settings).back());
   const Sampling sampling = sampling_of(sampled, frame.frame);
   const GBuffer counted = occluders(gpu, gbuffer, frame);
@@ -38,23 +43,37 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   params.noise_origin = gbuffer.grid.origin;
   params.noise_shift = sampling.noise_shift;
   params.depth_precision = gbuffer.depth_precision;
-  gpu::Buffer& result = gpu.buffer("shadow", frame.lights.size() * plane_bytes(gbuffer.view));
+  const std::size_t bytes = frame.lights.size() * plane_bytes(gbuffer.view);
   std::vector<gpu::Binding> buffers{{"Depth", gbuffer.depth},
                                     {"Normal", gbuffer.normal},
                                     {"Occluders", occluder_depth_of(counted)},
-                                    {"Backs", gpu::Optional(told)},
-                                    {"Result", result}};
+                                    {"Backs", gpu::Optional(told)}};
   if (gbuffer.surfaces > 1) buffers.push_back({"Hidden", occluder_hidden_of(counted)});
   const uint solid = solid_of(reach, told != nullptr) | kHiddenSurface * (gbuffer.surfaces - 1);
-  for (const Light& light : frame.lights) {
-    params.light = to_vec3(light.at);
-    params.is_lamp = light.is_lamp ? 1 : 0;
-    params.spread = float(light.is_lamp ? light.size : std::tan(light.size * std::numbers::pi / 360));
-    gpu.dispatch(gbuffer.surfaces > 1 ? "shadow_layers" : "shadow", params, buffers, extent_of(gbuffer.view),
-                 {solid, 1u, searches_exactly(settings) ? kDenseExact : kDense});
-    params.plane++;
+  const bool exact = searches_exactly(settings);
+  const auto estimate = [&](bool soft, const gpu::Buffer& result) {
+    for (std::size_t i = 0; i < frame.lights.size(); i++) {
+      const Light& light = frame.lights[i];
+      if ((light.size > 0) != soft) continue;
+      params.light = to_vec3(light.at);
+      params.is_lamp = light.is_lamp ? 1 : 0;
+      params.spread = float(light.is_lamp ? light.size : std::tan(light.size * std::numbers::pi / 360));
+      params.plane = uint(i);
+      std::vector<gpu::Binding> all = buffers;
+      all.push_back({"Result", result});
+      gpu.dispatch(gbuffer.surfaces > 1 ? "shadow_layers" : "shadow", params, all, extent_of(gbuffer.view),
+                   {solid, soft ? (exact ? kDirectionsExact : kDirections) : 1, exact ? kDenseExact : kDense});
+    }
+  };
+  // Noise is of soft lights alone. So these are filtered, and hard ones take their planes behind the filter.
+  gpu::Buffer* result = &gpu.buffer("shadow", bytes);
+  if (std::ranges::any_of(frame.lights, [](const Light& light) { return light.size > 0; })) {
+    gpu.clear(*result);
+    estimate(true, *result);
+    result = &denoise(gpu, gbuffer, *result, denoiser_of(sampled), "shadow ");
   }
-  return result;
+  estimate(false, *result);
+  return *result;
 }
 
 }  // namespace alcove
