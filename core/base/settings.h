@@ -176,7 +176,7 @@ struct EstimatorSettings {
   bool no_skip = false;  // estimate sky and unchanged tiles too; the result is the same
 };
 
-struct LightsFile;  // of core/frame/camera/lights.h
+struct LightsFile;  // of core/frame/find/lights.h
 
 /// The look of AO in the beauty: see composite.comp.
 struct CompositeLook {

@@ -5,7 +5,7 @@
 #include "core/base/text.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
-#include "core/frame/camera/lights.h"
+#include "core/frame/find/lights.h"
 #include "core/options/options.h"
 #include "core/options/reasons.h"
 

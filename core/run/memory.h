@@ -10,7 +10,7 @@
 
 #include "core/base/settings.h"
 #include "core/chain/results/outputs.h"
-#include "core/frame/camera/lights.h"
+#include "core/frame/find/lights.h"
 #include "core/frame/find/frame_source.h"
 #include "core/gpu/device.h"
 #include "core/run/plan.h"

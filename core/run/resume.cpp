@@ -13,7 +13,7 @@
 #include "core/base/version.h"
 #include "core/formats/exr.h"
 #include "core/formats/png.h"
-#include "core/frame/camera/lights.h"
+#include "core/frame/find/lights.h"
 #include "core/options/options.h"
 #include "core/run/frame_files.h"
 #include "core/run/run_files.h"

@@ -1,6 +1,6 @@
 // The shadows of lights: closed forms by rays, the reference, and what must not matter.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/camera/lights.h"
+#include "core/frame/find/lights.h"
 #include "core/reference/reference.h"
 #include "tests/support/chain.h"
 

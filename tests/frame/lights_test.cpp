@@ -1,6 +1,6 @@
 // Lights files: suns and lamps, frame by frame, and files that are refused.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/camera/lights.h"
+#include "core/frame/find/lights.h"
 
 #include "tests/support/expect_error.h"
 #include "tests/support/test.h"

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <vector>
 
-#include "core/frame/camera/lights.h"
+#include "core/frame/find/lights.h"
 #include "core/frame/find/environment.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"

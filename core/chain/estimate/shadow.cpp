@@ -61,8 +61,12 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
       params.plane = uint(i);
       std::vector<gpu::Binding> all = buffers;
       all.push_back({"Result", result});
-      gpu.dispatch(gbuffer.surfaces > 1 ? "shadow_layers" : "shadow", params, all, extent_of(gbuffer.view),
-                   {solid, soft ? (exact ? kDirectionsExact : kDirections) : 1, exact ? kDenseExact : kDense});
+      const uint directions = !soft ? 1 : exact ? kDirectionsExact : kDirections;
+      const std::vector<uint> constants{solid, directions, exact ? kDenseExact : kDense};
+      if (gbuffer.surfaces == 1)
+        gpu.dispatch("shadow", params, all, extent_of(gbuffer.view), constants);
+      else
+        gpu.dispatch("shadow_layers", params, all, extent_of(gbuffer.view), constants);
     }
   };
   // Noise is of soft lights alone. So these are filtered, and hard ones take their planes behind the filter.

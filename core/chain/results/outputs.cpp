@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/frame/camera/lights.h"
+#include "core/frame/find/lights.h"
 
 namespace alcove {
 namespace {

@@ -1,6 +1,6 @@
 // Lights JSON.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/camera/lights.h"
+#include "core/frame/find/lights.h"
 
 #include <algorithm>
 #include <cmath>
