@@ -120,7 +120,8 @@ FrameOutputs with_light(gpu::Recorder& gpu, const FrameInputs& frame, const Seen
   const GBuffer& gbuffer = seen.surfaces.frame;
   const Visibility& visibility = seen.visibility;
   if (wanted.has(&FrameOutputs::shadow))
-    out.shadow = cut(gpu, frame, &shadow(gpu, seen.surfaces.wide, with_margin(frame), settings, told_of(seen)), "shadow");
+    out.shadow =
+        cut(gpu, frame, &shadow(gpu, seen.surfaces.wide, with_margin(frame), settings, told_of(seen)), "shadow");
   if (wanted.has(&FrameOutputs::transfer))
     out.transfer = &transfer(gpu, gbuffer, visibility, frame.aov_from_view, "transfer");
   if (wanted.has(&FrameOutputs::relight))

@@ -114,7 +114,8 @@ class Blocked {
   }
 
   bool holds(double angle) const {
-    return std::ranges::any_of(intervals_, [&](const auto& part) { return part.first <= angle && angle <= part.second; });
+    return std::ranges::any_of(intervals_,
+                               [&](const auto& part) { return part.first <= angle && angle <= part.second; });
   }
 
  private:
@@ -408,8 +409,7 @@ std::optional<Side> side_along(const Scene& scene, const Receiver& receiver, Vec
     const double forward = v.z * cosine - tangent.z * sine;
     reach = sine < 1 && forward > 0 ? sine * pixels / forward : INFINITY;
   }
-  return Side{tangent,     tangent + n_t * shift, v + n_v * shift, std::atan2(n_t, n_v), px / pixels,
-              py / pixels, reach};
+  return Side{tangent, tangent + n_t * shift, v + n_v * shift, std::atan2(n_t, n_v), px / pixels, py / pixels, reach};
 }
 
 struct Openness {

@@ -10,8 +10,8 @@
 
 #include "core/base/settings.h"
 #include "core/chain/results/outputs.h"
-#include "core/frame/find/lights.h"
 #include "core/frame/find/frame_source.h"
+#include "core/frame/find/lights.h"
 #include "core/gpu/device.h"
 #include "core/run/plan.h"
 

@@ -84,7 +84,7 @@ InputIdentities::Identity InputIdentities::identity_of(const Settings& frame) {
   Identity identity;
   for (const auto& [option, path] : inputs_of(frame)) {
     if (option == "--preset") continue;  // what it says is in the settings
-    if (option == "--lights") {  // as they were read
+    if (option == "--lights") {          // as they were read
       const std::string& lights = frame.output.lights->text;
       text += fmt::format("\n{} {:016x}", lights.size(), XXH3_64bits(lights.data(), lights.size()));
       continue;

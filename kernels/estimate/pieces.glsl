@@ -146,8 +146,7 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
   vec2 until = hides_all ? opposite.place : hider;
   const int next = mix(other + 1, other - 1, is_back);
   const bool goes_on = both(hides_all, both(next >= 0, next < behind_last));
-  const Sample beyond = sample_at(
-      r, side, reach, offset_of(clamp(next, 0, behind_last - 1), count, side, draw));
+  const Sample beyond = sample_at(r, side, reach, offset_of(clamp(next, 0, behind_last - 1), count, side, draw));
   until = both(goes_on, both(beyond.above, dot(n, beyond.place - end) > 0.0)) ? beyond.place : until;
   const vec2 onward = mix(vec2(n.y, -n.x), vec2(-n.y, n.x), bvec2(is_back));
   Piece piece = piece_of(reach, end, onward, seen_at(r, end, onward, n, until));

@@ -3,10 +3,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The kernel has declared its buffers `occluder_depth`, `normal`, `hidden` and `backs`, and these constants: how many
-// surfaces a pixel has at most, kSurfaces; how many steps a side takes at most, kSteps, and by offset_of() where they
-// lie; kFalloff and kHard, kOrder, kCurved, kThickness, kBeyondBorder, kBehindOthers, kAllInSectors and kHasBacks. To be
-// included after sectors.glsl and backs.glsl. It has declared two functions, too: is_settled(), whether what is blocked
-// already is all that matters, and is_concerned(), whether slopes down from one may matter.
+// surfaces a pixel has at most, kSurfaces; how many steps a side takes at most, kSteps; kFalloff and kHard, kOrder,
+// kCurved, kThickness, kBeyondBorder, kBehindOthers, kAllInSectors and kHasBacks. And functions: offset_of(), where
+// steps lie; is_settled(), whether what is blocked so far is all that matters; is_concerned(), whether slopes from one
+// downwards may matter. To be included after sectors.glsl and backs.glsl.
 
 /// A run is so many times as thick as it is wide.
 const float kThicknessPerWidth = 1.25;

@@ -79,7 +79,9 @@ float offset_of(int k, int count, Side side, Draw draw) {
 float light_slope;  // slope_of() its direction
 uint light_sector;  // its bit
 
-bool is_settled(float near, uint sectors) { return kThickness != kThicknessEndless && near > light_slope || (sectors & light_sector) != 0u; }
+bool is_settled(float near, uint sectors) {
+  return kThickness != kThicknessEndless && near > light_slope || (sectors & light_sector) != 0u;
+}
 bool is_concerned(float slope) { return slope >= light_slope; }
 
 #include "kernels/estimate/runs.glsl"

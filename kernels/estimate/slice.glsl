@@ -39,9 +39,10 @@ const int kManySteps = 16;
 /// parameter anew at each use within a loop.
 struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
-  float size;  // scene units: the radius by which thickness levels off, and by which what counts beyond the border rises
-  float front_sq;                          // of the farthest front that may block, squared
-  float thickness;                         // scene units, infinite allowed; 0: as deep as wide
+  float
+      size;  // scene units: the radius by which thickness levels off, and by which what counts beyond the border rises
+  float front_sq;       // of the farthest front that may block, squared
+  float thickness;      // scene units, infinite allowed; 0: as deep as wide
   float per_elevation;  // one over the sine of the elevation above the tangent plane below which nothing blocks
   float least_rise;     // of a sample: see clearance.glsl
   float pixel_size;     // scene units at unit depth (orthographic: at any)
@@ -122,8 +123,9 @@ Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius,
   return r;
 }
 
-/// The slice through a unit vector orthogonal to V, in the terms of the paper that horizon.comp names: `t` is that (line
-/// 9), `weight`, cos_gamma and sin_gamma are the length and the direction of its projected normal (lines 11 to 15).
+/// The slice through a unit vector orthogonal to V, in the terms of the paper that horizon.comp names: `t` is that
+/// (line 9), `weight`, cos_gamma and sin_gamma are the length and the direction of its projected normal (lines 11 to
+/// 15).
 Slice slice_along(View view, Receiver r, vec3 t, float share) {
   Slice s;
   s.t = t;
@@ -142,10 +144,10 @@ Slice slice_along(View view, Receiver r, vec3 t, float share) {
   return s;
 }
 
-/// The slice of an azimuth. Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant: up to tan of its
-/// tilt times as much as those across. A lone slice is drawn that much more often there, by pulling its azimuth towards
-/// the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be biased. The more
-/// slices per pixel has, the less this matters, and the less they are pulled.
+/// The slice of an azimuth. Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant:
+/// up to tan of its tilt times as much as those across. A lone slice is drawn that much more often there, by pulling its
+/// azimuth towards the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be
+/// biased. The more slices per pixel has, the less this matters, and the less they are pulled.
 Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
   const float azimuth = kPi * (float(index) + jitter) / float(slices);
   vec3 x, y;

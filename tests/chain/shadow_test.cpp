@@ -13,9 +13,7 @@ Light sun(Vec3 direction) {
   const Vec3 d = unit(direction);
   return {.at = {d.x, d.y, d.z}};
 }
-Light lamp(Vec3 place, double size = 0) {
-  return {.is_lamp = true, .at = {place.x, place.y, place.z}, .size = size};
-}
+Light lamp(Vec3 place, double size = 0) { return {.is_lamp = true, .at = {place.x, place.y, place.z}, .size = size}; }
 
 /// A light of the world as a shot sees it.
 Light seen_by(const Shot& shot, Light light) {
@@ -34,7 +32,8 @@ EstimatorSettings settings_of(double radius) {
 }
 
 /// The shadows of lights in view space, one plane behind the other.
-std::vector<float> shadows(const HostFrame& frame, const std::vector<Light>& lights, const EstimatorSettings& settings) {
+std::vector<float> shadows(const HostFrame& frame, const std::vector<Light>& lights,
+                           const EstimatorSettings& settings) {
   std::string text;
   for (std::size_t i = 0; i < lights.size(); i++)
     text += fmt::format(R"({}{{"name": "l{}", "kind": "sun", "direction": [0, 0, 1]}})", i == 0 ? "" : ",", i);

@@ -39,12 +39,12 @@ TEST(Lights, of_the_world_turn_with_the_camera_and_lamps_move_with_it) {
   camera.view_from_world_offset = {10, 20, 30};
   EXPECT_EQ(in_view(file_of(kSun), camera)[0].at, (Vector3{0, 1, 0}));
   EXPECT_EQ(in_view(file_of(kLamp), camera)[0].at, (Vector3{12, 23, 31}));
-  expect_error(ErrorKind::input, {"lights.json", "key", "world_to_camera", "--camera"}, [] { in_view(file_of(kLamp)); });
+  expect_error(ErrorKind::input, {"lights.json", "key", "world_to_camera", "--camera"},
+               [] { in_view(file_of(kLamp)); });
 }
 
 TEST(Lights, change_from_frame_to_frame) {
-  const std::string text = file_of(
-      kSun + R"(, "space": "view", "angular_diameter": 1,
+  const std::string text = file_of(kSun + R"(, "space": "view", "angular_diameter": 1,
       "frames": [{"frame": 1001}, {"frame": 1002, "direction": [1, 0, 0]}, {"frame": 1003, "angular_diameter": 0}])");
   EXPECT_EQ(in_view(text, {}, 1001)[0].at, (Vector3{0, 0, 1}));
   EXPECT_EQ(in_view(text, {}, 1002)[0].at, (Vector3{1, 0, 0}));
@@ -63,7 +63,8 @@ TEST(Lights, with_a_misspelt_or_senseless_field_are_refused_by_name) {
   expect_refused(R"({"lights": [{)" + kSun + "}]}", "\"name\" is missing");
   for (const char* name : {"\"\"", "\"key.1\"", "\"key light\"", "\"k\\u00e9y\"", "7"})
     expect_refused(R"({"lights": [{"name": )" + std::string(name) + ", " + kSun + "}]}", "letters");
-  expect_refused(R"({"lights": [{"name": "a", )" + kSun + R"(}, {"name": "a", )" + kLamp + "}]}", "\"a\" is there twice");
+  expect_refused(R"({"lights": [{"name": "a", )" + kSun + R"(}, {"name": "a", )" + kLamp + "}]}",
+                 "\"a\" is there twice");
   expect_refused(file_of(kSun + R"(, "angular_diamater": 1)"), "angular_diameter");
   expect_refused(file_of(kSun + R"(, "radius": 1)"), "\"radius\"");
   expect_refused(file_of(kLamp + R"(, "direction": [0, 0, 1])"), "\"direction\"");

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <vector>
 
-#include "core/frame/find/lights.h"
 #include "core/frame/find/environment.h"
+#include "core/frame/find/lights.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"

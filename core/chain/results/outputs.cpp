@@ -118,9 +118,7 @@ bool in_world(const Camera& camera, const OutputSettings& settings) {
 
 bool needs_ao(const OutputSettings& output) { return Wanted(output).visibility; }
 
-bool needs_radius(const OutputSettings& output) {
-  return needs_ao(output) || wants(output, &FrameOutputs::shadow);
-}
+bool needs_radius(const OutputSettings& output) { return needs_ao(output) || wants(output, &FrameOutputs::shadow); }
 
 uint moment_order(const EstimatorSettings& settings, const Wanted& wanted) {
   return searches_slices(settings) ? wanted.order : 0;

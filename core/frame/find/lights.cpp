@@ -14,10 +14,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kDeepestLights = 8;              // objects and lists within each other
-constexpr std::size_t kLongestName = 64;       // of a light: it is part of a channel's name
-constexpr double kFarthestLight = 1e12;        // scene units: kernels square it as a float
-constexpr double kWidestSun = 179;             // degrees
+constexpr int kDeepestLights = 8;             // objects and lists within each other
+constexpr std::size_t kLongestName = 64;      // of a light: it is part of a channel's name
+constexpr double kFarthestLight = 1e12;       // scene units: kernels square it as a float
+constexpr double kWidestSun = 179;            // degrees
 constexpr double kShortestDirection = 1e-30;  // scene units
 
 /// A light being read: every complaint names the file and the light.
@@ -70,7 +70,8 @@ struct LightReader {
   Light read() const {
     Light result;
     result.is_lamp = word("kind", {"sun", "point"}) == "point";
-    for (const char* other : {result.is_lamp ? "direction" : "position", result.is_lamp ? "angular_diameter" : "radius"})
+    for (const char* other :
+         {result.is_lamp ? "direction" : "position", result.is_lamp ? "angular_diameter" : "radius"})
       if (fields.contains(other))
         refuse(fmt::format("\"{}\" is none of the fields of a {}", other, result.is_lamp ? "point" : "sun"));
     result.in_world = !fields.contains("space") || word("space", {"world", "view"}) == "world";
@@ -85,8 +86,8 @@ struct LightReader {
 };
 
 const std::vector<std::string>& light_fields() {
-  static const std::vector<std::string> kFields{"name",   "kind",     "space",           "direction",
-                                                "radius", "position", "angular_diameter", "frames"};
+  static const std::vector<std::string> kFields{
+      "name", "kind", "space", "direction", "radius", "position", "angular_diameter", "frames"};
   return kFields;
 }
 

@@ -20,22 +20,22 @@ struct Light {
   bool is_lamp = false;  // a lamp at a place; else a sun, which is infinitely far away
   bool in_world = true;  // else in view space
   Vector3 at{};          // scene units: of a lamp its place; of a sun the direction to it, 1 long
-  double size = 0;       // of a lamp its radius, scene units; of a sun its angular diameter, degrees, below 180; 0: hard
+  double size = 0;  // of a lamp its radius, scene units; of a sun its angular diameter, degrees, below 180; 0: hard
   bool operator==(const Light&) const = default;
 };
 
 /// A lights file as it was read. A run reads it once.
 struct LightsFile {
   struct Entry {
-    std::string name;           // letters, digits, - and _; each once
+    std::string name;                // letters, digits, - and _; each once
     std::map<int, Light> of_frames;  // by the number of the frame; of a light that is the same in all frames one
     bool is_constant = true;
   };
   std::string path, text;
   std::vector<Entry> lights;  // 1 to kMostLights
 
-  /// The lights of a frame in view space. Fails with ErrorKind::input if a light does not list the frame, or is in world
-  /// space and the camera has no view_from_world.
+  /// The lights of a frame in view space. Fails with ErrorKind::input if a light does not list the frame, or is in
+  /// world space and the camera has no view_from_world.
   std::vector<Light> in_view(const Camera& camera, int frame) const;
   /// Whether a light has some size in any frame.
   bool is_soft(std::size_t light) const;
