@@ -145,8 +145,8 @@ Slice slice_along(View view, Receiver r, vec3 t, float share) {
 }
 
 /// The slice of an azimuth. Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant:
-/// up to tan of its tilt times as much as those across. A lone slice is drawn that much more often there, by pulling its
-/// azimuth towards the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be
+/// up to tan of its tilt times as much as those across. A lone slice is drawn that much more often there, by pulling
+/// its azimuth towards the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be
 /// biased. The more slices per pixel has, the less this matters, and the less they are pulled.
 Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
   const float azimuth = kPi * (float(index) + jitter) / float(slices);
