@@ -33,7 +33,7 @@ const int kAround = 2;
 const float kLeastToSecond = 5.0;
 
 /// Where a block has more sites than this, as in hair, those of its neighbours are enough.
-const int kFewSites = 4;
+const int kFewSites = 2;
 
 /// Pixels to the end of the weights, at least.
 const float kLeastReach = 3.0;
