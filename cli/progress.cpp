@@ -40,7 +40,7 @@ void Progress::open_log() {
   // A symbolic link is replaced and not followed, as all outputs are; a log begins anew.
   std::error_code none;
   if (log_path_ != "-" && std::filesystem::is_symlink(log_path_, none)) std::filesystem::remove(log_path_, none);
-  if (log_path_ != "-") file_.reset(std::fopen(log_path_.c_str(), "we"));
+  if (log_path_ != "-") file_.reset(std::fopen(log_path_.c_str(), "wb"));
   log_ = log_path_ == "-" ? stdout : file_.get();
   if (!log_) fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", log_path_, std::strerror(errno));
 }
