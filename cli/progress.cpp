@@ -76,7 +76,8 @@ void Progress::begin(const RunReport& report, int frames) {
 
 /// A name may stand for a file of the show, of the user or of the program: those of the program need no word.
 void Progress::say_presets(std::vector<std::string> files) {
-  std::erase_if(files, [](const std::string& file) { return file.starts_with(preset_folder() + "/"); });
+  const auto plain = [](const std::string& path) { return std::filesystem::path(path).generic_string(); };
+  std::erase_if(files, [&](const auto& file) { return plain(file).starts_with(plain(preset_folder()) + "/"); });
   if (!files.empty() && !options_.quiet) say(printable(fmt::format("alcove: settings of {}", fmt::join(files, ", "))));
 }
 

@@ -156,8 +156,7 @@ void prepare_streams() {
   _fmode = _O_BINARY;
   // Terminals show UTF-8 for as long as the program runs.
   code_page_before = ::GetConsoleOutputCP();
-  if (code_page_before && ::SetConsoleOutputCP(CP_UTF8))
-    std::atexit([] { ::SetConsoleOutputCP(code_page_before); });
+  if (code_page_before && ::SetConsoleOutputCP(CP_UTF8)) std::atexit([] { ::SetConsoleOutputCP(code_page_before); });
 }
 
 bool errors_go_to_terminal() {
@@ -321,8 +320,7 @@ extern "C" std::size_t mbrtowc(wchar_t* to, const char* from, std::size_t size, 
   const int length = first < 0x80 ? 1 : first < 0xc0 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
   std::array<wchar_t, 2> units{0xfffd};
   const bool is_whole = length > 0 && std::size_t(length) <= size;
-  const int count =
-      is_whole ? ::MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, from, length, units.data(), 2) : 0;
+  const int count = is_whole ? ::MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, from, length, units.data(), 2) : 0;
   if (to) *to = count ? units[0] : wchar_t(0xfffd);
   if (count == 0) return 1;
   if (count == 2) *state = units[1];

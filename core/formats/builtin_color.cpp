@@ -13,7 +13,7 @@ namespace {
 /// The curve of sRGB (IEC 61966-2-1), with its straight part where the two parts meet smoothly.
 float srgb_of(float linear) {
   constexpr float kGamma = 2.4f, kOffset = 0.055f;
-  constexpr float kEnd = kOffset / (kGamma - 1);                        // of the straight part, as a display value
+  constexpr float kEnd = kOffset / (kGamma - 1);                         // of the straight part, as a display value
   const float end = std::pow((kEnd + kOffset) / (1 + kOffset), kGamma);  // the same, as a linear value
   return linear <= end ? linear * (kEnd / end) : (1 + kOffset) * std::pow(linear, 1 / kGamma) - kOffset;
 }
