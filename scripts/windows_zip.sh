@@ -14,7 +14,7 @@ root=$folder/$name
 for component in alcove library dev; do
   cmake --install "$build" --prefix "$root" --component "$component" --strip >/dev/null
 done
-rm -r "$root/lib/pkgconfig"  # for no tool of Windows
+rm -r "$root"/lib/pkgconfig "$root"/share/doc/libalcove* "$root/share/doc/alcove/changelog.gz"  # for no tool of Windows
 licences=$root/share/doc/alcove/libraries
 mkdir -p "$licences"
 cp "$build"/libraries/licences/* "$licences/"

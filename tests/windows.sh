@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the zip for Windows, and runs what is in it under Wine, on lavapipe, beside the program for Linux: the same bits, and files as Windows has them.
 # Wine is no Windows: docs/limits.md says what this proves. Minutes, and half an hour where the libraries are to be built. Needs no root once packages are there.
-#   tests/windows.sh
+#   tests/windows.sh [ZIP]     ZIP: one that is built already
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -19,8 +19,8 @@ passed() {
 step "build"
 scripts/setup.sh --only-packages run windows-test
 scripts/setup.sh --only-program
-scripts/package.sh windows
-zip=$(echo build-windows/alcove-*-windows-x86_64.zip)
+if [ -z "${1:-}" ]; then scripts/package.sh windows; fi
+zip=$(realpath "${1:-$(echo build-windows/alcove-*-windows-x86_64.zip)}")
 [ "$(stat -c %s "$zip")" -le 12000000 ] || fail "$zip has more than 12 MB"
 passed "$(stat -c '%s bytes: %n' "$zip")"
 
@@ -81,8 +81,9 @@ linux compare windows.png linux.png --max-rmse 0.002 >/dev/null || fail "the pre
 passed "the preview is that of OpenColorIO"
 ln -s "$frame" frame.exr
 for system in linux windows; do
-  $system inspect frame.exr --camera "$camera" --json $system.json >$system.txt
-  $system presets show draft >$system.toml
+  $system inspect frame.exr --camera "$camera" >$system.txt
+  $system inspect frame.exr --camera "$camera" --json >$system.json
+  $system presets draft >$system.toml
 done
 for kind in txt json toml; do same linux.$kind windows.$kind "inspect and presets, $kind"; done
 passed "answers of inspect, and a preset, have Linux's bytes: ends of lines too"
@@ -107,7 +108,9 @@ mkdir "mit Leer zeichen"
 cp "$frame" "mit Leer zeichen/a b.exr"
 windows inspect "mit Leer zeichen\\a b.exr" --camera "$(path "$camera")" >said
 line=$(tail -n 1 said)
-wine cmd /c "$(path "$root/bin")\\$line -q --preset draft" || fail "the command that inspect proposes fails: $line"
+printf '@"%s\\alcove.exe" %s -q --preset draft\r\n' "$(path "$root/bin")" "${line#alcove }" >propose.cmd
+wine cmd /c propose.cmd || fail "the command that inspect proposes fails: $line"
+[ -s ao.exr ] || fail "the command that inspect proposes writes nothing: $line"
 passed "cmd runs the command that inspect proposes: $(cut -c1-60 <<<"$line") ..."
 printf '[[frame]]\nname = "one"\ninput = %s\ncamera = %s\nradius = 0.35\n' "'$(path "$frame")'" "'$(path "$camera")'" >list.toml
 windows run list.toml -q --preset draft -o 'listed\{name}.exr'
@@ -190,7 +193,7 @@ same locked.exr draft.exr "the locked file"
 passed "a locked file is named, and stays as it was"
 expect 4 "could not make a temporary file" ao windows --preset draft -o 'Z:\sys\kernel\ao.exr'
 passed "a folder that cannot be written is named"
-expect 3 "not found" windows run 'Z:\nowhere\a.exr' -o a.exr
+expect 3 "not found" windows inspect 'Z:\nowhere\a.exr'
 passed "a missing file is named"
 
 step "compare, doctor, the library"
