@@ -1,8 +1,8 @@
 // Windows, behind the plain functions of system.h.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Texts are UTF-8 on this side of the header, and UTF-16 on that of Windows. cli/alcove.manifest makes UTF-8 of what the
-// C library takes, too.
+// Texts are UTF-8 on this side of the header, and UTF-16 on that of Windows. cli/alcove.manifest makes UTF-8 of what
+// the C library takes, too.
 #include "core/base/system.h"
 
 // The order of these two matters.
