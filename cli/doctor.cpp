@@ -58,7 +58,7 @@ std::string preset_text(Facts& facts) {
 /// The folder of compiled kernels, with how much it holds, or why nothing is kept.
 std::string cache_text() {
   const std::string folder = gpu::cache_folder();
-  if (folder.empty()) return "none: neither XDG_CACHE_HOME nor HOME is set";
+  if (folder.empty()) return "none: neither XDG_CACHE_HOME nor HOME is set (on Windows LOCALAPPDATA)";
   std::uintmax_t bytes = 0;
   int files = 0;
   std::error_code error;

@@ -12,6 +12,7 @@
 #include "cli/generate.h"
 #include "cli/parsing.h"
 #include "core/base/error.h"
+#include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 
@@ -72,6 +73,7 @@ int dispatch(const std::vector<std::string>& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  prepare_streams();
   try {
     const int code = dispatch({argv + 1, argv + argc});
     if (std::fflush(stdout) != 0 || std::ferror(stdout))

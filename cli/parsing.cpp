@@ -36,6 +36,7 @@ struct Parser {
 
   /// Help shows all rows, or only those that are common and the arguments by place.
   Parser(const Command& command, bool shows_all) : app(command.description, command.name) {
+    app.allow_windows_style_options(false);  // /show/a.exr is a file on Windows too
     app.get_formatter()->column_width(kHelpColumn);
     app.get_formatter()->label("REQUIRED", "");
     app.set_help_flag("-h,--help", "print this help and stop");

@@ -28,17 +28,19 @@ bool is_file(const std::string& path) {
   return fs::exists(path, error) && !fs::is_directory(path, error);
 }
 
+/// What stands between two folders in a variable.
+constexpr char kBetweenFolders = fs::path::preferred_separator == '/' ? ':' : ';';
+
 /// The user's own folders, which come before that of the program. One that is not there is passed over, as in PATH.
 std::vector<std::string> own_folders() {
   std::vector<std::string> folders;
   std::error_code error;
   const char* path = std::getenv("ALCOVE_PRESET_PATH");
   std::istringstream list(path ? path : "");
-  for (std::string folder; std::getline(list, folder, ':');)
+  for (std::string folder; std::getline(list, folder, kBetweenFolders);)
     if (!folder.empty() && fs::is_directory(folder, error)) folders.push_back(folder);
-  const char *config = std::getenv("XDG_CONFIG_HOME"), *home = std::getenv("HOME");
-  const fs::path base = config && *config ? fs::path(config) : home ? fs::path(home) / ".config" : fs::path();
-  if (!base.empty() && fs::is_directory(base / "alcove/presets", error)) folders.push_back(base / "alcove/presets");
+  const fs::path own = fs::path(config_home()) / "alcove/presets";
+  if (!config_home().empty() && fs::is_directory(own, error)) folders.push_back(own.string());
   return folders;
 }
 
@@ -55,7 +57,7 @@ std::vector<std::string> names_below(const fs::path& folder) {
   fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
   for (const fs::recursive_directory_iterator end; !error && entry != end; entry.increment(error))
     if (entry->path().extension() == ".toml")
-      names.push_back(entry->path().lexically_relative(folder).replace_extension().string());
+      names.push_back(entry->path().lexically_relative(folder).replace_extension().generic_string());
   return names;
 }
 

@@ -40,7 +40,7 @@ void Progress::open_log() {
   // A symbolic link is replaced and not followed, as all outputs are; a log begins anew.
   std::error_code none;
   if (log_path_ != "-" && std::filesystem::is_symlink(log_path_, none)) std::filesystem::remove(log_path_, none);
-  if (log_path_ != "-") file_.reset(std::fopen(log_path_.c_str(), "we"));
+  if (log_path_ != "-") file_.reset(std::fopen(log_path_.c_str(), "wb"));
   log_ = log_path_ == "-" ? stdout : file_.get();
   if (!log_) fail(ErrorKind::output, "{}: cannot be written: {} (--log-json)", log_path_, std::strerror(errno));
 }
@@ -76,7 +76,8 @@ void Progress::begin(const RunReport& report, int frames) {
 
 /// A name may stand for a file of the show, of the user or of the program: those of the program need no word.
 void Progress::say_presets(std::vector<std::string> files) {
-  std::erase_if(files, [](const std::string& file) { return file.starts_with(preset_folder() + "/"); });
+  const auto plain = [](const std::string& path) { return std::filesystem::path(path).generic_string(); };
+  std::erase_if(files, [&](const auto& file) { return plain(file).starts_with(plain(preset_folder()) + "/"); });
   if (!files.empty() && !options_.quiet) say(printable(fmt::format("alcove: settings of {}", fmt::join(files, ", "))));
 }
 

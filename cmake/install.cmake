@@ -1,7 +1,8 @@
 # The files of `cmake --install`, for any prefix: the program finds presets and the module of images from its own place.
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Man pages and completions, which the program prints itself.
+# Man pages and completions, which the program prints itself; Windows has no place for them.
+if(NOT WIN32)
 set(texts ${CMAKE_BINARY_DIR}/generated/share)
 add_custom_command(OUTPUT ${texts}/man/man1/alcove.1.gz
   COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:alcove> -DFOLDER=${texts} -DCOMMANDS=run,wedge,inspect,compare,bench,presets,devices,doctor
@@ -9,6 +10,7 @@ add_custom_command(OUTPUT ${texts}/man/man1/alcove.1.gz
   DEPENDS alcove ${CMAKE_SOURCE_DIR}/cmake/generate_texts.cmake COMMENT "Writing man pages and completions" VERBATIM)
 add_custom_target(alcove_texts ALL DEPENDS ${texts}/man/man1/alcove.1.gz)
 install(DIRECTORY ${texts} DESTINATION .)
+endif()
 install(DIRECTORY hosts DESTINATION share/alcove FILES_MATCHING PATTERN *.py PATTERN *.toml PATTERN py.typed)
 install(DIRECTORY presets DESTINATION share/alcove FILES_MATCHING PATTERN *.toml)
 

@@ -1,15 +1,26 @@
 #!/usr/bin/env bash
 # Builds into build-package/ the Debian packages of the program, its module for pictures and its libraries, or the portable archive of the program;
-# or into build-wheel/ the wheel of the Python package with libalcove.
-#   scripts/package.sh [archive|wheel] [CMAKE ARGUMENTS]
+# or into build-wheel/ the wheel of the Python package with libalcove, or into build-windows/ the zip for Windows, cross-compiled.
+#   scripts/package.sh [archive|wheel|windows] [CMAKE ARGUMENTS]
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 kind=packages
-if [ "${1:-}" = archive ] || [ "${1:-}" = wheel ]; then
+if [[ "${1:-}" =~ ^(archive|wheel|windows)$ ]]; then
   kind=$1
   shift
+fi
+if [ "$kind" = windows ]; then
+  scripts/setup.sh --only-packages build windows
+  echo "Libraries"
+  scripts/windows_libraries.sh build-windows/libraries
+  # The machine's own compiler options are for another system.
+  env -u CXXFLAGS -u CFLAGS -u LDFLAGS cmake -S . -B build-windows -G Ninja -DCMAKE_TOOLCHAIN_FILE="$PWD/cmake/mingw.cmake" \
+    -DCMAKE_PREFIX_PATH="$PWD/build-windows/libraries" -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON "$@"
+  cmake --build build-windows
+  scripts/windows_zip.sh build-windows
+  exit
 fi
 scripts/setup.sh --only-packages run build pictures package
 # Debian's flags with all of its hardening, and without debug information, which would be stripped again.

@@ -20,7 +20,11 @@
 extern "C" {
 #endif
 
+#ifdef _MSC_VER
+#define ALCOVE_API
+#else
 #define ALCOVE_API __attribute__((visibility("default")))
+#endif
 
 // The answer of a function: 0, or the kind of its failure, by the program's exit codes. alcove_error() has the
 // sentence. A call that fails changes nothing, neither in the handle nor in the caller's memory, except that a failed

@@ -162,9 +162,7 @@ void NewFile::write_at(std::uint64_t offset, std::span<const char> bytes) {
 void NewFile::commit() {
   file_.take_after(target_);
   if (const auto error = file_.sync()) give_up("write", error);
-  std::error_code error;
-  fs::rename(temporary_, target_, error);
-  if (error) give_up("rename the finished file to", error);
+  if (const auto error = rename_over(temporary_, target_)) give_up("rename the finished file to", error);
   file_.close();
   sync_folder(folder_of(target_));
 }

@@ -75,7 +75,7 @@ std::vector<ListedFrame> read_frame_list(const std::string& path, const char* op
     if (is_frame_list(frame.input))
       fail(ErrorKind::input, "{}: the input of frame {} is a list itself, {}: name a picture", path, frame.name,
            frame.input);
-    if (frame.name.find('/') != frame.name.npos || frame.name.starts_with('.'))
+    if (fs::path(frame.name).filename() != fs::path(frame.name) || frame.name.starts_with('.'))
       fail(ErrorKind::input, "{}: the name {} of the list must be one that a file may have, without / and no dot first",
            path, frame.name);
   }

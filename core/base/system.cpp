@@ -144,6 +144,8 @@ std::string output_of_command(const std::string& command) {
   return text;
 }
 
+void prepare_streams() {}
+
 bool errors_go_to_terminal() { return ::isatty(STDERR_FILENO) != 0; }
 
 void catch_ending_signals() {
@@ -166,6 +168,17 @@ void* symbol_of(const char* library, const char* symbol, std::string& why) {
   return address;
 }
 
+std::string cache_home() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache == '/') return cache;
+  if (const char* home = std::getenv("HOME"); home && *home == '/') return std::string(home) + "/.cache";
+  return "";
+}
+
+std::string config_home() {
+  const char *config = std::getenv("XDG_CONFIG_HOME"), *home = std::getenv("HOME");
+  return config && *config ? config : home ? std::string(home) + "/.config" : "";
+}
+
 std::string file_id(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return "";
@@ -178,6 +191,10 @@ std::error_code may_read(const std::string& path) {
 
 std::error_code may_make_files_in(const std::string& folder) {
   return ::access(folder.c_str(), W_OK | X_OK) == 0 ? std::error_code() : last_error();
+}
+
+std::error_code rename_over(const std::string& from, const std::string& to) {
+  return std::rename(from.c_str(), to.c_str()) == 0 ? std::error_code() : last_error();
 }
 
 void sync_folder(const std::string& folder) {

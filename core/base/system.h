@@ -1,4 +1,5 @@
-// Everything that Alcove asks of the operating system. Only system.cpp includes its headers: port that file.
+// Everything that Alcove asks of the operating system. Only system.cpp and, for Windows, system_windows.cpp include its
+// headers.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -43,6 +44,9 @@ void set_environment(const std::string& name, const std::string& value);
 /// The standard output of a shell command; empty if it cannot be started.
 std::string output_of_command(const std::string& command);
 
+/// Makes the standard streams of a program carry bytes as they are, which terminals take for UTF-8. Windows needs it.
+void prepare_streams();
+
 /// Whether the standard error is a terminal, not a file or pipe.
 bool errors_go_to_terminal();
 
@@ -78,6 +82,12 @@ std::uint64_t free_memory();
 
 // Files and folders.
 
+/// The folder in which programs keep a user's caches: that of the XDG base directory specification, on Windows
+/// %LOCALAPPDATA%; empty if the environment names none.
+std::string cache_home();
+/// The folder of a user's settings, likewise; on Windows %APPDATA%.
+std::string config_home();
+
 /// The file that a path leads to, as a text that every name of it gives and no other file has, through links of both
 /// kinds; "" if there is none.
 std::string file_id(const std::string& path);
@@ -85,6 +95,10 @@ std::string file_id(const std::string& path);
 std::error_code may_read(const std::string& path);
 /// Empty if the process may make files in the folder, else the reason why not.
 std::error_code may_make_files_in(const std::string& folder);
+
+/// Gives a file a name beside its own in one step, so that the file that had it stays until then. Waits a second for
+/// those who have it open where that matters, on Windows.
+std::error_code rename_over(const std::string& from, const std::string& to);
 
 /// Puts a folder's names on the disk, so that they outlive a loss of power. It does nothing on file systems that cannot
 /// do it.

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numeric>
 
@@ -213,8 +214,11 @@ std::string suggestion(std::string_view name, std::span<const std::string> candi
 }
 
 std::string for_shell(const std::string& word) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%-+=,:";
-  if (word.find_first_not_of(kPlain) == word.npos && !word.empty()) return word;
+  constexpr bool kIsWindows = std::filesystem::path::preferred_separator == '\\';
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%-+=,:\\";
+  const std::string_view plain = kIsWindows ? kPlain : kPlain.substr(0, kPlain.size() - 1);
+  if (word.find_first_not_of(plain) == word.npos && !word.empty()) return word;
+  if (kIsWindows) return '"' + word + '"';  // no name of a file has a quote there
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";

@@ -116,8 +116,8 @@ std::string foreign_pattern_in(const std::string& name) {
 
 std::string why_no_frames(const FramePattern& pattern) {
   std::string why = foreign_pattern_in(text_of(pattern));
-  const std::size_t slash = pattern.before.rfind('/');
-  const std::string folder = pattern.before.substr(0, slash + 1), before = pattern.before.substr(slash + 1);
+  const std::string before = fs::path(pattern.before).filename().string();
+  const std::string folder = pattern.before.substr(0, pattern.before.size() - before.size());
   const auto names = names_in(folder.empty() ? "." : folder);
   if (why.empty()) why = other_digits(names, folder, before, pattern.after, pattern.digits);
   if (why.empty()) why = nearly_named(names, folder, before + pattern.after);

@@ -165,7 +165,7 @@ bool read_all(png_structp png, png_bytepp rows) {
 /// A picture as libpng has begun to read it.
 struct Decoder {
   explicit Decoder(const std::string& path) {
-    file = std::fopen(path.c_str(), "rbe");
+    file = std::fopen(path.c_str(), "rb");
     png = file ? png_create_read_struct(PNG_LIBPNG_VER_STRING, &messages, keep_error, keep_warning) : nullptr;
     info = png ? png_create_info_struct(png) : nullptr;
     if (!info) return;

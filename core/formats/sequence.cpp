@@ -180,12 +180,13 @@ std::vector<int> parse_frames(const std::string& list) {
 
 std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option) {
   namespace fs = std::filesystem;
-  if (pattern.after.find('/') != pattern.after.npos)
+  if (fs::path(pattern.after).has_parent_path())
     fail(ErrorKind::usage, "{}: {}: the frame number is in a folder's name: say which frames with --frames", option,
          pattern.path(0));
-  const std::size_t slash = pattern.before.rfind('/');
-  const std::string folder = slash == pattern.before.npos ? "." : pattern.before.substr(0, slash + 1);
-  const FramePattern name{pattern.before.substr(slash + 1), pattern.after, pattern.digits};  // npos + 1 is 0
+  const std::string before = fs::path(pattern.before).filename().string();
+  const std::string above = pattern.before.substr(0, pattern.before.size() - before.size());
+  const std::string folder = above.empty() ? "." : above;
+  const FramePattern name{before, pattern.after, pattern.digits};
   std::error_code error;
   std::vector<int> frames;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))

@@ -6,7 +6,6 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -45,9 +44,8 @@ bool is_owned(std::span<const char> data, const CacheOwner& owner) {
 }  // namespace
 
 std::string cache_folder() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache == '/') return fs::path(cache) / "alcove";
-  if (const char* home = std::getenv("HOME"); home && *home == '/') return fs::path(home) / ".cache" / "alcove";
-  return "";
+  const std::string home = cache_home();
+  return home.empty() ? "" : (fs::path(home) / "alcove").string();
 }
 
 std::string cache_file(const CacheOwner& owner) {
@@ -55,7 +53,8 @@ std::string cache_file(const CacheOwner& owner) {
   if (folder.empty()) return "";
   std::string uuid;
   for (const std::uint8_t byte : owner.uuid) uuid += fmt::format("{:02x}", byte);
-  return fs::path(folder) / fmt::format("pipelines-{:04x}-{:04x}-{}.bin", owner.vendor, owner.device, uuid);
+  const std::string name = fmt::format("pipelines-{:04x}-{:04x}-{}.bin", owner.vendor, owner.device, uuid);
+  return (fs::path(folder) / name).string();
 }
 
 std::string packed_cache(std::span<const char> data) {
@@ -77,7 +76,7 @@ std::span<const char> checked_cache(std::span<const char> file, const CacheOwner
 }
 
 std::string read_cache(const std::string& path, const CacheOwner& owner) {
-  std::ifstream stream(path, std::ios::binary);
+  std::ifstream stream(fs::path(path), std::ios::binary);
   const std::string file = read_rest(stream);
   const auto data = checked_cache(file, owner);
   return {data.begin(), data.end()};

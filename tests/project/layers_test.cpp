@@ -90,10 +90,10 @@ TEST(Layers, only_one_file_asks_the_operating_system) {
   const Names calls = matches(
       product(),
       R"(#include <(sys/|unistd|dlfcn|fcntl|signal|csignal|sched|pthread|poll|pwd|spawn|termios|link\.h|linux/|windows))",
-      [](const SourceFile& file) { return file.name != "core/base/system.cpp"; });
+      [](const SourceFile& file) { return !file.name.starts_with("core/base/system"); });
   EXPECT_EQ(calls, Names{}) << "core/base/system.h has what is to be ported";
   EXPECT_EQ(matches(product(), R"(\bpopen\(|\bfork\(|\bmkdtemp\(|\bsetenv\(|/proc/self/exe)",
-                    [](const SourceFile& file) { return file.name != "core/base/system.cpp"; }),
+                    [](const SourceFile& file) { return !file.name.starts_with("core/base/system"); }),
             Names{});
 }
 
