@@ -440,9 +440,8 @@ TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowL
                   const FrameSource& source) {
   if (auto cut = Cutter(surroundings, limits).cut(whole); !cut.rows.empty()) return std::move(cut.rows);
   const std::string what = fmt::format(
-      "{}: within --radius or --shadow-reach a tile of the frame depends on too many pixels to compute at once: use "
-      "smaller "
-      "ones",
+      "{}: within --radius or --shadow-reach a tile of the frame depends on too many pixels to compute at once: "
+      "use smaller ones",
       source.depth_path());
   const MemoryNeeds needs = memory_needs(source, surroundings, limits);
   if (needs.least > limits.room.bytes) limits.refuse(what, needs);
