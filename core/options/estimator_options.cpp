@@ -138,10 +138,6 @@ void add_search_rows(std::vector<SettingRow>& rows) {
   pixels.number("bias", &S::bias, "", between(0, 1e18),
                 "sine of an elevation that blocks nothing, below 1; crytek: scene units of depth");
   pixels
-      .number("--shadow-reach", &S::shadow_reach, "scene units", above_to(0, 1e15),
-              "how far what blocks a light of --lights is at most; else anywhere in the frame")
-      .idle([](const Settings& all) { return unless_given(all.output.lights != nullptr, "--lights"); });
-  pixels
       .choice("elevation", &S::elevation,
               "of a horizon; view: above the plane across the view ray; surface: above the surface")
       .idle([](const Settings& all) { return unless_estimator(all, {Estimator::hbao}); });

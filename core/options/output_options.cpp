@@ -5,7 +5,6 @@
 #include "core/base/text.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
-#include "core/frame/find/lights.h"
 #include "core/options/options.h"
 #include "core/options/reasons.h"
 
@@ -132,15 +131,6 @@ void add_output_rows(std::vector<SettingRow>& rows) {
       .text("--environment", &S::environment, "SKY.exr|.hdr",
             "lat-long light: OUTPUT holds relight, what white surfaces reflect of it with occlusion")
       .names(FileRole::input);
-  SettingRow& lights = pixels.own(
-      {"--lights", "FILE.json", "", "", "suns and lamps: OUTPUT holds the shadow of each, 1 = lit; see docs/inputs.md"},
-      [](const S& s) { return s.lights ? s.lights->path : ""; },
-      [](S& s, const std::string& path) {
-        s.lights = path.empty() ? nullptr : read_lights(path);
-        return true;
-      });
-  lights.names(FileRole::input);
-  lights.is_of_frame = false;
   results.choice("ao-channels", &S::ao_channels, "mono: Y; rgb: R, G, B").others_idle([](const Settings& all) {
     return unless_aov(all, {"ao"});
   });

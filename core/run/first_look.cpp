@@ -211,7 +211,7 @@ MissingOptions FirstLook::missing_options() {
   const bool has_option = names_a_camera(settings_.input);
   missing.input = main_input(settings_.input).empty();
   missing.output = settings_.output.output.empty();
-  missing.radius = !settings_.estimator.radius && !settings_.estimator.radius_auto && needs_radius(settings_.output);
+  missing.radius = !settings_.estimator.radius && !settings_.estimator.radius_auto && needs_ao(settings_.output);
   missing.camera = missing.input && !has_option;
   if (missing.input || !(missing.radius || missing.output || !has_option)) return missing;
   try {

@@ -338,7 +338,7 @@ class FrameRun {
   bool needs_others() const {
     const auto& wanted = settings_.output;
     return !run_.takes_means || shows(wanted, DebugSource::hidden) || wants(wanted, &FrameOutputs::hidden) ||
-           wants(wanted, &FrameOutputs::confidence) || wants(wanted, &FrameOutputs::shadow);
+           wants(wanted, &FrameOutputs::confidence);
   }
 
   /// Finds the surfaces and estimates of others, once for all parts of the frame.
@@ -376,7 +376,6 @@ class FrameRun {
     const Stopwatch reading;
     FrameInputs inputs = load_frame(gpu_, source, window, settings_, frame_, &read_);
     inputs.others = others_.seen;
-    if (settings_.output.lights) inputs.lights = settings_.output.lights->in_view(source.reading.camera, frame_);
     inputs.estimates = in_slots_;
     inputs.estimates.corner = {window.x - source.reading.data.x, window.y - source.reading.data.y};
     tally_.add_inputs(source, window, inputs, written_of(source));

@@ -36,7 +36,6 @@ FrameInputs rehearsed_inputs(gpu::Recorder& rehearsal, const FrameMemory& memory
       planes[row.plane] = &rehearsal.buffer(row.name, sizeof(float) * count * window.pixels(), gpu::Use::upload);
   FrameInputs inputs = inputs_of(reading, planes, 0);
   inputs.is_sky = false;
-  inputs.lights = memory.lights;
   inputs.margin = margin_of(window, memory.file_data);
   const auto blocks = [](int side) { return std::size_t(side / kChangeBlock + 2); };
   inputs.changes =
@@ -90,9 +89,6 @@ void FrameMemory::take(const Settings& settings) {
   estimator = settings.estimator;
   estimator.radius = settings.estimator.radius.value_or(1);
   wanted = settings.output;
-  lights.clear();
-  for (std::size_t i = 0; settings.output.lights && i < settings.output.lights->lights.size(); i++)
-    lights.push_back({.at = {0, 0, 1}, .size = settings.output.lights->is_soft(i) ? 1.0 : 0.0});
   looks_at_others = settings.input.around > 0 || settings.input.around_all || settings.input.other_views;
 }
 

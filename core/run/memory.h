@@ -11,7 +11,6 @@
 #include "core/base/settings.h"
 #include "core/chain/results/outputs.h"
 #include "core/frame/find/frame_source.h"
-#include "core/frame/find/lights.h"
 #include "core/gpu/device.h"
 #include "core/run/plan.h"
 
@@ -47,7 +46,6 @@ struct FrameMemory {
   RawPlaneArray<std::size_t> channels;
   EstimatorSettings estimator;
   Wanted wanted;
-  std::vector<Light> lights;  // each as large as in any frame
   bool looks_at_others = false;
   bool is_cropped = false;  // a region of it is written
 

@@ -13,7 +13,6 @@
 #include "core/base/version.h"
 #include "core/formats/exr.h"
 #include "core/formats/png.h"
-#include "core/frame/find/lights.h"
 #include "core/options/options.h"
 #include "core/run/frame_files.h"
 #include "core/run/run_files.h"
@@ -84,11 +83,6 @@ InputIdentities::Identity InputIdentities::identity_of(const Settings& frame) {
   Identity identity;
   for (const auto& [option, path] : inputs_of(frame)) {
     if (option == "--preset") continue;  // what it says is in the settings
-    if (option == "--lights") {          // as they were read
-      const std::string& lights = frame.output.lights->text;
-      text += fmt::format("\n{} {:016x}", lights.size(), XXH3_64bits(lights.data(), lights.size()));
-      continue;
-    }
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     const std::streamoff size = file ? std::streamoff(file.tellg()) : 0;
     std::string bytes = bytes_of(file, 0, std::min(size, kLooked));

@@ -12,7 +12,7 @@
 // Only what stands above the receiver's tangent plane goes on behind something. There, a deeper point of a ray never
 // stands higher above that plane than what is seen on the ray, measured by depth.
 //
-// The kernel has declared its buffers `occluder_depth` and `normal`, and offset_of().
+// The kernel has declared its buffers `occluder_depth` and `normal`, and how many steps a side takes, kSteps.
 
 const float kNone = 1e30;
 
@@ -122,7 +122,7 @@ void take_down(inout Interruptions found, int k, Sample s, Sample last, bool con
   const bool is_near = (s.z > last.z ? s.distance_sq : last.distance_sq) < kFarEnd * kFarEnd * reach.radius_sq;
   const uint bit = 1u << uint(k & (kWordBits - 1));
   found.starts |= !connected || !s.above ? bit : 0u;
-  found.jumps |= both(is_jump, both(is_near, is_concerned(greater(s.slope, last.slope)))) ? bit : 0u;
+  found.jumps |= both(is_jump, is_near) ? bit : 0u;
 }
 
 /// The piece by which the deeper one of two neighbouring samples, `at` and the one before, goes on behind the nearer
@@ -132,8 +132,8 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
                    int behind_last) {
   const uint bit = uint(at - found.first);
   const uint before = found.starts & ((1u << bit) - 1u), after = found.starts & ~((2u << bit) - 1u);
-  const Sample s = sample_at(r, side, reach, offset_of(at, count, side, draw));
-  const Sample last = sample_at(r, side, reach, offset_of(at - 1, count, side, draw));
+  const Sample s = sample_at(r, side, reach, step_offset(at, int(kSteps), count, side.reach, draw.jitter));
+  const Sample last = sample_at(r, side, reach, step_offset(at - 1, int(kSteps), count, side.reach, draw.jitter));
   const bool is_back = s.z > last.z;  // the sample itself goes on, towards the receiver
   const vec2 end = is_back ? s.place : last.place, hider = is_back ? last.place : s.place;
   const int first_before = max(findMSB(before), 0), first_after = mix(findLSB(after), kWordBits, after == 0u);
@@ -141,12 +141,13 @@ Piece piece_behind(Receiver r, Side side, Reach reach, Draw draw, int count, Int
       mix(min(found.first + first_after, behind_last) - 1, min(found.first + first_before, at - 1), is_back);
   const ivec2 hit = pixel_at(r, side, is_back ? s.offset : last.offset);
   const vec2 n = normal_in_slice(r, side, normal[hit.y * reach.width + hit.x]);
-  const Sample opposite = sample_at(r, side, reach, offset_of(other, count, side, draw));
+  const Sample opposite = sample_at(r, side, reach, step_offset(other, int(kSteps), count, side.reach, draw.jitter));
   const bool hides_all = dot(n, opposite.place - end) > 0.0;
   vec2 until = hides_all ? opposite.place : hider;
   const int next = mix(other + 1, other - 1, is_back);
   const bool goes_on = both(hides_all, both(next >= 0, next < behind_last));
-  const Sample beyond = sample_at(r, side, reach, offset_of(clamp(next, 0, behind_last - 1), count, side, draw));
+  const Sample beyond = sample_at(
+      r, side, reach, step_offset(clamp(next, 0, behind_last - 1), int(kSteps), count, side.reach, draw.jitter));
   until = both(goes_on, both(beyond.above, dot(n, beyond.place - end) > 0.0)) ? beyond.place : until;
   const vec2 onward = mix(vec2(n.y, -n.x), vec2(-n.y, n.x), bvec2(is_back));
   Piece piece = piece_of(reach, end, onward, seen_at(r, end, onward, n, until));
@@ -170,6 +171,6 @@ Sample sample_beyond(Receiver r, Side side, Reach reach, float offset) {
                    occluder_depth[mirrored.y * reach.width + mirrored.x], to, kLeastFacingToGoOn);
   Sample s = sample_of(r, side, reach, offset, beside, z);
   const float height = height_of(r, beside, s.z, s.scale);
-  s.above = both(z < kSkyDepth, both(s.above, height > kLeastRisen * reach.size + r.least_height));
+  s.above = both(z < kSkyDepth, both(s.above, height > kLeastRisen * reach.radius + r.least_height));
   return s;
 }

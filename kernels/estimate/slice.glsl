@@ -39,10 +39,8 @@ const int kManySteps = 16;
 /// parameter anew at each use within a loop.
 struct Reach {
   float radius, radius_sq, falloff_start;  // scene units
-  float
-      size;  // scene units: the radius by which thickness levels off, and by which what counts beyond the border rises
-  float front_sq;       // of the farthest front that may block, squared
-  float thickness;      // scene units, infinite allowed; 0: as deep as wide
+  float front_sq;                          // of the farthest front that may block, squared
+  float thickness;                         // scene units, infinite allowed; 0: as deep as wide
   float per_elevation;  // one over the sine of the elevation above the tangent plane below which nothing blocks
   float least_rise;     // of a sample: see clearance.glsl
   float pixel_size;     // scene units at unit depth (orthographic: at any)
@@ -123,13 +121,27 @@ Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius,
   return r;
 }
 
-/// The slice through a unit vector orthogonal to V, in the terms of the paper that horizon.comp names: `t` is that
+/// The slice of an azimuth, in the terms of the paper that horizon.comp names: `t` is its direction orthogonal to V
 /// (line 9), `weight`, cos_gamma and sin_gamma are the length and the direction of its projected normal (lines 11 to
-/// 15).
-Slice slice_along(View view, Receiver r, vec3 t, float share) {
+/// 15). Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant: up to tan of its
+/// tilt times as much as those across. A lone slice is drawn that much more often there, by pulling its azimuth towards
+/// the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be biased. The more
+/// slices per pixel has, the less this matters, and the less they are pulled.
+Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
+  const float azimuth = kPi * (float(index) + jitter) / float(slices);
+  vec3 x, y;
+  basis_of(r.eye, x, y);
+  const float cos_tilt = dot(r.normal, r.eye);
+  const float sin_tilt = sqrt(max(0.0, 1.0 - cos_tilt * cos_tilt));
+  const vec2 on_image = direction_of(azimuth);
+  const vec3 even = on_image.x * x + on_image.y * y;
+  const vec3 across = (r.normal - cos_tilt * r.eye) / max(sin_tilt, kLeastTilt);
+  const float pull =
+      mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices * slices));
   Slice s;
-  s.t = t;
-  s.share = share;
+  s.t = normalize(pull * even + (1.0 - pull) * dot(even, across) * across);
+  const float along = dot(s.t, across);
+  s.share = (1.0 - (1.0 - pull * pull) * along * along) / pull;
   const float n_t = dot(r.normal, s.t), n_v = dot(r.normal, r.eye);
   s.weight = sqrt(n_t * n_t + n_v * n_v);
   s.cos_gamma = n_v / s.weight;
@@ -142,26 +154,6 @@ Slice slice_along(View view, Receiver r, vec3 t, float share) {
   s.toward = r.eye.xy * view.tangent_per_pixel + n_v * beside;
   s.image_t = (r.perspective ? s.t.xy + r.tangent * s.t.z : s.t.xy) / view.tangent_per_pixel;
   return s;
-}
-
-/// The slice of an azimuth. Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant:
-/// up to tan of its tilt times as much as those across. A lone slice is drawn that much more often there, by pulling
-/// its azimuth towards the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be
-/// biased. The more slices per pixel has, the less this matters, and the less they are pulled.
-Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
-  const float azimuth = kPi * (float(index) + jitter) / float(slices);
-  vec3 x, y;
-  basis_of(r.eye, x, y);
-  const float cos_tilt = dot(r.normal, r.eye);
-  const float sin_tilt = sqrt(max(0.0, 1.0 - cos_tilt * cos_tilt));
-  const vec2 on_image = direction_of(azimuth);
-  const vec3 even = on_image.x * x + on_image.y * y;
-  const vec3 across = (r.normal - cos_tilt * r.eye) / max(sin_tilt, kLeastTilt);
-  const float pull =
-      mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices * slices));
-  const vec3 t = normalize(pull * even + (1.0 - pull) * dot(even, across) * across);
-  const float along = dot(t, across);
-  return slice_along(view, r, t, (1.0 - (1.0 - pull * pull) * along * along) / pull);
 }
 
 /// More steps than any image has.
@@ -230,7 +222,7 @@ vec2 place_at(float slope) { return vec2(1.0 - abs(slope), slope); }
 
 Reach reach_of(View view, float radius, float falloff_start, float front, float thickness, float bias) {
   const float least = max(bias, kLeastElevation);
-  return Reach(radius, radius * radius, falloff_start, radius, front * front, thickness, 1.0 / least, least_rise(view),
+  return Reach(radius, radius * radius, falloff_start, front * front, thickness, 1.0 / least, least_rise(view),
                view.tangent_per_pixel.x, view.size.x);
 }
 

@@ -97,7 +97,6 @@ const std::map<std::string, Change> kChanges{
     {"hidden", {"", "", "", kOfRun}},
     {"separation", {"", "", "", kOfRun}},
     {"environment", {"", "--environment L", "--environment T"}},
-    {"lights", {"", "--lights H", "--lights I"}},
     {"aov-space", {"--aov ao,normal", "--set aov-space=world", "--set aov-space=view"}}};
 
 /// Whether an option says what the pixels of an input are, or what they mean.
@@ -124,16 +123,11 @@ class ReuseOfOptions : public CommandLine {
     json turned = wall_camera();
     turned["world_to_camera"] = {{0.9999875, 0, 0.005, 0}, {0, 1, 0, 0}, {-0.005, 0, 0.9999875, 0}, {0, 0, 0, 1}};
     write_bytes(file("G"), turned.dump());
-    for (const auto& [name, z] : {std::pair("H", 1), {"I", -1}})
-      write_bytes(
-          file(name),
-          fmt::format(R"({{"lights": [{{"name": "key", "kind": "sun", "direction": [0, 0, {}], "space": "view"}}]}})",
-                      z));
     write_bytes(file("K"), "1 0.5 2 3 10 20 30 40\n");
   }
 
   std::string file(const std::string& name) const {
-    const bool is_text = std::string("CDGHI").find(name) != name.npos;
+    const bool is_text = name == "C" || name == "D" || name == "G";
     return folder / (name + (is_text ? ".json" : name == "K" ? ".chan" : ".exr"));
   }
 
@@ -201,7 +195,7 @@ class ReuseOfOptions : public CommandLine {
     for (std::string word; all >> word;) {
       const std::size_t at = word.find('=') + 1;  // 0 where there is none
       const std::string name = word.substr(at);
-      words.push_back(name.size() == 1 && std::string("FSMNBELTCDGKHI").find(name) != name.npos
+      words.push_back(name.size() == 1 && std::string("FSMNBELTCDGK").find(name) != name.npos
                           ? word.substr(0, at) + file(name)
                           : word);
     }
@@ -228,7 +222,6 @@ class ReuseOfOptions : public CommandLine {
     ReadPlanes planes;
     read_for_parts(source, settings, planes, std::uint64_t(1) << 40);
     FrameInputs inputs = load_frame(lane.gpu, source, window, settings, 1, &planes);
-    if (const auto& lights = settings.output.lights) inputs.lights = lights->in_view(source.reading.camera, 1);
     const bool is_same = reuses && lane.last.is_same(lane.gpu, inputs, settings.estimator);
     const FrameOutputs outputs =
         is_same ? lane.last.outputs() : run_chain(lane.gpu, inputs, settings.estimator, settings.output);

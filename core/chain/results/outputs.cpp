@@ -7,7 +7,6 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/frame/find/lights.h"
 
 namespace alcove {
 namespace {
@@ -16,13 +15,6 @@ bool is_of_visibility(const DebugView* view) {
   return view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao ||
          view->source == DebugSource::completed || view->source == DebugSource::tiles ||
          view->source == DebugSource::count;
-}
-
-std::vector<std::string> shadow_channels(const OutputSettings& settings) {
-  std::vector<std::string> channels;
-  if (settings.lights)
-    for (const auto& light : settings.lights->lights) channels.push_back(fmt::format("shadow-{}.Y", light.name));
-  return channels;
 }
 
 }  // namespace
@@ -37,7 +29,6 @@ std::vector<Aov> aovs_of(const OutputSettings& settings) {
   std::vector<Aov> aovs;
   std::vector<std::string> names = split(settings.aovs);
   if (!settings.environment.empty()) names.emplace_back("relight");
-  if (settings.lights) names.emplace_back("shadow");
   for (const auto& name : names) {
     const auto row = std::ranges::find(kAovs, name, &AovRow::name);
     if (row == kAovs.end())
@@ -45,7 +36,6 @@ std::vector<Aov> aovs_of(const OutputSettings& settings) {
            list_of(aov_names()));
     if (std::ranges::find(aovs, name, &Aov::name) != aovs.end()) continue;
     aovs.push_back({name, split(row->channels), row->planes, row->source, row->is_float});
-    if (name == "shadow") aovs.back().channels = shadow_channels(settings);
     if (name == "ao" && !settings.ao_name.empty()) aovs.back().channels = {settings.ao_name};
     if (name != "ao" || settings.ao_channels == AoChannels::mono) continue;
     const std::string layer = settings.ao_name.empty() ? "" : settings.ao_name + ".";
@@ -117,8 +107,6 @@ bool in_world(const Camera& camera, const OutputSettings& settings) {
 }
 
 bool needs_ao(const OutputSettings& output) { return Wanted(output).visibility; }
-
-bool needs_radius(const OutputSettings& output) { return needs_ao(output) || wants(output, &FrameOutputs::shadow); }
 
 uint moment_order(const EstimatorSettings& settings, const Wanted& wanted) {
   return searches_slices(settings) ? wanted.order : 0;

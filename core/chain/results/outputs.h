@@ -47,7 +47,6 @@ struct FrameOutputs {
   // plane of 1 where it closes the solid of the one before it, else 0
   gpu::Buffer* hidden = nullptr;
   gpu::Buffer* confidence = nullptr;          // a plane, in [0, 1]
-  gpu::Buffer* shadow = nullptr;              // a plane for each light, in [0, 1], 1 = lit; sky: 1
   gpu::Buffer* error = nullptr;               // a plane: with a tolerance, the estimated error of the visibility
   gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
   // a plane, of several radii their mean and one for each: the parts that the own surface blocks inside and outside, in
@@ -90,7 +89,6 @@ inline constexpr std::array kAovs{
     AovRow{"depth", "Z", &FrameOutputs::depth, AovSource::geometry, true},
     AovRow{"hidden", "hidden1.Z,hidden1.back", &FrameOutputs::hidden, AovSource::geometry, true},
     AovRow{"confidence", "confidence.Y", &FrameOutputs::confidence, AovSource::visibility},
-    AovRow{"shadow", "", &FrameOutputs::shadow, AovSource::geometry},
     AovRow{"error", "error.Y", &FrameOutputs::error, AovSource::visibility},
     AovRow{"specular-occlusion", "specular.Y", &FrameOutputs::specular_occlusion, AovSource::open_directions},
     AovRow{"convexity", "convexity.Y", &FrameOutputs::convexity, AovSource::visibility},
@@ -154,8 +152,6 @@ bool in_world(const Camera& camera, const OutputSettings& settings);
 
 /// Whether any output is AO or made from it.
 bool needs_ao(const OutputSettings& output);
-/// Whether any output is made with the radius: AO, and shadows, of which it says how thick surfaces may be.
-bool needs_radius(const OutputSettings& output);
 
 /// The order of the moments that any output is made from: 1 for bent normals, 2 for transfer; 0: none, or the estimator
 /// finds no open directions.
