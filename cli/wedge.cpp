@@ -126,11 +126,8 @@ std::size_t count_of(const std::vector<Words>& arguments) {
 
 /// A file's name without the folder in which all of the list lie.
 std::string without_shared_folder(const Words& files, const std::string& file) {
-  const auto folder_of = [](const std::string& path) {
-    return path.substr(0, path.size() - std::filesystem::path(path).filename().string().size());
-  };
-  const std::string folder = folder_of(file);
-  const bool is_shared = std::ranges::all_of(files, [&](const auto& other) { return folder_of(other) == folder; });
+  const std::string folder = folder_prefix(file);
+  const bool is_shared = std::ranges::all_of(files, [&](const auto& other) { return folder_prefix(other) == folder; });
   return is_shared ? file.substr(folder.size()) : file;
 }
 

@@ -197,4 +197,8 @@ std::string folder_of(const std::string& path) {
   return folder.empty() ? "." : folder.string();
 }
 
+std::string folder_prefix(const std::string& path) {
+  return path.substr(0, path.size() - fs::path(path).filename().string().size());
+}
+
 }  // namespace alcove

@@ -91,5 +91,7 @@ int remove_unfinished(const std::string& folder);
 
 /// The folder of a file.
 std::string folder_of(const std::string& path);
+/// The part of a path before the file's name, as it is spelled, with the separator; "" if it names no folder.
+std::string folder_prefix(const std::string& path);
 
 }  // namespace alcove

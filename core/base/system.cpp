@@ -204,15 +204,6 @@ void sync_folder(const std::string& folder) {
   ::close(descriptor);
 }
 
-LockedFile::LockedFile(LockedFile&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), is_locked_(other.is_locked_) {}
-
-LockedFile& LockedFile::operator=(LockedFile&& other) noexcept {
-  std::swap(descriptor_, other.descriptor_);
-  std::swap(is_locked_, other.is_locked_);
-  return *this;
-}
-
 std::error_code LockedFile::make(const std::string& path) {
   close();
   descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

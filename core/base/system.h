@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <system_error>
+#include <utility>
 
 namespace alcove {
 
@@ -109,8 +110,13 @@ void sync_folder(const std::string& folder);
 class LockedFile {
  public:
   LockedFile() = default;
-  LockedFile(LockedFile&& other) noexcept;
-  LockedFile& operator=(LockedFile&& other) noexcept;
+  LockedFile(LockedFile&& other) noexcept
+      : descriptor_(std::exchange(other.descriptor_, -1)), is_locked_(other.is_locked_) {}
+  LockedFile& operator=(LockedFile&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    std::swap(is_locked_, other.is_locked_);
+    return *this;
+  }
   LockedFile(const LockedFile&) = delete;
   LockedFile& operator=(const LockedFile&) = delete;
   ~LockedFile() { close(); }

@@ -228,15 +228,6 @@ std::error_code rename_over(const std::string& from, const std::string& to) {
 
 void sync_folder(const std::string&) {}  // rename_over() writes through
 
-LockedFile::LockedFile(LockedFile&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), is_locked_(other.is_locked_) {}
-
-LockedFile& LockedFile::operator=(LockedFile&& other) noexcept {
-  std::swap(descriptor_, other.descriptor_);
-  std::swap(is_locked_, other.is_locked_);
-  return *this;
-}
-
 namespace {
 
 /// Opens a file to write it and, by a lock on a byte far beyond its end, marks it as being written. Locks keep others

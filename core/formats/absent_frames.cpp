@@ -11,6 +11,7 @@
 #include <regex>
 #include <vector>
 
+#include "core/base/file.h"
 #include "core/base/text.h"
 
 namespace alcove {
@@ -116,8 +117,7 @@ std::string foreign_pattern_in(const std::string& name) {
 
 std::string why_no_frames(const FramePattern& pattern) {
   std::string why = foreign_pattern_in(text_of(pattern));
-  const std::string before = fs::path(pattern.before).filename().string();
-  const std::string folder = pattern.before.substr(0, pattern.before.size() - before.size());
+  const std::string folder = folder_prefix(pattern.before), before = pattern.before.substr(folder.size());
   const auto names = names_in(folder.empty() ? "." : folder);
   if (why.empty()) why = other_digits(names, folder, before, pattern.after, pattern.digits);
   if (why.empty()) why = nearly_named(names, folder, before + pattern.after);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/formats/absent_frames.h"
 
@@ -183,10 +184,8 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
   if (fs::path(pattern.after).has_parent_path())
     fail(ErrorKind::usage, "{}: {}: the frame number is in a folder's name: say which frames with --frames", option,
          pattern.path(0));
-  const std::string before = fs::path(pattern.before).filename().string();
-  const std::string above = pattern.before.substr(0, pattern.before.size() - before.size());
-  const std::string folder = above.empty() ? "." : above;
-  const FramePattern name{before, pattern.after, pattern.digits};
+  const std::string above = folder_prefix(pattern.before), folder = above.empty() ? "." : above;
+  const FramePattern name{pattern.before.substr(above.size()), pattern.after, pattern.digits};
   std::error_code error;
   std::vector<int> frames;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
