@@ -222,7 +222,7 @@ TEST_F(Inspect, the_command_it_gives_has_every_option_that_was_typed_and_has_an_
   for (const auto& words : kept) given = joined(given, typed(words));
   const std::string command = seen(given)["command"];
   for (const auto& words : kept) EXPECT_THAT(command, HasSubstr(" " + words));
-  for (const char* words : {"gain", "auto", "-v", "--json"}) EXPECT_THAT(command, Not(HasSubstr(words)));
+  for (const char* words : {" gain", " auto", " -v", " --json"}) EXPECT_THAT(command, Not(HasSubstr(words)));
   Options arguments = typed(command);
   arguments.erase(arguments.begin());
   run_well(arguments, {.folder = folder.path()});
