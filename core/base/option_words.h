@@ -36,8 +36,9 @@ enum class RangeCheck { none, ratio, smoothstep };
 enum class ThicknessKind { automatic, infinite, constant };
 // places where surfaces are taken to go on unseen: none; beyond the picture's border; there and behind nearer surfaces
 enum class Completion { none, border, all };
-// pixels with an estimate of their own: evenly over the image; more where surfaces show few pixels
-enum class Density { uniform, adaptive };
+// pixels with an estimate of their own: evenly over the image; more where surfaces show few pixels; and many beside
+// edges of depth
+enum class Density { uniform, adaptive, edges };
 // pixels of the frame per pixel of the estimate, in x and in y
 enum class Resolution { full = 1, half = 2, quarter = 4 };
 enum class Denoise { none, bilateral, box };
@@ -138,7 +139,8 @@ template <>
 inline constexpr Word<Completion> kWordsOf<Completion>[] = {
     {"all", Completion::all}, {"border", Completion::border}, {"none", Completion::none}};
 template <>
-inline constexpr Word<Density> kWordsOf<Density>[] = {{"adaptive", Density::adaptive}, {"uniform", Density::uniform}};
+inline constexpr Word<Density> kWordsOf<Density>[] = {
+    {"adaptive", Density::adaptive}, {"edges", Density::edges}, {"uniform", Density::uniform}};
 template <>
 inline constexpr Word<Resolution> kWordsOf<Resolution>[] = {
     {"full", Resolution::full}, {"half", Resolution::half}, {"quarter", Resolution::quarter}};

@@ -148,8 +148,8 @@ struct EstimatorSettings {
   // pixels per estimate: 1, 2, 4, 8 or 16. The bilateral denoiser gives the others theirs. Density::adaptive makes at
   // least so many estimates; 0: see spacing_of
   int stride = 0;
-  // adaptive: more estimates where a surface shows too few pixels for its neighbours to give it one; for gtao by steps,
-  // and for bitmask
+  // adaptive: more estimates where a surface shows too few pixels for its neighbours to give it one; edges: more
+  // beside edges of depth, too; for gtao by steps, and for bitmask
   Density density = Density::adaptive;
   Denoise denoise = Denoise::bilateral;
   // pixels of the estimate to each side, 1 to 8; with Denoise::bilateral; 0: see denoise_radius_of

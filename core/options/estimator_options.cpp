@@ -167,7 +167,8 @@ void add_filter_rows(std::vector<SettingRow>& rows) {
   pixels.choice("--resolution", &S::resolution, "of the estimate, by the nearest surface of 2 x 2 or 4 x 4 pixels");
   pixels
       .choice("density", &S::density,
-              "uniform: an estimate for every so many pixels; adaptive: more where a surface shows few pixels")
+              "uniform: an estimate for every so many pixels; adaptive: more where a surface shows few pixels; edges: "
+              "more beside edges of depth, too")
       .idle([](const Settings& all) { return asks_for_confidence(all) ? "" : unless_ranges(all); })
       .idle(if_exact_alone)
       .idle(unless_shared_estimates);

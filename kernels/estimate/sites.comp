@@ -5,8 +5,9 @@
 // Out: the words of blocks, see blocks.glsl; the planes and the list of sites; depth with a margin.
 //
 // Surfaces on a lattice are sites. Where the density is adaptive, each site stands for the pixels of its block that
-// show its surface (likeness.glsl) no farther away than a part of the radius, in which AO changes. One of the others is
-// the next site, until none is left. A filter by rows, and then by columns, must find a way from the site to the pixel:
+// show its surface (likeness.glsl) no farther away than a part of the radius, in which AO changes. Where sites are dense
+// at edges, the first two of a block that shows several surfaces stand for the pixels beside them only: AO changes
+// fast there. One of the others is the next site, until none is left. A filter by rows, and then by columns, must find a way from the site to the pixel:
 // where the pixel's column meets the site's row there is no sky. An invocation computes a block.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -24,6 +25,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kSelects = 0;   // 1: only blocks of needed tiles have sites
 layout(constant_id = 1) const uint kAdaptive = 1;  // 0: only the lattice has sites
 layout(constant_id = 2) const uint kWidens = 0;    // 1: copies the depth
+layout(constant_id = 3) const uint kEdges = 0;     // 1: sites are dense at edges; only if adaptive
 layout(scalar, push_constant) uniform Push { SitesParams params; };
 readonly buffer Depth { float depth[]; };    // one float per pixel, from prepare
 readonly buffer Normal { uint normal[]; };   // one uint per pixel, from prepare
@@ -37,6 +39,11 @@ buffer Counts { SiteCounts counts; };        // zeros before
 /// A site stands for a pixel that is at least so alike: on a plane, one less than .6 pixels' widths off. Error and time
 /// hardly change from .25 to .7.
 const float kCovered = 0.64;
+
+/// At an edge a site stands for pixels so near, squared: its eight neighbours. More sites than the first two would be
+/// those of hair, which has many already.
+const float kBesideSq = 2.0;
+const int kEdgeSites = 2;
 
 /// The order in which pixels become sites: first that of the widest lattice, then others near the middle.
 const int kOrder[kBlockPixels] = int[](5, 10, 6, 9, 0, 15, 3, 12, 1, 14, 2, 13, 4, 11, 7, 8);
@@ -86,6 +93,7 @@ void main() {
   }
   if (kSelects != 0u) left = is_needed(view, first) ? left : 0u;
   if (kAdaptive == 0u) left &= lattice;
+  const uint seen = left;
   uint sites = 0u;
   if (left != 0u) do {
       const int at = findLSB(left);
@@ -106,13 +114,16 @@ void main() {
       }
       const uint row = surfaces >> (place & ~3);  // of the site, in the lowest bits
       const float reach = params.reach / site.scale;
-      uint covered = 0u;
+      uint alike = 0u, near = 0u, beside = 0u;
       [[unroll]] for (int k = 0; k < kBlockPixels && kAdaptive != 0u; k++) {
         const vec2 px = vec2(place_in_block(kOrder[k]) - place_in_block(place));
         const uint way = row >> (kOrder[k] & 3) & 1u;
-        const bool is_near = dot(px, px) <= reach * reach;
-        covered |= is_near && similarity(site, pixels[k], px, 0.0) > kCovered ? way << k : 0u;
+        alike |= similarity(site, pixels[k], px, 0.0) > kCovered ? way << k : 0u;
+        near |= dot(px, px) <= reach * reach ? 1u << k : 0u;
+        beside |= dot(px, px) <= kBesideSq ? 1u << k : 0u;
       }
+      uint covered = alike & near;
+      if (kEdges != 0u && bitCount(sites) < kEdgeSites && (seen & ~alike) != 0u) covered &= beside;
       if (kAdaptive != 0u) planes[number_of_site(grid, number, place)] = pack_plane(site);
       sites |= 1u << place;
       left &= ~(covered & ~lattice | 1u << at);

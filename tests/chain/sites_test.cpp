@@ -36,15 +36,23 @@ Places sites_slowly(const Picture& picture, const Geometry& geometry, const Site
     if (is_there && picture.is_on_lattice(u, v, rule.spacing)) sites.emplace(u, v);
     if (is_there && rule.is_adaptive) left.emplace_back(u, v);
   }
-  while (!left.empty()) {
+  const auto all = left;
+  for (int count = 0; !left.empty(); count++) {
     const auto site = left.front();
     sites.insert(site);
-    std::erase_if(left, [&](const auto& pixel) {
-      if (pixel != site && picture.is_on_lattice(pixel.first, pixel.second, rule.spacing)) return false;
+    const auto is_alike = [&](const auto& pixel) {
       const double likeness = geometry.likeness(site.first, site.second, pixel.first, pixel.second);
       is_doubtful = is_doubtful || std::abs(likeness - kCovered) < 1e-3;
-      const bool has_way = geometry.is_surface(pixel.first, site.second);
-      return pixel == site || (likeness > kCovered && has_way);
+      return likeness > kCovered && geometry.is_surface(pixel.first, site.second);
+    };
+    const auto is_beside = [&](const auto& pixel) {
+      return std::abs(pixel.first - site.first) <= 1 && std::abs(pixel.second - site.second) <= 1;
+    };
+    const bool is_dense = rule.edges && count < 2 && !std::ranges::all_of(all, is_alike);
+    std::erase_if(left, [&](const auto& pixel) {
+      if (pixel == site) return true;
+      if (picture.is_on_lattice(pixel.first, pixel.second, rule.spacing)) return false;
+      return is_alike(pixel) && (!is_dense || is_beside(pixel));
     });
   }
   return sites;
@@ -56,7 +64,8 @@ TEST(Sites, are_those_of_the_rule) {
   std::size_t doubtful = 0, compared = 0, several = 0, added = 0;
   for (int i = 0; i < 80; i++) {
     const GBuffer gbuffer = prepared(i % 2 ? scenes.next() : random_picture(random)).gbuffer;
-    const SiteRule rule{i % 3 ? 16 : 1 << (1 + i % 4), i % 7 != 6};
+    SiteRule rule{i % 3 ? 16 : 1 << (1 + i % 4), i % 7 != 6};
+    rule.edges = rule.is_adaptive && i % 2 == i % 4 / 2;
     const Geometry geometry(gbuffer);
     const Sites sites = alcove::sites(recorder(), gbuffer, rule);
     const Picture picture = picture_of(sites, gbuffer);
@@ -73,7 +82,7 @@ TEST(Sites, are_those_of_the_rule) {
         for (const auto& [u, v] : expected) added += !picture.is_on_lattice(u, v, rule.spacing);
         if (!is_doubtful)
           ASSERT_EQ(found, expected) << i << ": " << x << " " << y << ", spacing " << rule.spacing << ", adaptive "
-                                     << rule.is_adaptive;
+                                     << rule.is_adaptive << ", dense at edges " << rule.edges;
       }
   }
   EXPECT_GT(several, 500);
@@ -245,15 +254,17 @@ TEST(SiteRule, follows_the_settings) {
                    {[](auto& s) { s.stride = 8, s.search = SliceSearch::exact; }, 1, 1},
                    {[](auto& s) { s.stride = 8, s.tolerance = 0.05; }, 1, 1}};
   for (const Row& row : rows)
-    for (const Density density : {Density::adaptive, Density::uniform}) {
+    for (const Density density : {Density::adaptive, Density::edges, Density::uniform}) {
       EstimatorSettings settings;
       settings.density = density;
       row.change(settings);
-      const int spacing = density == Density::adaptive ? row.adaptive : row.uniform;
+      const bool adapts = density != Density::uniform;
+      const int spacing = adapts ? row.adaptive : row.uniform;
       EXPECT_EQ(spacing_of(settings), spacing) << name_of(settings);
-      EXPECT_EQ(is_adaptive(settings), density == Density::adaptive && spacing > 1) << name_of(settings);
+      EXPECT_EQ(is_adaptive(settings), adapts && spacing > 1) << name_of(settings);
       EXPECT_EQ(site_rule_of(settings).spacing, spacing) << name_of(settings);
       EXPECT_EQ(site_rule_of(settings).is_adaptive, is_adaptive(settings)) << name_of(settings);
+      EXPECT_EQ(site_rule_of(settings).edges, density == Density::edges && spacing > 1) << name_of(settings);
       if (spacing == 1) EXPECT_EQ(sites(recorder(), GBuffer{}, site_rule_of(settings)).words, nullptr);
     }
   EXPECT_EQ(EstimatorSettings{}.density, Density::adaptive);

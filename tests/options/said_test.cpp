@@ -388,7 +388,7 @@ TEST_F(Said, settings_that_are_shared_are_those_that_are_no_defaults) {
   EXPECT_EQ(shared({}), "");
   EXPECT_EQ(shared({"--preset", "standard"}), "");
   EXPECT_EQ(shared(joined({"--preset", "production"}, preset("gain.toml", {{"gain", "1.2"}}))),
-            "slices=12\ngain=1.2\n");
+            "slices=10\ndensity=edges\ngain=1.2\n");
   for (const auto& name : preset_names()) {
     const std::string text = shared({"--preset", name});
     write_bytes(folder / "shared.toml", text);
@@ -486,7 +486,7 @@ TEST_F(Said, lists_with_commas_are_what_repeated_options_are) {
   EXPECT_THAT(radii({"--radius", "0.1, 0.5", "--radius", "2"}), ElementsAre("0.1", "0.5", "2"));
   EXPECT_THAT(radii(preset("radii.toml", {{"radius", "0.1,0.5"}})), ElementsAre("0.1", "0.5"));
   EXPECT_THAT(refusal("--radius 0.1,,0.5"), HasSubstr("--radius: \"\" is not a number"));
-  EXPECT_EQ(read({"--preset", "draft,production"}).settings.estimator.slices, 12);
+  EXPECT_EQ(read({"--preset", "draft,production"}).settings.estimator.slices, 10);
   EXPECT_EQ(read({"--preset", "production,draft"}).settings.estimator.steps, 12);
   EXPECT_EQ(read({"--preset", "draft,standard"}).settings.estimator.search, SliceSearch::steps);
   const Words behind{"--behind", "a,b.exr", "--behind", "c.exr"};

@@ -47,12 +47,12 @@ int spacing_of(const EstimatorSettings& settings) {
   if (searches_exactly(settings)) return 1;
   if (settings.stride > 0) return settings.stride;
   if (settings.denoise != Denoise::bilateral || settings.resolution != Resolution::full) return 1;
-  if (settings.density == Density::adaptive && searches_slices(settings)) return 16;
+  if (settings.density != Density::uniform && searches_slices(settings)) return 16;
   return settings.slices <= 2 && settings.estimator == Estimator::gtao ? 4 : 1;
 }
 
 bool is_adaptive(const EstimatorSettings& settings) {
-  return settings.density == Density::adaptive && searches_slices(settings) && spacing_of(settings) > 1;
+  return settings.density != Density::uniform && searches_slices(settings) && spacing_of(settings) > 1;
 }
 
 int site_reach_of(const EstimatorSettings& settings) {
@@ -60,8 +60,13 @@ int site_reach_of(const EstimatorSettings& settings) {
 }
 
 SiteRule site_rule_of(const EstimatorSettings& settings, int turn) {
-  return {spacing_of(settings), is_adaptive(settings), kShifts[std::size_t(turn) % kShifts.size()], !settings.no_skip,
-          settings.radius ? kStoodFor * radii_of(settings).front() : HUGE_VAL};
+  const bool adapts = is_adaptive(settings);
+  return {spacing_of(settings),
+          adapts,
+          kShifts[std::size_t(turn) % kShifts.size()],
+          !settings.no_skip,
+          settings.radius ? kStoodFor * radii_of(settings).front() : HUGE_VAL,
+          adapts && settings.density == Density::edges};
 }
 
 std::size_t site_bytes(const SiteGrid& grid, std::size_t value) {
@@ -100,7 +105,7 @@ Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, co
        {"Planes", gpu::Optional(sites.planes)},
        {"List", sites.list},
        {"Counts", sites.counts}},
-      {uint(blocks.x), uint(blocks.y)}, {needed ? 1u : 0u, rule.is_adaptive ? 1u : 0u, wide ? 1u : 0u});
+      {uint(blocks.x), uint(blocks.y)}, {needed ? 1u : 0u, rule.is_adaptive ? 1u : 0u, wide ? 1u : 0u, rule.edges ? 1u : 0u});
   return sites;
 }
 

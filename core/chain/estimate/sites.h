@@ -44,6 +44,7 @@ struct SiteRule {
   ivec2 shift{};             // px of the blocks to the left and up
   bool skips = true;         // blocks without needed estimates have none
   double within = HUGE_VAL;  // scene units: a site stands for no pixel farther away
+  bool edges = false;        // many beside edges of depth; only if adaptive
 };
 /// `turn`: averaged frames have different ones, from 0 on, and with it different shifts.
 SiteRule site_rule_of(const EstimatorSettings& settings, int turn = 0);
