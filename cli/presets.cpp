@@ -315,7 +315,7 @@ int presets_command(const std::vector<std::string>& arguments) {
   const auto parsed = presets_syntax().parse(arguments);
   if (!parsed) return 0;
   const auto& [name, json] = *parsed;
-  if (!name.empty() && json) fail(ErrorKind::usage, "--json is of the list; {} is printed as it is", name);
+  if (!name.empty() && json) fail(ErrorKind::usage, "--json lists presets; {} is printed as it is", name);
   if (!name.empty())
     fmt::print("{}", read_text(preset_file(name), "preset", "NAME"));
   else if (json)

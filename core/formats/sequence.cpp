@@ -201,7 +201,7 @@ std::vector<int> frames_on_disk(const FramePattern& pattern, const char* option)
 
 namespace {
 
-// A file with another number far away makes as many holes as anybody wants to read of.
+// One file with a far number would list millions of missing frames.
 constexpr std::size_t kMostHoles = 1'000'000;
 
 }  // namespace

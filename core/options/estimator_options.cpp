@@ -132,7 +132,7 @@ void add_search_rows(std::vector<SettingRow>& rows) {
         const std::string why = search == SliceSearch::steps ? "" : unless_estimator(all, {Estimator::gtao});
         return first_of({why, search == SliceSearch::steps || search == SliceSearch::quick ? if_by_error(all) : ""});
       });
-  pixels.number("--tolerance", &S::tolerance, "", between(0, 1), "RMS error of an exact search; 0: as --slices gives")
+  pixels.number("--tolerance", &S::tolerance, "", between(0, 1), "stop an exact search at this RMS error; 0: use --slices")
       .others_idle([](const Settings& all) { return unless_estimator(all, {Estimator::gtao}); });
   pixels.number("--samples", &S::samples, "per pixel", between(4, 64), "samples in the hemisphere").idle(unless_crytek);
   pixels.number("bias", &S::bias, "", between(0, 1e18),
@@ -295,7 +295,7 @@ void add_estimator_rows(std::vector<SettingRow>& rows) {
   show("--preset", "NAME|FILE[,...]", "settings from presets; later ones win")
       .implies(FileRole::input, [](const Settings& all) { return all.preset_files; });
   command_line.show({"--project", "", "", "", "settings from alcove.toml beside the input, or in a folder above it"});
-  show("--set", "KEY=VALUE", "any setting; alcove run --help-markdown lists the keys");
+  show("--set", "KEY=VALUE", "any setting: see docs/options.md or man alcove-run");
   add_radius_rows(rows);
   add_search_rows(rows);
   add_filter_rows(rows);

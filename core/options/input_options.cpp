@@ -211,7 +211,7 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
   };
   pixels
       .choice("--depth-kind", &S::depth_kind,
-              "planar: along the axis; ray: to the eye; inverse: 1/planar; disparity: a/planar + b; auto: by facts")
+              "planar: along the axis; ray: to the eye; inverse: 1/planar; disparity: a/planar + b; auto: detected")
       .idle([](const Settings& all) -> std::string {
         const InputSettings& input = all.input;
         if (input.depth_kind == DepthKind::automatic || input.depth_kind == DepthKind::position) return "";

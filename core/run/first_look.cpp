@@ -95,7 +95,7 @@ Notes notes_on_number(const FramePlan& plan) {
   try {
     require_listed(camera, *found.number);
   } catch (const Error& error) {
-    fail(error.kind(), "{}; that it is frame {} say the digits {} of the name {}, and --frames says another",
+    fail(error.kind(), "{}; it is frame {} by the digits {} of the name {}, and --frames chooses another",
          error.what(), *found.number, found.digits, file_name(input));
   }
   return {{NoteCode::frame_number,
@@ -260,7 +260,7 @@ std::vector<std::string> MissingOptions::sentences() const {
 
 void FirstLook::take_radii_of_depth(Notes& notes) {
   const FramePlan& frames = plan();
-  notes_on_number(frames);  // which fails before a camera is taken of which nothing tells
+  notes_on_number(frames);  // fails early if the frame number is ambiguous
   std::optional<Error> error;
   const auto radii = radii_of_first(error, settings_.estimator);
   if (radii.empty() && error) throw *error;

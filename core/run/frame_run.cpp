@@ -528,7 +528,7 @@ class FrameRun {
   /// Pictures show a frame on a scale of its own, which no tile knows.
   void refuse_pictures(const FrameSource& source, WindowLimits limits, const Window& computed) const {
     if (!run_.take_look && settings_.output.preview.empty() && settings_.output.debug.empty()) return;
-    const char* const whose = run_.take_look                     ? "a wedge needs it whole: give a part by --roi"
+    const char* const whose = run_.take_look                     ? "a wedge needs it whole: choose a region with --roi"
                               : settings_.output.preview.empty() ? "--set debug needs it whole: leave it out"
                                                                  : "--preview needs it whole: leave it out";
     if (!source.region && !run_.planes) limits.kept = 0;  // all of it is read into its buffers

@@ -24,7 +24,7 @@
 namespace alcove {
 namespace {
 
-/// A frame of that window without pixels, which has all that they may ask for.
+/// A frame of that window without pixels, with every input that settings may ask for.
 FrameInputs rehearsed_inputs(gpu::Recorder& rehearsal, const FrameMemory& memory, const Window& window) {
   Reading reading = memory.reading;
   reading.data = window;
@@ -163,12 +163,12 @@ std::uint64_t kernel_bytes(const Settings& settings) {
 constexpr std::uint64_t kProgramBytes = 176ull << 20;
 /// Command buffers and queues of a further lane on a GPU.
 constexpr std::uint64_t kGpuLaneBytes = 8ull << 20;
-/// What a GPU's driver may come to take of the host's memory after its device was made, for its compiler above all.
+/// Host memory that a GPU's driver may take after its device was made, above all for its compiler.
 constexpr std::uint64_t kDriverBytes = 96ull << 20;
 
-/// The part of the device's free memory that is planned for. The rest is for what drivers add to each of the some 40
-/// buffers of a frame in flight, and for other programs that start later. Whoever still runs out computes fewer frames
-/// at once, so that this number decides about speed alone.
+/// The part of the device's free memory that is planned for. The rest is for drivers, which add to each of some 40
+/// buffers of a frame in flight, and for other programs. A run that runs out computes fewer frames at once, so this
+/// number decides about speed alone.
 constexpr double kPlannedPart = 0.75;
 
 RunMemory memory_with(const DeviceSettings& settings, std::uint64_t program_bytes, std::uint64_t lane_bytes) {

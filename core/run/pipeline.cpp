@@ -107,7 +107,7 @@ class Pipeline {
 
     if (report.state == FrameState::done)
       report.notes.insert(report.notes.end(), attempt.notes.begin(), attempt.notes.end());
-    // Whoever reads why a frame could not be cut any smaller wants to know why it had to be cut.
+    // The first failure is why the frame was cut: report it, too.
     const bool is_too_large =
         report.error && report.error->kind() == ErrorKind::device && !report.device_lost && !report.out_of_memory;
     if (is_too_large && attempt.out_of_memory)

@@ -20,8 +20,8 @@
 namespace alcove {
 namespace {
 
-/// The least frames to each side of one that tell what moves in it. As many do as are taken, since what rests for a
-/// while is told by those alone that see the place before it comes or after it has left.
+/// The least number of frames on each side that detect motion in a frame. More do if more are used: a thing that rests
+/// for a while is detected only by frames that see the place before it comes or after it has left.
 constexpr int kLeastJudges = 2;
 
 int judges_to_each_side(int count) { return std::max(count, kLeastJudges); }
@@ -251,9 +251,8 @@ std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Re
                                                                  : has_both;
   if (!has_own) return std::nullopt;
   fail(ErrorKind::input,
-       "{}: by no reading of its motion vectors does anything stand still as the cameras of frame {} and those beside "
-       "it "
-       "say: give other --set motion-channels or another --set motion-kind, or leave out --motion",
+       "{}: in no interpretation do the motion vectors match the cameras around frame {}: give other --set "
+       "motion-channels or another --set motion-kind, or leave out --motion",
        planes.path, frame);
 }
 

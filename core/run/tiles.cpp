@@ -63,8 +63,7 @@ int line_reach(const EstimatorSettings& settings) {
   return tells_backs(settings) ? int(settings.resolution) * 4 : 0;
 }
 
-/// How far from a surface it is told which one closes its solid, and whether it is an occluder, in px; 0 where nothing
-/// is to be told.
+/// The reach, in px, of the passes that pair surfaces with their backs and read mattes of occluders; 0 without them.
 int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
   const bool tells = std::ranges::any_of(source.reading.behind,
                                          [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces; });
@@ -72,11 +71,10 @@ int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
   return occluders + (tells && settings.hidden > 0 ? kEndsReach + kEndsBeyond : 0);
 }
 
-/// The width, in radii, from which a run that begins within reach of a receiver is as good as endless: with `auto` more
-/// of it adds nothing to its thickness, and nothing else is told by its other end. It is a little more than 4 radii,
-/// twice the width from which runs level off, since exact.comp rounds. Where surfaces are completed, a run is half as
-/// thick as wide, and it may begin so far beyond the reach as a surface goes on, which is 3 radii in complete.comp.
-/// In a search by samples nothing farther away than kLongestChain tells.
+/// Runs wider than this many radii block as if infinite: with `auto` a wider one is no thicker, and its other end decides
+/// nothing else. It is a little more than 4 radii, twice the width from which runs level off, since exact.comp rounds.
+/// Where surfaces are completed, a run is half as thick as wide, and may begin up to 3 radii beyond the reach: see
+/// complete.comp. In a search by samples, nothing farther away than kLongestChain counts.
 double widest_run(const EstimatorSettings& settings) {
   if (tells_backs(settings)) return kLongestChain + 0.1;
   return completes(settings) ? 3 + 8.4 : 4.2;

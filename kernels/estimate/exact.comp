@@ -672,7 +672,7 @@ BlockedArcs blocked_by_several(Context c) {
   return arcs_of(c, found);
 }
 
-/// Adds what a direction blocks to the sums of the pixel's moments, of which the last one makes the mean.
+/// Adds one direction to the sums of the pixel's moments; the last call divides by the weight.
 void add_moments(int index, int plane, mat3 blocked, float whole) {
   for (int k = 0; k < moments_in(kOrder); k++) {
     const int at = index + k * plane;

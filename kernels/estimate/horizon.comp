@@ -27,8 +27,8 @@
 //     Runs are counted in 24 sectors, as in the mask of Therrien et al., "Screen Space Indirect Lighting with
 //     Visibility Bitmask", 2023; see sectors.glsl. With kInSectors, which is `--estimator bitmask`, so is the own
 //     surface; else its interval is exact.
-//  7. A run that something nearer interrupts goes on behind it, as far as it would not be seen. What the image's border
-//     cuts goes on beyond it in its plane. See pieces.glsl.
+//  7. A run hidden by something nearer continues behind it until it would be visible again. A run cut by the image's
+//     border continues beyond it in its plane. See pieces.glsl.
 //  8. Falloff weighs each arc by the distance of the sample that first blocks it ("incremental arcs"), which is exact
 //     for height fields.
 //  9. The arcs that are blocked are integrated in closed form (line 28): see arc_to().

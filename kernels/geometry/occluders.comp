@@ -5,8 +5,8 @@
 // Out: planar depth of the first surfaces that may block, kSkyDepth instead of the others; the hidden surfaces without
 // those that close the solids of such, which are their backs.
 //
-// A matte is filtered like the beauty, and a depth belongs to one surface: so where objects share a pixel, the surface
-// is that of the neighbour which is one object's alone and lies nearest to its plane, and it to the neighbour's.
+// A matte is filtered like the beauty, and a depth belongs to one surface. So a pixel that several objects share takes
+// the matte of the unmixed neighbour whose plane fits best, in both directions.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/geometry/geometry.h"
