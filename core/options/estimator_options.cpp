@@ -132,7 +132,9 @@ void add_search_rows(std::vector<SettingRow>& rows) {
         const std::string why = search == SliceSearch::steps ? "" : unless_estimator(all, {Estimator::gtao});
         return first_of({why, search == SliceSearch::steps || search == SliceSearch::quick ? if_by_error(all) : ""});
       });
-  pixels.number("--tolerance", &S::tolerance, "", between(0, 1), "stop an exact search at this RMS error; 0: use --slices")
+  pixels
+      .number("--tolerance", &S::tolerance, "", between(0, 1),
+              "stop an exact search at this RMS error; 0: use --slices")
       .others_idle([](const Settings& all) { return unless_estimator(all, {Estimator::gtao}); });
   pixels.number("--samples", &S::samples, "per pixel", between(4, 64), "samples in the hemisphere").idle(unless_crytek);
   pixels.number("bias", &S::bias, "", between(0, 1e18),

@@ -95,8 +95,8 @@ Notes notes_on_number(const FramePlan& plan) {
   try {
     require_listed(camera, *found.number);
   } catch (const Error& error) {
-    fail(error.kind(), "{}; it is frame {} by the digits {} of the name {}, and --frames chooses another",
-         error.what(), *found.number, found.digits, file_name(input));
+    fail(error.kind(), "{}; it is frame {} by the digits {} of the name {}, and --frames chooses another", error.what(),
+         *found.number, found.digits, file_name(input));
   }
   return {{NoteCode::frame_number,
            fmt::format("the camera is that of frame {} in {}, by the digits {} of the name; --frames says another",

@@ -105,7 +105,8 @@ Sites sites(gpu::Recorder& gpu, const GBuffer& gbuffer, const SiteRule& rule, co
        {"Planes", gpu::Optional(sites.planes)},
        {"List", sites.list},
        {"Counts", sites.counts}},
-      {uint(blocks.x), uint(blocks.y)}, {needed ? 1u : 0u, rule.is_adaptive ? 1u : 0u, wide ? 1u : 0u, rule.edges ? 1u : 0u});
+      {uint(blocks.x), uint(blocks.y)},
+      {needed ? 1u : 0u, rule.is_adaptive ? 1u : 0u, wide ? 1u : 0u, rule.edges ? 1u : 0u});
   return sites;
 }
 
