@@ -5,10 +5,10 @@
 // Out: the words of blocks, see blocks.glsl; the planes and the list of sites; depth with a margin.
 //
 // Surfaces on a lattice are sites. Where the density is adaptive, each site stands for the pixels of its block that
-// show its surface (likeness.glsl) no farther away than a part of the radius, in which AO changes. Where sites are dense
-// at edges, the first two of a block that shows several surfaces stand for the pixels beside them only: AO changes
-// fast there. One of the others is the next site, until none is left. A filter by rows, and then by columns, must find a way from the site to the pixel:
-// where the pixel's column meets the site's row there is no sky. An invocation computes a block.
+// show its surface (likeness.glsl) no farther away than a part of the radius, in which AO changes. With kEdges, the
+// first two sites of a block that shows several surfaces stand only for the pixels beside them: AO changes fast there.
+// One of the others is the next site, until none is left. A filter by rows, and then by columns, must find a way from
+// the site to the pixel: where the pixel's column meets the site's row there is no sky. An invocation computes a block.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

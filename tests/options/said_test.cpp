@@ -388,7 +388,7 @@ TEST_F(Said, settings_that_are_shared_are_those_that_are_no_defaults) {
   EXPECT_EQ(shared({}), "");
   EXPECT_EQ(shared({"--preset", "standard"}), "");
   EXPECT_EQ(shared(joined({"--preset", "production"}, preset("gain.toml", {{"gain", "1.2"}}))),
-            "slices=10\ndensity=edges\ngain=1.2\n");
+            "slices=10\ndensity=\"edges\"\ngain=1.2\n");
   for (const auto& name : preset_names()) {
     const std::string text = shared({"--preset", name});
     write_bytes(folder / "shared.toml", text);

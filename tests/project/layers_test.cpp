@@ -239,6 +239,11 @@ TEST(Kernels, tell_nan_and_infinity_by_their_bits) {
 
 // Form.
 
+/// Characters of a line of UTF-8.
+std::size_t columns_of(const std::string& line) {
+  return std::size_t(std::ranges::count_if(line, [](char byte) { return (byte & 0xc0) != 0x80; }));
+}
+
 TEST(Form, files_begin_with_what_they_are_for_and_the_licence) {
   for (const auto& file : all_sources()) {
     ASSERT_GE(file.lines.size(), 2) << file.name;
@@ -247,6 +252,24 @@ TEST(Form, files_begin_with_what_they_are_for_and_the_licence) {
     const auto end = file.lines.begin() + std::min<std::ptrdiff_t>(5, std::ssize(file.lines));
     EXPECT_NE(std::find(file.lines.begin(), end, "// SPDX-License-Identifier: BSD-3-Clause"), end) << file.name;
   }
+}
+
+TEST(Form, lines_have_at_most_120_columns) {
+  const std::regex raw_begin(R"re(\bR"\w*\()re");  // and not a channel's name, as "R"
+  const std::regex raw_end(R"re(\)\w*")re");
+  std::size_t skipped = 0;
+  std::size_t looked_at = 0;
+  for (const auto& file : all_sources()) {
+    bool is_raw = false;  // within a raw string, whose text is a file's or a page's
+    for (std::size_t i = 0; i < file.lines.size(); i++) {
+      const std::string& line = file.lines[i];
+      is_raw = is_raw || (line.find("R\"") != line.npos && std::regex_search(line, raw_begin));
+      if (!is_raw) EXPECT_LE(columns_of(line), 120) << file.name << ":" << i + 1;
+      (is_raw ? skipped : looked_at)++;
+      if (is_raw && std::regex_search(line, raw_end)) is_raw = false;
+    }
+  }
+  EXPECT_LT(100 * skipped, looked_at) << "lines that the test does not look at";
 }
 
 TEST(Form, no_history_and_nothing_unfinished_is_left_in_comments) {
