@@ -6,8 +6,7 @@
 //
 // Surfaces on a lattice are sites. Where the density is adaptive, each site stands for the pixels of its block that
 // show its surface (likeness.glsl) no farther away than a part of the radius, in which AO changes. With kEdges, the
-// first two sites of a block that shows several surfaces stand only for the pixels beside them: AO changes fast there.
-// One of the others is the next site, until none is left. A filter by rows, and then by columns, must find a way from
+// first site of a block that shows several surfaces stands only for the pixels beside it: AO changes fast there. One of the others is the next site, until none is left. A filter by rows, and then by columns, must find a way from
 // the site to the pixel: where the pixel's column meets the site's row there is no sky. An invocation computes a block.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -40,10 +39,9 @@ buffer Counts { SiteCounts counts; };        // zeros before
 /// hardly change from .25 to .7.
 const float kCovered = 0.64;
 
-/// At an edge a site stands for pixels so near, squared: its eight neighbours. More sites than the first two would be
-/// those of hair, which has many already.
+/// At an edge the first site stands for pixels so near, squared: its eight neighbours. The same of other sites brings
+/// little (docs/lab.md).
 const float kBesideSq = 2.0;
-const int kEdgeSites = 2;
 
 /// The order in which pixels become sites: first that of the widest lattice, then others near the middle.
 const int kOrder[kBlockPixels] = int[](5, 10, 6, 9, 0, 15, 3, 12, 1, 14, 2, 13, 4, 11, 7, 8);
@@ -123,7 +121,7 @@ void main() {
         beside |= dot(px, px) <= kBesideSq ? 1u << k : 0u;
       }
       uint covered = alike & near;
-      if (kEdges != 0u && bitCount(sites) < kEdgeSites && (seen & ~alike) != 0u) covered &= beside;
+      if (kEdges != 0u && sites == 0u && (seen & ~alike) != 0u) covered &= beside;
       if (kAdaptive != 0u) planes[number_of_site(grid, number, place)] = pack_plane(site);
       sites |= 1u << place;
       left &= ~(covered & ~lattice | 1u << at);

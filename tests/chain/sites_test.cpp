@@ -37,7 +37,7 @@ Places sites_slowly(const Picture& picture, const Geometry& geometry, const Site
     if (is_there && rule.is_adaptive) left.emplace_back(u, v);
   }
   const auto all = left;
-  for (int count = 0; !left.empty(); count++) {
+  for (bool is_first = true; !left.empty(); is_first = false) {
     const auto site = left.front();
     sites.insert(site);
     const auto is_alike = [&](const auto& pixel) {
@@ -48,7 +48,7 @@ Places sites_slowly(const Picture& picture, const Geometry& geometry, const Site
     const auto is_beside = [&](const auto& pixel) {
       return std::abs(pixel.first - site.first) <= 1 && std::abs(pixel.second - site.second) <= 1;
     };
-    const bool is_dense = rule.edges && count < 2 && !std::ranges::all_of(all, is_alike);
+    const bool is_dense = rule.edges && is_first && !std::ranges::all_of(all, is_alike);
     std::erase_if(left, [&](const auto& pixel) {
       if (pixel == site) return true;
       if (picture.is_on_lattice(pixel.first, pixel.second, rule.spacing)) return false;
