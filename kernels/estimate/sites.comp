@@ -6,8 +6,9 @@
 //
 // Surfaces on a lattice are sites. Where the density is adaptive, each site stands for the pixels of its block that
 // show its surface (likeness.glsl) no farther away than a part of the radius, in which AO changes. With kEdges, the
-// first site of a block that shows several surfaces stands only for the pixels beside it: AO changes fast there. One of the others is the next site, until none is left. A filter by rows, and then by columns, must find a way from
-// the site to the pixel: where the pixel's column meets the site's row there is no sky. An invocation computes a block.
+// first site of a block that shows several surfaces stands only for the pixels beside it: AO changes fast there. One
+// of the others is the next site, until none is left. A filter by rows, and then by columns, must find a way from the
+// site to the pixel: where the pixel's column meets the site's row there is no sky. An invocation computes a block.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
