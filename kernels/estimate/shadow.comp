@@ -95,9 +95,11 @@ Ray ray_of(View view, Receiver r, vec3 position, vec3 direction, float cosine, f
   return ray;
 }
 
-bool is_before(Receiver r, Ray ray, float change, float z) {
-  return (r.perspective ? z * (ray.facing - change) : z * ray.facing - change) <= ray.most;
+/// What is compared with ray.most.
+float ahead(Receiver r, Ray ray, float change, float z) {
+  return r.perspective ? z * (ray.facing - change) : z * ray.facing - change;
 }
+bool is_before(Receiver r, Ray ray, float change, float z) { return ahead(r, ray, change, z) <= ray.most; }
 
 /// By how much depth the ray is behind a surface; kSkyDepth: it does not come there.
 float depth_behind(Receiver r, Ray ray, float change, float z) {
@@ -106,10 +108,11 @@ float depth_behind(Receiver r, Ray ray, float change, float z) {
   return facing > 0.0 ? there - z : kSkyDepth;
 }
 
-/// 5. The most that a solid is deep, in scene units. Of hidden surfaces it may be anything.
-float most_deep() {
+/// 5. Whether the ray is farther behind a surface than any solid is deep. Hidden solids may be of any depth.
+bool is_deep(Receiver r, Ray ray, float change, float z) {
   const bool is_endless = kThickness == kThicknessEndless || kSurfaces > 1;
-  return is_endless ? kSkyDepth : max(params.thickness, kMostBack * params.size);
+  const float most = max(params.thickness, kMostBack * params.size);
+  return is_endless ? false : ahead(r, ray, change, z + most) < ray.most;
 }
 
 /// The last step in a block of a step, and whether nothing up to there can block the ray.
@@ -126,14 +129,12 @@ Stretch stretch_from(Receiver r, Ray ray, int first) {
   const vec2 room = vec2(mix(within, kNearestBlock - 1 - within, forward) - 1) / max(abs(ray.step_px), 1e-3);
   const int last = min(first + max(int(min(room.x, room.y)), 0), ray.steps);
   const vec2 depths = nearest[block.y * ((params.view.size.x + kNearestStep - 1) / kNearestStep) + block.x];
-  const float near = depths.x, far = depths.y + most_deep();
   const float change = dot(ray.change, ray.step_px), rounding = 1e-5 * (ray.facing + abs(change) * float(last));
   const float aside = 0.5 * max(abs(ray.change.x), abs(ray.change.y)) + rounding;
   const float most = max(change * float(first), change * float(last)) + aside;
   const float least = min(change * float(first), change * float(last)) - aside;
-  const float of_near = r.perspective ? near * (ray.facing - most) : near * ray.facing - most;
-  const float of_far = r.perspective ? far * (ray.facing - least) : far * ray.facing - least;
-  return Stretch(last, of_near > 1.00001 * ray.most || both(far < kSkyDepth, of_far < 0.99999 * ray.most));
+  const bool is_behind = ahead(r, ray, most, depths.x) > 1.00001 * ray.most;
+  return Stretch(last, is_behind || is_deep(r, ray, least, depths.y));
 }
 
 /// A surface of the last pixel.
@@ -155,7 +156,6 @@ bool are_one(Receiver r, float z, float last_z) {
 
 /// 4. How thick a run is, in scene units along the eye's ray.
 float thickness_of(Receiver r, Last run, vec3 end, float z, float per_width) {
-  if (kThickness == kThicknessEndless) return kSkyDepth;
   if (kThickness == kThicknessLength) return params.thickness;
   const float pixel = params.view.tangent_per_pixel.x * (r.perspective ? z : 1.0);
   const float width = per_width * (length(end - run.start) + pixel) + kMorePixels * pixel;
@@ -197,7 +197,7 @@ void pass(Receiver r, Ray ray, Reach reach, int k, inout Last last[kSurfaces]) {
 bool passes(Receiver r, Ray ray, int k) {
   const ivec2 pixel = pixel_of_step(r, ray, k);
   const float change = dot(ray.change, vec2(pixel - r.pixel)), z = occluder_depth[index_of(params.view, pixel)];
-  return !is_before(r, ray, change, z) || depth_behind(r, ray, change, z) > most_deep();
+  return !is_before(r, ray, change, z) || is_deep(r, ray, change, z);
 }
 
 /// Takes the surfaces of a step. Gives whether one of them blocks the ray.
@@ -222,19 +222,17 @@ bool take_step(Receiver r, Ray ray, Reach reach, uint outline, int k, inout Last
     // 4.
     const float next = i + 1 < kSurfaces ? surface_at(index, i + 1) : kSkyDepth;
     const float behind = depth_behind(r, ray, change, z);
-    const bool is_deep = behind > most_deep(), begins = is_deep ? true : both(goes_on, from.before) ? false : true;
+    const bool deep = is_deep(r, ray, change, z), begins = both(both(goes_on, from.before), !deep) ? false : true;
     const bool is_told = both(kHasBacks, both(i == 0, next >= kSkyDepth));
     const float mirrored = is_told ? unpack_mirrored(word >> outline) : -1.0;
     const bool is_round = begins ? mirrored >= 0.0 : from.is_round;
-    here[i] = Last(z, before, begins ? place : from.start,
-                   is_deep  ? kSkyDepth
-                   : begins ? behind * ray_length
-                            : lesser(behind * ray_length, from.least),
-                   both(is_round, !is_deep));
+    const float least = begins ? behind * ray_length : lesser(behind * ray_length, from.least);
+    here[i] = Last(z, before, begins ? place : from.start, deep ? kSkyDepth : least, both(is_round, !deep));
     const float told = both(is_round, mirrored >= 0.0) ? mirrored : unpack_depth(word);
     const bool is_within_told = both(is_told, behind <= told * params.view.tangent_per_pixel.x * scale);
     const float per_width = next < kSkyDepth ? kKnownThicknessPerWidth : kThicknessPerWidth;
-    const bool is_within_run = here[i].least <= thickness_of(r, here[i], place, z, per_width);
+    const bool is_within_run =
+        kThickness == kThicknessEndless || here[i].least <= thickness_of(r, here[i], place, z, per_width);
     const bool is_within = next < 0.0 ? behind <= -next - z : is_within_told ? true : is_within_run;
     blocked = both(both(before, surface > 0.0), is_within) ? true : blocked;
     surface = next;
