@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -159,9 +160,10 @@ struct EstimatorSettings {
   std::vector<double> denoise_kernel;
   // part of the depth, 0 to 100: a step of this size weighs 1/e; 0: weighs by planes and normals instead
   double denoise_depth_sigma = 0;
-  double intensity = 1;  // factor on the occlusion, 0 to 100
-  double power = 1;      // exponent of the visibility, above 0 to 100
-  double least = 0;      // the lowest AO after all shaping, 0 to 1; a matte's outside may be lower
+  double intensity = 1;                // factor on the occlusion, 0 to 100
+  double power = 1;                    // exponent of the visibility, above 0 to 100
+  std::optional<double> shadow_reach;  // scene units, > 0: how far what blocks a light is at most; none: anywhere
+  double least = 0;                    // the lowest AO after all shaping, 0 to 1; a matte's outside may be lower
   // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other
   std::optional<double> fade_start, fade_end;
   // roughness of all surfaces for specular occlusion, 0 to 1; perceptual, half way by default, as engines' own default
@@ -173,6 +175,8 @@ struct EstimatorSettings {
   Noise noise = Noise::fixed;
   bool no_skip = false;  // estimate sky and unchanged tiles too; the result is the same
 };
+
+struct LightsFile;  // of core/frame/find/lights.h
 
 /// The look of AO in the beauty: see composite.comp.
 struct CompositeLook {
@@ -202,6 +206,8 @@ struct OutputSettings {
   // AOVs in the file of `output`: names with commas, see core/chain/results/outputs.h
   std::string aovs = "ao";
   std::string environment;  // a lat-long picture of the light for the AOVs relight and relight-open
+  std::string lights;       // a file of suns and lamps, for the AOV shadow, which it asks for
+  std::shared_ptr<const LightsFile> read_lights;  // what it lists; null before FirstLook::prepare()
   // mono: Y; rgb: R, G, B, as compositors expect, and coloured with multi_bounce
   AoChannels ao_channels = AoChannels::mono;
   // space of directions; automatic: world if the camera has world_to_camera, else view

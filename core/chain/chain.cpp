@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/chain/estimate/shadow.h"
 #include "core/chain/filters/filters.h"
 #include "core/chain/geometry/matte.h"
 #include "core/chain/hidden/hidden.h"
@@ -107,9 +108,20 @@ FrameOutputs handed_out(const Seen& seen) {
   return out;
 }
 
-/// The outputs with the coefficients of the reflected light, and that light.
-FrameOutputs with_transfer(gpu::Recorder& gpu, const FrameInputs& frame, const GBuffer& gbuffer,
-                           const Visibility& visibility, const Wanted& wanted, FrameOutputs out) {
+/// How far back the frame's pixels are solid, if its estimate has found that out for each of them.
+const gpu::Buffer* told_of(const Seen& seen) {
+  const gpu::Buffer* told = seen.estimate.told;
+  return told && told->bytes() == plane_bytes(seen.surfaces.wide.view) ? told : nullptr;
+}
+
+/// The outputs with the shadows of lights, the coefficients of the reflected light, and that light.
+FrameOutputs with_light(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen,
+                        const EstimatorSettings& settings, const Wanted& wanted, FrameOutputs out) {
+  const GBuffer& gbuffer = seen.surfaces.frame;
+  const Visibility& visibility = seen.visibility;
+  if (wanted.has(&FrameOutputs::shadow))
+    out.shadow =
+        cut(gpu, frame, &shadow(gpu, seen.surfaces.wide, with_margin(frame), settings, told_of(seen)), "shadow");
   if (wanted.has(&FrameOutputs::transfer))
     out.transfer = &transfer(gpu, gbuffer, visibility, frame.aov_from_view, "transfer");
   if (wanted.has(&FrameOutputs::relight))
@@ -128,7 +140,7 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& se
   const gpu::Buffer& open = bent_normal(gpu, gbuffer, has_open ? seen.visibility.moments : nullptr);
   const Visibility visibility =
       shape(gpu, gbuffer, seen.visibility, shaping_of(settings), frame[RawPlane::material_ao], seen.matte);
-  FrameOutputs out = with_transfer(gpu, frame, gbuffer, seen.visibility, wanted, counts_of(seen));
+  FrameOutputs out = with_light(gpu, frame, seen, settings, wanted, counts_of(seen));
   out = curvature(gpu, gbuffer, seen.visibility, 1 + settings.further_radii.size(), wanted, seen.matte, out);
   out.ao = visibility.ao;
   out.error = seen.error;

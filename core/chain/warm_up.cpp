@@ -18,7 +18,9 @@ void record_small_frame(gpu::Recorder& gpu, EstimatorSettings settings, const Wa
   frame.depth.assign(frame.data.pixels(), 1);
   frame.normal.assign(3 * frame.data.pixels(), 1);
   if (!settings.radius) settings.radius = 1;
-  run_chain(gpu, upload(gpu, frame), settings, wanted);
+  FrameInputs inputs = upload(gpu, frame);
+  inputs.lights = wanted.lights;
+  run_chain(gpu, inputs, settings, wanted);
 }
 
 namespace {

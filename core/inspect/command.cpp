@@ -46,7 +46,7 @@ void add_files(Command& command, const FrameSource& source, const InputSettings&
   if (source.program.is_said()) command.add("--source", settings.source);
   command.add("--depth-channel", settings.depth_channel);
   command.add("--normal-channels", settings.normal_channels);
-  command.add("--position-channels", settings.position_channels);
+  command.add("--set position-channels", settings.position_channels);
 }
 
 /// The beauty goes with the composite that it is for.

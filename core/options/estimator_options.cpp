@@ -90,8 +90,13 @@ std::string unless_fading(const Settings& all) {
   return asks_for_confidence(all) ? "" : first_of({unless_slices(all), if_exact(all)});
 }
 
+/// Settings that any search along slices takes, that of shadows too.
+std::string unless_ranges_anywhere(const Settings& all) { return asks_for_shadows(all) ? "" : unless_ranges(all); }
+
 std::string if_exact_alone(const Settings& all) { return asks_for_confidence(all) ? "" : if_exact(all); }
+std::string if_unsampled(const Settings& all) { return asks_for_shadows(all) ? "" : if_exact_alone(all); }
 std::string if_by_error_alone(const Settings& all) { return asks_for_confidence(all) ? "" : if_by_error(all); }
+std::string if_undenoised(const Settings& all) { return asks_for_shadows(all) ? "" : if_by_error_alone(all); }
 std::string unless_slices_anywhere(const Settings& all) { return asks_for_confidence(all) ? "" : unless_slices(all); }
 
 void add_radius_rows(std::vector<SettingRow>& rows) {
@@ -140,6 +145,10 @@ void add_search_rows(std::vector<SettingRow>& rows) {
   pixels.number("bias", &S::bias, "", between(0, 1e18),
                 "sine of an elevation that blocks nothing, below 1; crytek: scene units of depth");
   pixels
+      .number("shadow-reach", &S::shadow_reach, "scene units", above_to(0, 1e15),
+              "how far what blocks a light of --lights is at most; else anywhere in the frame")
+      .idle([](const Settings& all) { return unless_given(asks_for_shadows(all), "--lights"); });
+  pixels
       .choice("elevation", &S::elevation,
               "of a horizon; view: above the plane across the view ray; surface: above the surface")
       .idle([](const Settings& all) { return unless_estimator(all, {Estimator::hbao}); });
@@ -156,11 +165,13 @@ void add_search_rows(std::vector<SettingRow>& rows) {
           [](const S& s) { return text_of_thickness(s); },
           [](S& s, const std::string& text) { return read_thickness(text, s); },
           "is neither auto nor infinite nor a length above 0")
-      .others_idle(unless_ranges);
+      .others_idle(unless_ranges_anywhere);
   pixels
       .choice("complete", &S::complete,
               "where surfaces go on unseen; border: beyond the picture; all: behind nearer ones too")
-      .idle([](const Settings& all) { return all.estimator.complete == Completion::none ? "" : unless_ranges(all); });
+      .idle([](const Settings& all) {
+        return all.estimator.complete == Completion::none ? "" : unless_ranges_anywhere(all);
+      });
 }
 
 void add_filter_rows(std::vector<SettingRow>& rows) {
@@ -197,12 +208,12 @@ void add_denoise_rows(std::vector<SettingRow>& rows) {
   using S = EstimatorSettings;
   OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
   const auto unless_bilateral = [](const Settings& all) {
-    return first_of({unless_denoised(all, {Denoise::bilateral}), if_by_error_alone(all)});
+    return first_of({unless_denoised(all, {Denoise::bilateral}), if_undenoised(all)});
   };
   pixels
       .choice("--denoise", &S::denoise,
               "smooths each surface; bilateral: by distance, plane and normal; box: evenly, 4 x 4")
-      .idle([](const Settings& all) { return all.estimator.denoise == Denoise::none ? "" : if_by_error_alone(all); });
+      .idle([](const Settings& all) { return all.estimator.denoise == Denoise::none ? "" : if_undenoised(all); });
   pixels
       .own(
           {"denoise-radius", "auto|NUMBER", "pixels of the estimate", "1 to 8",
@@ -231,7 +242,7 @@ void add_denoise_rows(std::vector<SettingRow>& rows) {
       .others_idle([](const Settings& all) {
         return unless_denoised(all, {Denoise::bilateral, Denoise::box});
       })
-      .idle(if_by_error_alone);
+      .idle(if_undenoised);
 }
 
 void add_shape_rows(std::vector<SettingRow>& rows) {
@@ -251,10 +262,10 @@ void add_shape_rows(std::vector<SettingRow>& rows) {
       .idle([](const Settings& all) {
         const bool is_fixed = all.estimator.noise == Noise::fixed;
         return is_fixed ? if_given(all.input.accumulate > 0, "--accumulate", "it animates the noise")
-                        : if_exact_alone(all);
+                        : if_unsampled(all);
       });
   pixels.number("--seed", &S::seed, "", between(0, 4294967295.0), "shifts the pattern of samples")
-      .others_idle(if_exact_alone);
+      .others_idle(if_unsampled);
   OptionGroup(rows, "Estimator", Effect::none, &Settings::estimator, true)
       .flag("--no-skip", &S::no_skip, "estimate sky too, and what is as in the frame before; slower, the same bits");
 }

@@ -171,7 +171,7 @@ void add_channel_rows(std::vector<SettingRow>& rows) {
       .idle(unless_plane_of_depth);
   pixels.text("--normal-channels", &S::normal_channels, "LAYER|X,Y[,Z]", "of the normals; of two, z is rebuilt")
       .idle(if_without_normals);
-  pixels.text("--position-channels", &S::position_channels, "LAYER|X,Y,Z", "of the positions, instead of a depth");
+  pixels.text("position-channels", &S::position_channels, "LAYER|X,Y,Z", "of the positions, instead of a depth");
   pixels.text("beauty-channels", &S::beauty_channels, "LAYER|R,G,B[,A]", "the beauty's layer, or its channels")
       .idle(unless_composite);
   pixels
@@ -215,8 +215,9 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
       .idle([](const Settings& all) -> std::string {
         const InputSettings& input = all.input;
         if (input.depth_kind == DepthKind::automatic || input.depth_kind == DepthKind::position) return "";
-        return first_of({if_given(!input.position.empty(), "--position", "there is no depth to be read then"),
-                         if_given(!input.position_channels.empty(), "--position-channels", "there is no depth then")});
+        return first_of(
+            {if_given(!input.position.empty(), "--position", "there is no depth to be read then"),
+             if_given(!input.position_channels.empty(), "--set position-channels", "there is no depth then")});
       });
   pixels
       .number("--near", within(&S::depth_range, &DepthRange::near), "file units", at_least(0),

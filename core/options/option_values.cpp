@@ -309,6 +309,9 @@ void check_scales(const Settings& settings) {
   for (const char* name : {"relight", "relight-open"})
     if (settings.output.environment.empty() && std::ranges::count(split(settings.output.aovs), name) > 0)
       fail(ErrorKind::usage, "--aov {}: it is the light of a sky, which --environment gives", name);
+  if (settings.output.lights.empty() && wants(settings.output, &FrameOutputs::shadow))
+    fail(ErrorKind::usage, "--aov shadow: it is that of lights, which --lights lists");
+  require_distinct_channels(settings);
   if (e.further_radii.empty()) return;
   const auto radii = radii_of(e);
   if (radii.size() > kMostRadii)
@@ -363,7 +366,7 @@ void check_settings(const Settings& settings) {
   if (settings.output.output.empty()) fail(ErrorKind::usage, "no output: name the AO file with -o FILE.exr");
   if (main_input(settings.input).empty())
     fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
-  if (!settings.estimator.radius && !settings.estimator.radius_auto && needs_ao(settings.output))
+  if (!settings.estimator.radius && !settings.estimator.radius_auto && needs_radius(settings.output))
     fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
   require_effects(settings);
   check_search(settings);

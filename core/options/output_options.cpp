@@ -131,6 +131,11 @@ void add_output_rows(std::vector<SettingRow>& rows) {
       .text("--environment", &S::environment, "SKY.exr|.hdr",
             "lat-long light: OUTPUT holds relight, what white surfaces reflect of it with occlusion")
       .names(FileRole::input);
+  pixels
+      .text("--lights", &S::lights, "FILE.json",
+            "suns and lamps: OUTPUT holds the shadow of each, 1 = lit; see docs/inputs.md")
+      .names(FileRole::input)
+      .is_of_frame = false;
   results.choice("ao-channels", &S::ao_channels, "mono: Y; rgb: R, G, B").others_idle([](const Settings& all) {
     return unless_aov(all, {"ao"});
   });

@@ -53,7 +53,7 @@ DepthKind said_kind(const InputSettings& input) {
 /// The option that says it.
 std::string who_says_kind(const InputSettings& input) {
   if (!input.position.empty()) return "--position";
-  if (!input.position_channels.empty()) return "--position-channels";
+  if (!input.position_channels.empty()) return "--set position-channels";
   return is_by_source(input) ? "--source " + input.source : "--depth-kind";
 }
 
@@ -90,6 +90,8 @@ std::string if_by_error(const Settings& settings) {
 }
 
 bool asks_for_confidence(const Settings& settings) { return asks_for(settings.output, "confidence"); }
+
+bool asks_for_shadows(const Settings& settings) { return !settings.output.lights.empty(); }
 
 std::string unless_denoised(const Settings& settings, std::initializer_list<Denoise> kinds) {
   return unless_one_of(kinds, settings.estimator.denoise, "--denoise");

@@ -113,6 +113,11 @@ class Blocked {
     return fresh;
   }
 
+  bool holds(double angle) const {
+    return std::ranges::any_of(intervals_,
+                               [&](const auto& part) { return part.first <= angle && angle <= part.second; });
+  }
+
  private:
   Integrals integrals(double from, double to) const {
     Integrals sum{arc(to, gamma_) - arc(from, gamma_)};
@@ -213,6 +218,12 @@ class Blocking {
     for (const auto& segment : completed_segments(scene_, receiver_, side_, line, settings_))
       arcs.completed = arcs.completed + by_segment(segment);
     return arcs;
+  }
+
+  /// Whether a direction is blocked.
+  bool blocks(double angle) {
+    arcs();
+    return blocked_.holds(angle);
   }
 
  private:
@@ -377,6 +388,30 @@ class OwnSurface {
   OwnArcs arcs_;
 };
 
+/// The side towards a unit vector across the eye's ray; none where the normal is nearly perpendicular to its slice.
+std::optional<Side> side_along(const Scene& scene, const Receiver& receiver, Vector tangent, double radius) {
+  const Vector v = receiver.eye, across = cross(tangent, v);
+  const double n_t = dot(receiver.normal, tangent), n_v = dot(receiver.normal, v);
+  const double weight = std::hypot(n_t, n_v);
+  if (weight < 1e-9) return std::nullopt;
+  const Vector shift = (dot(receiver.normal, across) / (weight * weight)) * across;
+  // The image of the tangent at the receiver, and the distance along it at which the sphere of the radius ends.
+  const double depth = receiver.depth;
+  const double du = scene.orthographic() ? tangent.x : tangent.x + receiver.position.x / depth * tangent.z;
+  const double dv = scene.orthographic() ? tangent.y : tangent.y + receiver.position.y / depth * tangent.z;
+  const double px = du * scene.fx();
+  const double py = -dv * scene.fy();
+  const double pixels = std::max(std::abs(px), std::abs(py));
+  double reach = radius * pixels;
+  if (!scene.orthographic()) {
+    const double sine = radius / length(receiver.position);
+    const double cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
+    const double forward = v.z * cosine - tangent.z * sine;
+    reach = sine < 1 && forward > 0 ? sine * pixels / forward : INFINITY;
+  }
+  return Side{tangent, tangent + n_t * shift, v + n_v * shift, std::atan2(n_t, n_v), px / pixels, py / pixels, reach};
+}
+
 struct Openness {
   double visibility = 1;
   double completed = 0;                            // the visibility that completed surfaces take
@@ -402,34 +437,13 @@ Openness openness(const Scene& scene, const Receiver& receiver, const ReferenceS
   for (int s = 0; s < settings.slices; s++) {
     const double azimuth = kPi * (s + 0.5) / settings.slices;
     const Vector t = std::cos(azimuth) * basis_x + std::sin(azimuth) * basis_y;
-    const Vector across = cross(t, v);
-    const double n_t = dot(receiver.normal, t);
-    const double n_v = dot(receiver.normal, v);
-    const double n_b = dot(receiver.normal, across);
-    const double weight = std::hypot(n_t, n_v);
-    if (weight < 1e-9) continue;
-    const double gamma = std::atan2(n_t, n_v);
-    whole += weight * (std::cos(gamma) + gamma * std::sin(gamma));
-    const Vector shift = (n_b / (weight * weight)) * across;
     for (const int sign : {-1, 1}) {
       const Vector tangent = double(sign) * t;
-      // The image of the tangent at the receiver, and the distance along it at which the sphere of the radius ends.
-      const double depth = receiver.depth;
-      const double du = scene.orthographic() ? tangent.x : tangent.x + receiver.position.x / depth * tangent.z;
-      const double dv = scene.orthographic() ? tangent.y : tangent.y + receiver.position.y / depth * tangent.z;
-      const double px = du * scene.fx();
-      const double py = -dv * scene.fy();
-      const double pixels = std::max(std::abs(px), std::abs(py));
-      double reach = settings.radius * pixels;
-      if (!scene.orthographic()) {
-        const double sine = settings.radius / length(receiver.position);
-        const double cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
-        const double forward = v.z * cosine - tangent.z * sine;
-        reach = sine < 1 && forward > 0 ? sine * pixels / forward : INFINITY;
-      }
-      const Side side{
-          tangent, tangent + double(sign) * n_t * shift, v + n_v * shift, sign * gamma, px / pixels, py / pixels,
-          reach};
+      const auto found = side_along(scene, receiver, tangent, settings.radius);
+      if (!found) continue;
+      const Side& side = *found;
+      const double weight = std::hypot(dot(receiver.normal, t), dot(receiver.normal, v));
+      whole += weight * 0.5 * (std::cos(side.gamma) + (side.gamma + kPi / 2) * std::sin(side.gamma));
       if (besides == Besides::curvature) {
         const OwnArcs arcs = OwnSurface(scene, receiver, side, settings).arcs();
         own.inside += weight * arcs.inside;
@@ -477,9 +491,9 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings, bool 
 
 namespace {
 
-/// Calls `take` with the index and the openness of every pixel that was asked for and is not sky, from several threads.
-void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, Besides besides,
-                const std::function<void(std::size_t, const Openness&)>& take) {
+/// Calls `take` with the index and the receiver of every pixel that was asked for and is not sky, from several threads.
+void for_receivers(const HostFrame& frame, const ReferenceSettings& settings,
+                   const std::function<void(std::size_t, const Scene&, const Receiver&)>& take) {
   const Scene scene(frame, settings.hidden, settings.separation);
   constexpr std::size_t kChunk = 64;  // pixels that a thread takes at a time
   const std::size_t total = settings.pixels.empty() ? frame.data.pixels() : settings.pixels.size();
@@ -494,7 +508,7 @@ void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, Besid
         if (z == 0) continue;
         const Vector position = scene.position(x, y, z);
         const Vector eye = scene.toward_eye(position);
-        take(index, openness(scene, {x, y, z, position, eye, scene.normal(x, y, eye)}, settings, besides));
+        take(index, scene, {x, y, z, position, eye, scene.normal(x, y, eye)});
       }
   };
   const int count = settings.threads > 0 ? settings.threads : int(std::max(1u, std::thread::hardware_concurrency()));
@@ -504,7 +518,45 @@ void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, Besid
   threads.clear();
 }
 
+/// The same with the openness.
+void for_pixels(const HostFrame& frame, const ReferenceSettings& settings, Besides besides,
+                const std::function<void(std::size_t, const Openness&)>& take) {
+  for_receivers(frame, settings, [&](std::size_t index, const Scene& scene, const Receiver& receiver) {
+    take(index, openness(scene, receiver, settings, besides));
+  });
+}
+
+bool sees(const Scene& scene, const Receiver& receiver, const ReferenceSettings& settings, const ReferenceLight& light,
+          double reach) {
+  const Vector way = light.is_lamp ? light.at - receiver.position : light.at;
+  const Vector direction = normalized(way), v = receiver.eye;
+  if (dot(direction, receiver.normal) <= 0) return false;
+  const double cosine = dot(direction, v), sine = length(direction - cosine * v);
+  if (sine < 1e-4) return true;  // wherever the eye sees, too
+  ReferenceSettings here = settings;
+  here.size = size_of(settings);
+  here.radius = light.is_lamp ? std::min(reach, length(way)) : reach;
+  auto side = side_along(scene, receiver, (1 / sine) * (direction - cosine * v), here.radius);
+  if (!side) return true;
+  const Vector end = receiver.position + here.radius * direction;
+  const auto [x, y] = scene.image_of(end);
+  side->reach = scene.orthographic() || end.z < 0
+                    ? std::max(std::abs(x - receiver.x - 0.5), std::abs(y - receiver.y - 0.5))
+                    : INFINITY;
+  const Blocked::Transfer none;
+  return !Blocking(scene, receiver, *side, here, none).blocks(std::atan2(sine, cosine));
+}
+
 }  // namespace
+
+std::vector<float> reference_shadow(const HostFrame& frame, const ReferenceSettings& settings,
+                                    const ReferenceLight& light, double reach) {
+  std::vector<float> seen(frame.data.pixels(), 1.0f);
+  for_receivers(frame, settings, [&](std::size_t i, const Scene& scene, const Receiver& receiver) {
+    seen[i] = sees(scene, receiver, settings, light, reach) ? 1.0f : 0.0f;
+  });
+  return seen;
+}
 
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings) {
   std::vector<float> ao(frame.data.pixels(), 1.0f);

@@ -11,6 +11,7 @@
 
 #include "core/base/settings.h"
 #include "core/frame/reading.h"
+#include "core/reference/reference_scene.h"
 
 namespace alcove {
 
@@ -26,6 +27,7 @@ enum class ThicknessRule {
 
 struct ReferenceSettings {
   double radius = 0;                // scene units, > 0
+  double size = 0;                  // scene units: the radius by which thickness levels off; 0: the same
   Falloff falloff = Falloff::none;  // as EstimatorSettings
   double falloff_start = 0;         // fraction of the radius
   int slices = 16;                  // per pixel, even in azimuth about the view ray; > 0
@@ -43,6 +45,9 @@ struct ReferenceSettings {
   std::vector<std::size_t> pixels;  // indices of the pixels to compute; empty: all
 };
 
+/// The radius by which thickness levels off.
+inline double size_of(const ReferenceSettings& settings) { return settings.size > 0 ? settings.size : settings.radius; }
+
 /// The settings for the values that the estimators gtao and bitmask aim at with these settings, before intensity and
 /// power. settings.radius must be set. `with_hidden`: for a frame with known surfaces behind the first.
 ReferenceSettings reference_settings_of(const EstimatorSettings& settings, bool with_hidden = false);
@@ -54,6 +59,17 @@ std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings&
 /// Gives the visibility that completed surfaces take from each pixel, in [0, 1]; 0 on sky and at pixels that were not
 /// asked for. Thickness is the same with and without them.
 std::vector<float> reference_completed(const HostFrame& frame, const ReferenceSettings& settings);
+
+/// A light without size, in view space.
+struct ReferenceLight {
+  bool is_lamp = false;  // at a place; else a sun
+  Vector at;             // scene units: that place; or a direction to the sun, 1 long
+};
+
+/// Gives 1 for each pixel that sees a light, and on sky and at pixels that were not asked for; else 0. Nothing blocks
+/// farther away than `reach` (scene units); the settings' radius says how thick things may be.
+std::vector<float> reference_shadow(const HostFrame& frame, const ReferenceSettings& settings,
+                                    const ReferenceLight& light, double reach);
 
 /// Gives (1 / pi) times the integral of the visibility, the cosine to the normal and the real spherical harmonics of
 /// l <= 2 in view space as planes of (l, m) = (0, 0), (1, -1), (1, 0) ... (2, 2): constants are positive, and (1, 1)

@@ -189,7 +189,7 @@ class Completer {
     const double farthest = std::min(side_.reach, double(steps_ + std::max(scene_.width(), scene_.height())));
     for (int step = steps_ - 1; step <= farthest + 1; step++) {
       std::optional<Vector> here = step == 0 ? std::nullopt : beyond_border(step);
-      if (here && dot(receiver_.normal, *here) < kLeastRisen * settings_.radius) here.reset();
+      if (here && dot(receiver_.normal, *here) < kLeastRisen * size_of(settings_)) here.reset();
       const double pixel = here ? (scene_.orthographic() ? 1 : -(receiver_.position + *here).z) / scene_.fx() : 0;
       const bool joins = here && last && std::abs(here->z - last->z) < kRunSlope * pixel;
       if (!joins) start = here;
@@ -201,7 +201,7 @@ class Completer {
   double thickness_beyond(double width) const {
     if (settings_.thickness == ThicknessRule::infinite) return INFINITY;
     if (settings_.thickness == ThicknessRule::constant) return settings_.thickness_length;
-    return std::min(width, kThicknessOfCut * settings_.radius);
+    return std::min(width, kThicknessOfCut * size_of(settings_));
   }
 
   /// Adds the segment of a course up to `step` steps from the receiver.

@@ -81,7 +81,7 @@ bool ReferenceSolids::are_parallel(const ReferenceSample& a, const ReferenceSamp
   const double pixel = pixels_at(std::min(a.depth, b.depth));
   if (std::abs(a.depth - b.depth) < kParallelSlope * pixel || dot(a.normal, b.normal) < kPlaneDot) return false;
   const Vector step = b.position - a.position;
-  const double least = std::max(kParallelOff * pixel, kParallelApart * settings_.radius);
+  const double least = std::max(kParallelOff * pixel, kParallelApart * size_of(settings_));
   return std::min(std::abs(dot(a.normal, step)), std::abs(dot(b.normal, step))) >= least;
 }
 
@@ -119,7 +119,7 @@ double ReferenceSolids::widest(const ReferenceLine& line, int first) const {
   const int second = line[first].farther;
   const int third = second < 0 ? -1 : line[second].farther;
   const bool flat = third >= 0 && is_flat(line, first, second, third);
-  return (flat ? kWidestFlat : kWidest) * settings_.radius;
+  return (flat ? kWidestFlat : kWidest) * size_of(settings_);
 }
 
 double ReferenceSolids::by_width(const ReferenceLine& line, const std::vector<int>& run, bool may_be_flat) const {
@@ -129,14 +129,14 @@ double ReferenceSolids::by_width(const ReferenceLine& line, const std::vector<in
   const double pixel = pixels_at(first.depth);
   const double chord = length(line[run.back()].position - first.position) + pixel;
   // A long run levels off: a wall is not as thick as it is long.
-  const double most = may_be_flat ? widest(line, run.front()) : kWidest * settings_.radius;
+  const double most = may_be_flat ? widest(line, run.front()) : kWidest * size_of(settings_);
   const double part = std::min((settings_.width_share * chord + settings_.width_pixels * pixel) / most, 1.0);
   const double thickness = most * part * (1 - part * part / 3);
   const bool cut = line.at_border && line.step_of(run.back()) + 1 == line.steps();
   if (!cut || settings_.complete == Completion::none) return thickness;
   const std::size_t n = run.size();
   const bool flat = may_be_flat && n > 2 && is_flat(line, run[n - 1], run[n - 2], run[n - 3]);
-  return std::max(thickness, (flat ? kThicknessOfFlatCut : kThicknessOfCut) * settings_.radius);
+  return std::max(thickness, (flat ? kThicknessOfFlatCut : kThicknessOfCut) * size_of(settings_));
 }
 
 /// Whether what lies before a run's first sample towards the receiver is deeper, or sky.
@@ -167,12 +167,12 @@ double ReferenceSolids::reaches_back(const ReferenceLine& line, int i, const std
     const double behind = -dot(normal, line[end].position - here.position);
     farthest = std::max(farthest, std::min(distance_from_eye(line[end]) - distance_from_eye(here), behind));
   }
-  return std::min(farthest, kFarthestBack * settings_.radius);
+  return std::min(farthest, kFarthestBack * size_of(settings_));
 }
 
 bool ReferenceSolids::is_long(const ReferenceLine& line, int first, int last) const {
   const double chord = length(line[last].position - line[first].position);
-  return settings_.width_share * chord > kWidestFlat * settings_.radius;
+  return settings_.width_share * chord > kWidestFlat * size_of(settings_);
 }
 
 void ReferenceSolids::thicken(ReferenceLine& line, const std::vector<int>& run) const {
@@ -180,7 +180,7 @@ void ReferenceSolids::thicken(ReferenceLine& line, const std::vector<int>& run) 
   for (const int i : run) line[i].thickness = width;
   const bool mirrored = mirrors(line, run), reaches = !is_long(line, run.front(), run.back());
   const double pixel = pixels_at(line[run[0]].depth), outline = distance_from_eye(line[run[0]]);
-  const double most = kFarthestBack * settings_.radius;
+  const double most = kFarthestBack * size_of(settings_);
   for (const int i : run)
     line[i].thickness = mirrored ? std::max(std::min(2 * (outline - distance_from_eye(line[i])), most), pixel)
                         : reaches && has_normals(line, i, i) ? std::max(width, reaches_back(line, i, run))

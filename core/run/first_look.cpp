@@ -211,7 +211,7 @@ MissingOptions FirstLook::missing_options() {
   const bool has_option = names_a_camera(settings_.input);
   missing.input = main_input(settings_.input).empty();
   missing.output = settings_.output.output.empty();
-  missing.radius = !settings_.estimator.radius && !settings_.estimator.radius_auto && needs_ao(settings_.output);
+  missing.radius = !settings_.estimator.radius && !settings_.estimator.radius_auto && needs_radius(settings_.output);
   missing.camera = missing.input && !has_option;
   if (missing.input || !(missing.radius || missing.output || !has_option)) return missing;
   try {
@@ -278,8 +278,18 @@ void FirstLook::take_radii_of_depth(Notes& notes) {
                    frames.is_sequence() ? " for all frames" : "")});
 }
 
+void FirstLook::take_lights() {
+  refuse_overwriting(plan());  // which says more than that an output is no lights file
+  const auto lights = read_lights(settings_.output.lights);
+  lights->require_frames(plan().frames());
+  settings_.output.read_lights = lights;
+  plan_->set_lights(lights);
+  require_distinct_channels(settings_);
+}
+
 Notes FirstLook::prepare() {
   check_settings(settings_);
+  if (!settings_.output.lights.empty()) take_lights();
   Notes notes;
   if (depends_on_depth(settings_.estimator)) take_radii_of_depth(notes);
   add_new(notes, notes_on_names(plan()));
@@ -404,6 +414,7 @@ std::string plan_text(FirstLook& look, bool is_wedge) {
   set_exr_threads(threads_of(first.device));
   set_exr_memory(memory_of_host(first).host_bytes / kCodecPart);
   FrameSource source = look.open(first, plan.frames().front());
+  if (first.output.read_lights) first.output.read_lights->in_view(source.reading.camera, plan.frames().front());
   // Frames of a sequence are read as one of them that shows enough.
   if (!plan.is_sequence() && !source.evidence) settle_by_rows(source, first.input, memory_of_host(first).host_bytes);
   std::vector<std::string> channels;

@@ -42,7 +42,7 @@ class FirstLook {
   /// make no sense.
   MissingOptions missing_options();
 
-  /// Checks the settings, and finds radii by a frame's depth (--radius auto, 5%), the same for every chunk. Gives the
+  /// Checks the settings, reads the lights of all frames, and finds radii by a frame's depth (--radius auto, 5%), the same for every chunk. Gives the
   /// notes on all frames. Fails on contradicting settings, as notes_on_number() does, and with ErrorKind::input if no
   /// examined frame shows a surface for the radius, or if a warning counts as an error.
   Notes prepare();
@@ -64,9 +64,10 @@ class FirstLook {
   std::vector<double> radii_of(int frame, const EstimatorSettings& estimator);
   std::vector<double> radii_of_first(std::optional<Error>& error, const EstimatorSettings& estimator);
   std::optional<double> proposed_radius(std::optional<Error>& error);
+  void take_lights();
   void take_radii_of_depth(Notes& notes);
 
-  const Settings settings_;
+  Settings settings_;
   std::optional<FramePlan> plan_;
   bool lacks_camera_ = false;    // frames are opened with a stand-in
   bool lacks_matrix_ = false;    // normals need a world_to_camera by the pixels, and there is none

@@ -316,7 +316,7 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
   ExrOutput output =
       output_like(source, source.channels[RawPlane::depth][0], written_picture(source), settings, provenance);
   output.compression = settings.compression;
-  if (needs_ao(settings)) output.own_attributes["alcove/radius"] = radius_text(estimator);
+  if (needs_radius(settings)) output.own_attributes["alcove/radius"] = radius_text(estimator);
   for (const auto& aov : aovs_of(settings)) {
     const SampleType type =
         settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;

@@ -291,6 +291,7 @@ class FrameRun {
       take_over_notes(source, *run_.settled);
     report_.read_ms += reading.ms();
     refuse_by_notes(source);
+    if (const auto& lights = settings_.output.read_lights) lights_ = lights->in_view(source.reading.camera, frame_);
     return source;
   }
 
@@ -338,7 +339,7 @@ class FrameRun {
   bool needs_others() const {
     const auto& wanted = settings_.output;
     return !run_.takes_means || shows(wanted, DebugSource::hidden) || wants(wanted, &FrameOutputs::hidden) ||
-           wants(wanted, &FrameOutputs::confidence);
+           wants(wanted, &FrameOutputs::confidence) || wants(wanted, &FrameOutputs::shadow);
   }
 
   /// Finds the surfaces and estimates of others, once for all parts of the frame.
@@ -376,6 +377,7 @@ class FrameRun {
     const Stopwatch reading;
     FrameInputs inputs = load_frame(gpu_, source, window, settings_, frame_, &read_);
     inputs.others = others_.seen;
+    inputs.lights = lights_;
     inputs.estimates = in_slots_;
     inputs.estimates.corner = {window.x - source.reading.data.x, window.y - source.reading.data.y};
     tally_.add_inputs(source, window, inputs, written_of(source));
@@ -570,6 +572,7 @@ class FrameRun {
   EstimateSet in_slots_;  // these for all parts of the frame
   FrameReport& report_;
   FrameTally tally_;
+  std::vector<Light> lights_;  // in view space
 };
 
 }  // namespace

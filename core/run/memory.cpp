@@ -36,6 +36,7 @@ FrameInputs rehearsed_inputs(gpu::Recorder& rehearsal, const FrameMemory& memory
       planes[row.plane] = &rehearsal.buffer(row.name, sizeof(float) * count * window.pixels(), gpu::Use::upload);
   FrameInputs inputs = inputs_of(reading, planes, 0);
   inputs.is_sky = false;
+  inputs.lights = memory.wanted.lights;
   inputs.margin = margin_of(window, memory.file_data);
   const auto blocks = [](int side) { return std::size_t(side / kChangeBlock + 2); };
   inputs.changes =

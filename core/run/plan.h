@@ -76,6 +76,8 @@ class FramePlan {
   bool has_contact_sheet() const { return has_contact_sheet_; }
   /// Gives all frames these radii, in scene units, instead of --radius auto or a percentage.
   void set_radii(const std::vector<double>& radii);
+  /// Gives all frames the lights that their file lists.
+  void set_lights(std::shared_ptr<const LightsFile> lights) { settings_.output.read_lights = std::move(lights); }
 
  private:
   struct Span {

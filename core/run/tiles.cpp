@@ -36,6 +36,8 @@ constexpr int kGrid = 4;
 constexpr double kWidestAngle = 1.57;
 /// More pixels than any frame has.
 constexpr double kEverywhere = 1e9, kFarther = 1e6;
+/// Scene units: farther than any surface.
+constexpr double kEndlessReach = 1e30;
 
 Window grown(const Window& window, int margin_x, int margin_y, const Window& within) {
   const auto down = [](int x, int origin) { return origin + (x - origin) / kGrid * kGrid; };
@@ -49,9 +51,13 @@ Window grown(const Window& window, int margin_x, int margin_y, const Window& wit
 /// How far pixels count for what filters make of another one, in px: by their estimates, and by whether they have one.
 int reach_of_filters(const EstimatorSettings& settings) { return filter_reach_of(settings) + site_reach_of(settings); }
 
+/// The most pixels that the denoiser of soft shadows reaches.
+constexpr int kDenoiseMost = 8;
+
 /// The same for all that a frame's outputs are made from.
 int filter_reach(const Settings& settings) {
-  const int own = reach_of_filters(settings.estimator);
+  const int of_soft = settings.output.lights.empty() ? 0 : kDenoiseMost;
+  const int own = std::max(reach_of_filters(settings.estimator), of_soft);
   if (!wants(settings.output, &FrameOutputs::confidence)) return own;
   return std::max(own, reach_of_filters(bracket_of(settings.estimator)));
 }
@@ -69,6 +75,13 @@ int pair_reach(const FrameSource& source, const EstimatorSettings& settings) {
                                          [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces; });
   const int occluders = source.channels[RawPlane::occluders].empty() ? 0 : kOccludersReach;
   return occluders + (tells && settings.hidden > 0 ? kEndsReach + kEndsBeyond : 0);
+}
+
+/// How far surfaces block, in scene units: within the radius, or a light.
+double reach_of_occluders(const Settings& settings) {
+  const double radius = settings.estimator.radius ? radii_of(settings.estimator).back() : 0;
+  if (settings.output.lights.empty()) return radius;
+  return std::max(radius, settings.estimator.shadow_reach.value_or(kEndlessReach));
 }
 
 /// Runs wider than this many radii block as if infinite: with `auto` a wider one is no thicker, and its other end decides
@@ -123,8 +136,9 @@ Surroundings::Surroundings(const FrameSource& source, const Settings& settings, 
       view_(view_of(source.reading, source.reading.data)),
       orthographic_(source.reading.camera.orthographic),
       radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
+      occluders_(reach_of_occluders(settings)),
       filters_(filter_reach(settings) + reduce_reach(settings.output.filter, source.reading.supersampling)),
-      lines_(line_reach(settings.estimator)),
+      lines_(std::max(line_reach(settings.estimator), settings.output.lights.empty() ? 0 : line_reach(bracket_of({})))),
       pairs_(pair_reach(source, settings.estimator)),
       widest_run_(widest_run(settings.estimator)) {}
 
@@ -164,7 +178,7 @@ const std::vector<Surroundings::Block>& Surroundings::blocks_of(int block_row) {
   for (int column = 0; column < columns_; column++) {
     const Window window = window_of(block_row, column);
     const double depth = nearest[std::size_t(column)];
-    blocks.push_back({reach(radius_, depth, window), reach(widest_run_ * radius_, depth, window)});
+    blocks.push_back({reach(occluders_, depth, window), reach(widest_run_ * radius_, depth, window)});
   }
   return blocks;
 }
@@ -424,7 +438,8 @@ TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowL
                   const FrameSource& source) {
   if (auto cut = Cutter(surroundings, limits).cut(whole); !cut.rows.empty()) return std::move(cut.rows);
   const std::string what = fmt::format(
-      "{}: within --radius a tile of the frame depends on too many pixels to compute at once: use a smaller --radius",
+      "{}: within --radius or --set shadow-reach a tile of the frame depends on too many pixels to compute at once: "
+      "use smaller ones",
       source.depth_path());
   const MemoryNeeds needs = memory_needs(source, surroundings, limits);
   if (needs.least > limits.room.bytes) limits.refuse(what, needs);

@@ -41,7 +41,7 @@ class Surroundings {
   };
   /// The reaches of a block, from its depths.
   struct Block {
-    Reach occluders;  // within the radius
+    Reach occluders;  // within the radius, or that of shadows
     Reach runs;       // within the widest run of an exact search
   };
 
@@ -63,6 +63,7 @@ class Surroundings {
   View view_;
   bool orthographic_;
   double radius_;      // scene units
+  double occluders_;   // scene units: how far surfaces block
   int filters_;        // px that filters reach
   int lines_;          // px that the lines of an exact search need beyond the radius
   int pairs_;          // px beyond all these for the passes that pair surfaces

@@ -81,6 +81,7 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<WedgeLook>& lo
 /// The settings of a look that is computed for a page, which also takes its depth.
 Settings with_planes_of_page(Settings settings) {
   settings.output.aovs = "ao,depth";
+  settings.output.lights.clear();
   return settings;
 }
 

@@ -97,6 +97,29 @@ struct HorizonParams {
   vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
 };
 
+// px between the blocks of which `nearest` tells the depth, and a side of them: they overlap, so that any line of half
+// that length lies in one
+ALCOVE_CONSTANT int kNearestStep = 16, kNearestBlock = 2 * kNearestStep;
+
+struct NearestParams {
+  ivec2 size;  // px, of the image
+};
+
+struct ShadowParams {
+  View view;
+  vec3 light;            // unit vector to a sun, or scene units: the place of a lamp; in view space
+  uint is_lamp;          // 0 or 1
+  float spread;          // of a sun the tangent of half its angle; of a lamp its radius in scene units
+  float reach;           // scene units from the receiver up to which anything blocks; 0: anywhere
+  float size;            // scene units: the radius by which thickness levels off
+  float bias;            // sine of the elevation above the tangent plane below which nothing blocks
+  float thickness;       // scene units, infinite allowed; 0: as deep as wide
+  uint plane;            // of the output, which has one plane per light
+  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
+  vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
+  vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
+};
+
 struct HbaoParams {
   View view;
   float radius;         // scene units

@@ -121,27 +121,13 @@ Receiver receiver_at(View view, ivec2 pixel, float z, vec3 normal, float radius,
   return r;
 }
 
-/// The slice of an azimuth, in the terms of the paper that horizon.comp names: `t` is its direction orthogonal to V
+/// The slice through a unit vector orthogonal to V, in the terms of the paper that horizon.comp names: `t` is that
 /// (line 9), `weight`, cos_gamma and sin_gamma are the length and the direction of its projected normal (lines 11 to
-/// 15). Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant: up to tan of its
-/// tilt times as much as those across. A lone slice is drawn that much more often there, by pulling its azimuth towards
-/// the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be biased. The more
-/// slices per pixel has, the less this matters, and the less they are pulled.
-Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
-  const float azimuth = kPi * (float(index) + jitter) / float(slices);
-  vec3 x, y;
-  basis_of(r.eye, x, y);
-  const float cos_tilt = dot(r.normal, r.eye);
-  const float sin_tilt = sqrt(max(0.0, 1.0 - cos_tilt * cos_tilt));
-  const vec2 on_image = direction_of(azimuth);
-  const vec3 even = on_image.x * x + on_image.y * y;
-  const vec3 across = (r.normal - cos_tilt * r.eye) / max(sin_tilt, kLeastTilt);
-  const float pull =
-      mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices * slices));
+/// 15).
+Slice slice_along(View view, Receiver r, vec3 t, float share) {
   Slice s;
-  s.t = normalize(pull * even + (1.0 - pull) * dot(even, across) * across);
-  const float along = dot(s.t, across);
-  s.share = (1.0 - (1.0 - pull * pull) * along * along) / pull;
+  s.t = t;
+  s.share = share;
   const float n_t = dot(r.normal, s.t), n_v = dot(r.normal, r.eye);
   s.weight = sqrt(n_t * n_t + n_v * n_v);
   s.cos_gamma = n_v / s.weight;
@@ -154,6 +140,26 @@ Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
   s.toward = r.eye.xy * view.tangent_per_pixel + n_v * beside;
   s.image_t = (r.perspective ? s.t.xy + r.tangent * s.t.z : s.t.xy) / view.tangent_per_pixel;
   return s;
+}
+
+/// The slice of an azimuth. Slices near the normal hold most of the cosine-weighted hemisphere where it is seen aslant:
+/// up to tan of its tilt times as much as those across. A lone slice is drawn that much more often there, by pulling
+/// its azimuth towards the normal as an ellipse does, and weighs the less: the ratio of blocked to whole would else be
+/// biased. The more slices per pixel has, the less this matters, and the less they are pulled.
+Slice slice_at(View view, Receiver r, uint index, uint slices, float jitter) {
+  const float azimuth = kPi * (float(index) + jitter) / float(slices);
+  vec3 x, y;
+  basis_of(r.eye, x, y);
+  const float cos_tilt = dot(r.normal, r.eye);
+  const float sin_tilt = sqrt(max(0.0, 1.0 - cos_tilt * cos_tilt));
+  const vec2 on_image = direction_of(azimuth);
+  const vec3 even = on_image.x * x + on_image.y * y;
+  const vec3 across = (r.normal - cos_tilt * r.eye) / max(sin_tilt, kLeastTilt);
+  const float pull =
+      mix(1.0, sqrt(cos_tilt / (cos_tilt + angle_of(cos_tilt, sin_tilt) * sin_tilt)), 1.0 / float(slices * slices));
+  const vec3 t = normalize(pull * even + (1.0 - pull) * dot(even, across) * across);
+  const float along = dot(t, across);
+  return slice_along(view, r, t, (1.0 - (1.0 - pull * pull) * along * along) / pull);
 }
 
 /// More steps than any image has.

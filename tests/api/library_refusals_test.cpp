@@ -212,7 +212,7 @@ TEST_F(Library, takes_or_refuses_every_option_of_the_table) {
       "albedo-channels matte-channel matte-object layer view supersampling roi source strict allow camera "
       "chan-rotation behind behind-channel deep deep-opacity other-views around motion motion-channels "
       "motion-kind frames output-offset chunk missing keep-going warnings-as-errors resume overwrite dry-run "
-      "output environment ao-name filter filter-width composite fog-density gain tint mix composite-layers "
+      "output environment lights ao-name filter filter-width composite fog-density gain tint mix composite-layers "
       "composite-compression append-ao preview debug type compression no-mkdir ocio display view-transform "
       "preview-style memory threads preset project stats progress log-json verbose quiet print-config shareable set");
   std::set<std::string> refused;

@@ -134,7 +134,7 @@ TEST_F(Aovs, unknown_ones_are_answered_with_all_there_are) {
     expect_run_refused(2,
                        {"--aov",
                         "ao, ao-scales, normal, bent-normal, transfer, relight, relight-open, depth, hidden, "
-                        "confidence, error, specular-occlusion, convexity, cavity, curvature"},
+                        "confidence, shadow, error, specular-occlusion, convexity, cavity, curvature"},
                        {"--aov", list});
   expect_run_refused(2, {"did you mean normal?"}, {"--aov", "nromal"});
 }

@@ -150,7 +150,7 @@ TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
   input.write(frame);
   expect_run_refused(
       3, {"wall.0042.exr", "--set debug=raw-depth", "--depth-channel"},
-      {"--set", "debug=raw-depth", "--position-channels", "ViewLayer.Position", "--depth-kind", "position"});
+      {"--set", "debug=raw-depth", "--set", "position-channels=ViewLayer.Position", "--depth-kind", "position"});
   fs::create_directory(folder / "ao.edges.png");
   expect_run_refused(4, {"ao.edges.png", "--set debug"}, {"--set", "debug=edges"});
 }

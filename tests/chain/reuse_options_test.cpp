@@ -26,7 +26,7 @@ const std::string kOfOthers = "it chooses what others show, which are told by th
 const std::map<std::string, Change> kChanges{
     {"depth", {"", "--depth F", "--depth S"}},
     {"normal", {"", "--normal F", "--normal S"}},
-    {"position", {"--position-channels u.p0,u.p1,u.p2", "--position F", "--position S"}},
+    {"position", {"--set position-channels=u.p0,u.p1,u.p2", "--position F", "--position S"}},
     {"beauty", {"--composite c.exr", "--beauty F", "--beauty S"}},
     {"material-ao", {"--set material-ao-channel=u.q1", "--set material-ao=F", "--set material-ao=S"}},
     {"matte", {"--set matte-channel=u.q1", "--matte F", "--matte S"}},
@@ -37,7 +37,7 @@ const std::map<std::string, Change> kChanges{
     {"albedo", {"--composite c.exr --set multi-bounce=true", "--set albedo=0.2", "--set albedo=0.8"}},
     {"depth-channel", {"", "--depth-channel ViewLayer.Depth.Z", "--depth-channel u.q3"}},
     {"normal-channels", {"", "--normal-channels ViewLayer.Normal", "--normal-channels u.n0,u.n1,u.n2"}},
-    {"position-channels", {"", "--position-channels u.p0,u.p1,u.p2", "--position-channels u.r0,u.r1,u.r2"}},
+    {"position-channels", {"", "--set position-channels=u.p0,u.p1,u.p2", "--set position-channels=u.r0,u.r1,u.r2"}},
     {"beauty-channels",
      {"--composite c.exr", "--set beauty-channels=ViewLayer.Combined", "--set beauty-channels=ViewLayer.DiffInd"}},
     {"ambient", {"--composite c.exr", "--set ambient=DiffInd", "--set ambient=DiffInd*0.5"}},
@@ -75,7 +75,7 @@ const std::map<std::string, Change> kChanges{
     {"normal-encoding", {"--normal-channels u.n0,u.n1,u.n2", "--normal-encoding signed", "--normal-encoding unorm"}},
     {"flip-normal", {"--normal-channels u.n0,u.n1,u.n2", "", "--flip-normal x"}},
     {"position-space",
-     {"--camera G --position-channels u.p0,u.p1,u.p2", "--set position-space=view", "--set position-space=world"}},
+     {"--camera G --set position-channels=u.p0,u.p1,u.p2", "--set position-space=view", "--set position-space=world"}},
     {"camera", {"", "--camera C", "--camera D"}},
     {"chan-rotation", {"--camera K --aov ao,normal", "--chan-rotation zxy", "--chan-rotation xyz"}},
     {"fov", {"", "--fov 50", "--fov 60"}},
@@ -97,6 +97,7 @@ const std::map<std::string, Change> kChanges{
     {"hidden", {"", "", "", kOfRun}},
     {"separation", {"", "", "", kOfRun}},
     {"environment", {"", "--environment L", "--environment T"}},
+    {"lights", {"", "--lights H", "--lights I"}},
     {"aov-space", {"--aov ao,normal", "--set aov-space=world", "--set aov-space=view"}}};
 
 /// Whether an option says what the pixels of an input are, or what they mean.
@@ -123,11 +124,16 @@ class ReuseOfOptions : public CommandLine {
     json turned = wall_camera();
     turned["world_to_camera"] = {{0.9999875, 0, 0.005, 0}, {0, 1, 0, 0}, {-0.005, 0, 0.9999875, 0}, {0, 0, 0, 1}};
     write_bytes(file("G"), turned.dump());
+    for (const auto& [name, z] : {std::pair("H", 1), {"I", -1}})
+      write_bytes(
+          file(name),
+          fmt::format(R"({{"lights": [{{"name": "key", "kind": "sun", "direction": [0, 0, {}], "space": "view"}}]}})",
+                      z));
     write_bytes(file("K"), "1 0.5 2 3 10 20 30 40\n");
   }
 
   std::string file(const std::string& name) const {
-    const bool is_text = name == "C" || name == "D" || name == "G";
+    const bool is_text = std::string("CDGHI").find(name) != name.npos;
     return folder / (name + (is_text ? ".json" : name == "K" ? ".chan" : ".exr"));
   }
 
@@ -195,18 +201,20 @@ class ReuseOfOptions : public CommandLine {
     for (std::string word; all >> word;) {
       const std::size_t at = word.find('=') + 1;  // 0 where there is none
       const std::string name = word.substr(at);
-      words.push_back(name.size() == 1 && std::string("FSMNBELTCDGK").find(name) != name.npos
+      words.push_back(name.size() == 1 && std::string("FSMNBELTCDGKHI").find(name) != name.npos
                           ? word.substr(0, at) + file(name)
                           : word);
     }
     const auto says = [&](const char* option) { return more.find(option) != more.npos; };
     if (!says("--camera") && !says("fov") && !says("--focal") && !says("--ortho-width"))
       words.insert(words.end(), {"--camera", file("C")});
-    if (!says("--depth-channel") && !says("--position") && !says("--layer"))
+    if (!says("--depth-channel") && !says("position") && !says("--layer"))
       words.insert(words.end(), {"--depth-channel", "ViewLayer.Depth.Z"});
     if (!says("-normal") && !says("--environment")) words.insert(words.end(), {"--normal", "none"});
     RunOptions options;
     parse_run_options(words, options);
+    OutputSettings& output = options.settings.output;
+    if (!output.lights.empty()) output.read_lights = read_lights(output.lights);
     return options.settings;
   }
 
@@ -222,6 +230,7 @@ class ReuseOfOptions : public CommandLine {
     ReadPlanes planes;
     read_for_parts(source, settings, planes, std::uint64_t(1) << 40);
     FrameInputs inputs = load_frame(lane.gpu, source, window, settings, 1, &planes);
+    if (const auto& lights = settings.output.read_lights) inputs.lights = lights->in_view(source.reading.camera, 1);
     const bool is_same = reuses && lane.last.is_same(lane.gpu, inputs, settings.estimator);
     const FrameOutputs outputs =
         is_same ? lane.last.outputs() : run_chain(lane.gpu, inputs, settings.estimator, settings.output);

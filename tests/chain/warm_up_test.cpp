@@ -27,6 +27,21 @@ TEST(WarmUp, makes_every_kernel_that_a_frame_runs_and_each_once) {
   }
 }
 
+TEST(WarmUp, makes_what_shadows_of_lights_need) {
+  OutputSettings output;
+  output.lights = "lights.json";
+  output.read_lights = lights_of(R"({"lights": [
+    {"name": "hard", "kind": "sun", "direction": [1, 0, 0]},
+    {"name": "soft", "kind": "point", "position": [1, 0, 0], "radius": 1}]})",
+                                 output.lights);
+  const auto made = [](const OutputSettings& wanted) {
+    const WarmUp warm_up(device(), preset("standard", 0.5), wanted, 0);
+    return std::ranges::count(warm_up.names(), "shadow", &gpu::KernelName::first);
+  };
+  EXPECT_EQ(made(output), 2);
+  EXPECT_EQ(made({}), 0);
+}
+
 TEST(WarmUp, begins_with_what_has_the_most_code) {
   const WarmUp warm_up(device(), preset("standard", 0.5), {}, 0);
   ASSERT_FALSE(warm_up.names().empty());

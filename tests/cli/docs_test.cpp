@@ -68,6 +68,8 @@ class Documents : public Sources {
     sky.data = sky.display = {0, 0, 16, 8};
     for (const char* color : {"R", "G", "B"}) sky.planes[color] = std::vector<float>(128, 1);
     sky.write(folder / "sky.exr");
+    write_bytes(folder / "lights.json",
+                R"({"lights": [{"name": "key", "kind": "sun", "space": "view", "direction": [1, 1, 1]}]})");
     for (int frame = 1001; frame <= 1100; frame++)
       for (const std::string name : {"frame.exr", "beauty.exr"})
         fs::create_hard_link(

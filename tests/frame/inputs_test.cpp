@@ -307,7 +307,7 @@ TEST_F(CommandLine, the_digest_changes_with_every_setting_of_the_input) {
       {"--normal-encoding", digest([](InputSettings& s) { s.normal_encoding = NormalEncoding::unorm; })},
       {"--flip-normal", digest([](InputSettings& s) { s.flip_normal.y = true; })},
       {"position-space", digest([](InputSettings& s) { s.position_space = PositionSpace::world; })},
-      {"--position-channels", digest([](InputSettings& s) { s.position_channels = "P"; })},
+      {"position-channels", digest([](InputSettings& s) { s.position_channels = "P"; })},
       {"--view", digest([](InputSettings& s) { s.view = "left"; })},
       {"--roi", digest([](InputSettings& s) {
          s.roi = Region{0, 0, 1, 1};

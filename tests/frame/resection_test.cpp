@@ -383,7 +383,7 @@ TEST_F(PositionPass, gives_the_camera_that_nobody_said_and_its_file) {
   const Finished without = run_by({});
   EXPECT_EQ(without.code, 2) << without;
   EXPECT_THAT(without.err, HasSubstr("--camera"));
-  EXPECT_LT(difference(ao_of({"--position-channels", "strange"}), by_file).max, 0.002);
+  EXPECT_LT(difference(ao_of({"--set", "position-channels=strange"}), by_file).max, 0.002);
 }
 
 TEST_F(PositionPass, of_a_sequence_is_written_with_its_frames) {

@@ -35,6 +35,8 @@ void run_chain_of(gpu::Recorder& gpu, std::set<std::string>& kernels, const Esti
   HostFrame frame = room();
   if (!has_normals) frame.normal.clear();
   FrameInputs inputs = upload(gpu, frame);
+  if (output.aovs.find("shadow") != std::string::npos)
+    inputs.lights = {{.at = {0.3, 0.5, 0.8}}, {.is_lamp = true, .at = {0, 0, -1}, .size = 0.1}};
   if (!output.composite.empty()) {
     inputs.supersampling = 2;
     for (const auto& row : kRawPlanes)
@@ -97,7 +99,7 @@ EstimatorSettings few_samples() {
 
 OutputSettings everything() {
   OutputSettings output;
-  output.aovs = "ao,ao-scales,normal,bent-normal,transfer,depth,specular-occlusion,confidence,hidden,curvature";
+  output.aovs = "ao,ao-scales,normal,bent-normal,transfer,depth,specular-occlusion,confidence,hidden,curvature,shadow";
   output.composite = "composite.exr";
   output.multi_bounce = true;
   output.look.fog_density = 0.1;
@@ -123,7 +125,7 @@ std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
   run_chain_of(gpu, kernels, settings, density, false);
   settings.search = SliceSearch::steps;
   settings.denoise_radius = 5;
-  run_chain_of(gpu, kernels, settings, {});
+  run_chain_of(gpu, kernels, settings, only("ao,shadow"));
   settings.denoise_radius = 0;
   settings.power = 1.5;
   run_chain_of(gpu, kernels, settings, everything());
@@ -149,7 +151,7 @@ std::set<std::string> kernels_of_all_settings(gpu::Recorder& gpu) {
 }
 
 std::set<std::string> kernels_there_are() {
-  std::set<std::string> names{"horizon_layers"};  // made of horizon.comp
+  std::set<std::string> names{"horizon_layers", "shadow_layers"};  // made of horizon.comp and shadow.comp
   for (const auto& entry : std::filesystem::recursive_directory_iterator(ALCOVE_SOURCE_DIR "/kernels"))
     if (entry.path().extension() == ".comp") names.insert(entry.path().stem().string());
   return names;

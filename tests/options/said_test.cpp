@@ -38,7 +38,7 @@ const std::vector<Case>& cases_without_effect() {
       {"--depth-channel Z", {position}, ""},
       {"--set ramps=cut", {position}, ""},
       {"--near 1", {"--depth-kind planar", "--source octane"}, "--source octane --camera says.json"},
-      {"--far 9", {"--position-channels P"}, ""},
+      {"--far 9", {"--set position-channels=P"}, ""},
       {"--reversed-z", {"--depth-kind ray"}, "--depth-kind log"},
       {"--set device-range=-1..1", {"--depth-kind log"}, "--depth-kind device"},
       {"--set log-constant=2", {"--depth-kind device"}, "--depth-kind auto"},
@@ -75,6 +75,7 @@ const std::vector<Case>& cases_without_effect() {
       {"--search steps", {by_error}, ""},
       {"--tolerance 0.1", {"--estimator bitmask"}, ""},
       {"--samples 8", {""}, crytek},
+      {"--set shadow-reach=2", {""}, "--lights l.json"},
       {"--set elevation=surface", {crytek}, "--estimator hbao"},
       {"--set sample-kernel=uniform", {""}, crytek},
       {"--set range-check=none", {""}, crytek},
@@ -259,6 +260,15 @@ TEST_F(Said, what_has_no_effect_is_refused_where_it_is_typed_and_left_out_of_pre
   }
 }
 
+TEST_F(Said, what_shadows_of_lights_take_has_an_effect_beside_them) {
+  for (const char* words :
+       {"--estimator crytek --thickness 1", "--estimator hbao --set complete=border", "--search exact --seed 1",
+        "--search exact --noise animated", "--tolerance 0.1 --denoise box", "--tolerance 0.1 --set denoise-radius=3"}) {
+    EXPECT_THAT(refusal(words), HasSubstr("has no effect")) << words;
+    EXPECT_EQ(refusal(std::string("--lights l.json ") + words), "") << words;
+  }
+}
+
 TEST_F(Said, a_refusal_says_what_the_setting_is_for_and_what_is_in_its_way) {
   for (const auto& [words, said] :
        {std::pair("--samples 8", "--samples has no effect: it is for --estimator crytek, and here that is gtao"),
@@ -266,7 +276,7 @@ TEST_F(Said, a_refusal_says_what_the_setting_is_for_and_what_is_in_its_way) {
         {"--near 1 --depth-kind ray", "--depth-kind says ray"},
         {"--near 1 --source octane", "--source octane says ray"},
         {"--near 1 --position p.exr", "--position says position"},
-        {"--near 1 --position-channels P", "--position-channels says position"},
+        {"--near 1 --set position-channels=P", "--set position-channels says position"},
         {"--set density=uniform --resolution half", "every pixel has its own"},
         {"--noise fixed --accumulate 4", "--noise has no effect: --accumulate is given, and it animates the noise"}})
     EXPECT_THAT(refusal(words), HasSubstr(said));

@@ -102,6 +102,15 @@ TEST_F(Tiles, give_the_bits_of_the_whole) {
     expect_same(typed("--radius 0.06 " + more));
 }
 
+TEST_F(Tiles, give_the_bits_of_the_whole_of_shadows_with_a_reach) {
+  const std::string lights = folder / "lights.json";
+  write_bytes(lights, R"({"lights": [
+    {"name": "sun", "kind": "sun", "space": "view", "direction": [0.8, 0.5, 0.4]},
+    {"name": "lamp", "kind": "point", "space": "view", "position": [0.1, 0.1, -0.8], "radius": 0.05}]})");
+  for (const char* more : {"", " --preset production", " --roi 13,5,410,230"})
+    expect_same(typed("--radius 0.06 --set shadow-reach=0.1 --lights " + lights + more));
+}
+
 TEST_F(Tiles, give_the_bits_of_the_whole_where_ramps_are_cut) {
   with_soft_cards(data, display).write(frame);
   little_memory = 2 * kLittleMemory;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/frame/find/environment.h"
+#include "core/frame/find/lights.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 #include "core/gpu/recorder.h"
@@ -104,6 +105,7 @@ struct FrameRecipe {
   std::vector<AmbientReading> ambient;  // how those of RawPlane::indirect are read
   double albedo_value = 0;              // for multi-bounce without planes of it
   Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
+  std::vector<Light> lights;                                 // in view space
   Environment environment;                                   // its light, for relighting; in world space:
   Matrix3 world_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   bool operator==(const FrameRecipe&) const = default;

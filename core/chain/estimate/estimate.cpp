@@ -163,6 +163,10 @@ Reach reach_of(const EstimatorSettings& settings, double radius) {
 
 bool completes_behind(const Reach& reach) { return reach.complete == Completion::all && !std::isinf(reach.thickness); }
 
+uint solid_of(const Reach& reach, bool tells_backs) {
+  return thickness_rule_of(reach.thickness) | completion_of(reach) | (tells_backs ? kTellsBacks : 0);
+}
+
 Sampling sampling_of(const EstimatorSettings& settings, int frame) {
   return {settings.slices, settings.steps, noise_shift(settings.noise == Noise::animated ? frame : 0, settings.seed)};
 }
@@ -226,6 +230,7 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
       case Estimator::crytek: crytek(gpu, gbuffer, reach, sampling, volume, out); break;
     }
     result.listed = out.listed;
+    result.told = out.told;
   }
   // What is left out at the largest radius may be computed at another.
   result.listed.skips_surfaces = result.listed.skips_surfaces && radii.size() == 1;
@@ -360,8 +365,7 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
                                  {"Backs", gpu::Optional(out.told)}});
   const uint mode = uint(reach.falloff) | (out.order > 0 ? kWithFirst : 0) | (out.order > 1 ? kWithSecond : 0) |
                     (out.completed ? kWithCompleted : 0) | (out.curvature ? kWithCurvature : 0);
-  const uint solid = thickness_rule_of(reach.thickness) | completion_of(reach) | (reach.in_sectors ? kInSectors : 0) |
-                     (out.told ? kTellsBacks : 0);
+  const uint solid = solid_of(reach, out.told != nullptr) | (reach.in_sectors ? kInSectors : 0);
   const uint sites = out.listed.sites ? 1 : 0;
   std::vector<uint> constants{uint(sampling.slices), uint(sampling.steps), mode, sites, solid};
   gpu.dispatch("horizon", params, buffers, estimate_extent(out.listed), constants);

@@ -106,6 +106,9 @@ Reach reach_of(const EstimatorSettings& settings, double radius);
 /// Whether surfaces go on behind nearer ones. Endless occluders block everything behind them anyway.
 bool completes_behind(const Reach& reach);
 
+/// What blocks, as the kernels of the search by samples take it: bits of kThickness*, kCompletes* and kTellsBacks.
+uint solid_of(const Reach& reach, bool tells_backs);
+
 /// The samples' spread over the hemisphere, and over neighbouring pixels.
 struct Sampling {
   int slices;        // directions per pixel

@@ -3,10 +3,12 @@
 #include "core/chain/results/outputs.h"
 
 #include <algorithm>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
+#include "core/frame/find/lights.h"
 
 namespace alcove {
 namespace {
@@ -15,6 +17,13 @@ bool is_of_visibility(const DebugView* view) {
   return view->source == DebugSource::raw_ao || view->source == DebugSource::denoised_ao ||
          view->source == DebugSource::completed || view->source == DebugSource::tiles ||
          view->source == DebugSource::count;
+}
+
+std::vector<std::string> shadow_channels(const OutputSettings& settings) {
+  std::vector<std::string> channels;
+  if (settings.read_lights)
+    for (const auto& light : settings.read_lights->lights) channels.push_back(fmt::format("shadow-{}.Y", light.name));
+  return channels;
 }
 
 }  // namespace
@@ -29,6 +38,7 @@ std::vector<Aov> aovs_of(const OutputSettings& settings) {
   std::vector<Aov> aovs;
   std::vector<std::string> names = split(settings.aovs);
   if (!settings.environment.empty()) names.emplace_back("relight");
+  if (!settings.lights.empty()) names.emplace_back("shadow");
   for (const auto& name : names) {
     const auto row = std::ranges::find(kAovs, name, &AovRow::name);
     if (row == kAovs.end())
@@ -36,6 +46,7 @@ std::vector<Aov> aovs_of(const OutputSettings& settings) {
            list_of(aov_names()));
     if (std::ranges::find(aovs, name, &Aov::name) != aovs.end()) continue;
     aovs.push_back({name, split(row->channels), row->planes, row->source, row->is_float});
+    if (name == "shadow") aovs.back().channels = shadow_channels(settings);
     if (name == "ao" && !settings.ao_name.empty()) aovs.back().channels = {settings.ao_name};
     if (name != "ao" || settings.ao_channels == AoChannels::mono) continue;
     const std::string layer = settings.ao_name.empty() ? "" : settings.ao_name + ".";
@@ -68,6 +79,16 @@ std::vector<std::string> channels_of(const Aov& aov, std::size_t planes) {
   return channels;
 }
 
+void require_distinct_channels(const Settings& settings) {
+  std::set<std::string> known;
+  for (const auto& aov : aovs_of(settings.output))
+    for (const auto& channel : channels_of(aov, planes_of(aov, settings.estimator)))
+      if (!known.insert(channel).second)
+        fail(ErrorKind::usage,
+             "--aov: OUTPUT would have two channels {}: give the AO another --set ao-name, or the light another name",
+             channel);
+}
+
 bool is_of_curvature(const Aov& aov) {
   return aov.planes == &FrameOutputs::convexity || aov.planes == &FrameOutputs::cavity ||
          aov.planes == &FrameOutputs::curvature;
@@ -82,6 +103,8 @@ Wanted::Wanted(const OutputSettings& settings)
       filter(settings.filter),
       look(settings.look) {
   const auto is_at_least = [](AovSource source) { return [source](const Aov& aov) { return aov.source >= source; }; };
+  for (std::size_t i = 0; settings.read_lights && i < settings.read_lights->lights.size(); i++)
+    lights.push_back({.at = {0, 0, 1}, .size = settings.read_lights->is_soft(i) ? 1.0 : 0.0});
   const auto shows_completed = [](const DebugView* view) { return view->source == DebugSource::completed; };
   completed = !settings.stats.empty() || std::ranges::any_of(debug_views, shows_completed);
   for (const AovSource source : {AovSource::open_directions, AovSource::transfer})
@@ -107,6 +130,8 @@ bool in_world(const Camera& camera, const OutputSettings& settings) {
 }
 
 bool needs_ao(const OutputSettings& output) { return Wanted(output).visibility; }
+
+bool needs_radius(const OutputSettings& output) { return needs_ao(output) || wants(output, &FrameOutputs::shadow); }
 
 uint moment_order(const EstimatorSettings& settings, const Wanted& wanted) {
   return searches_slices(settings) ? wanted.order : 0;

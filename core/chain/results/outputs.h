@@ -13,6 +13,7 @@
 #include "core/chain/base/planes.h"
 #include "core/chain/results/debug.h"
 #include "core/frame/camera/camera.h"
+#include "core/frame/find/lights.h"
 
 namespace alcove {
 
@@ -47,6 +48,7 @@ struct FrameOutputs {
   // plane of 1 where it closes the solid of the one before it, else 0
   gpu::Buffer* hidden = nullptr;
   gpu::Buffer* confidence = nullptr;          // a plane, in [0, 1]
+  gpu::Buffer* shadow = nullptr;              // a plane for each light, in [0, 1], 1 = lit; sky: 1
   gpu::Buffer* error = nullptr;               // a plane: with a tolerance, the estimated error of the visibility
   gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
   // a plane, of several radii their mean and one for each: the parts that the own surface blocks inside and outside, in
@@ -89,6 +91,7 @@ inline constexpr std::array kAovs{
     AovRow{"depth", "Z", &FrameOutputs::depth, AovSource::geometry, true},
     AovRow{"hidden", "hidden1.Z,hidden1.back", &FrameOutputs::hidden, AovSource::geometry, true},
     AovRow{"confidence", "confidence.Y", &FrameOutputs::confidence, AovSource::visibility},
+    AovRow{"shadow", "", &FrameOutputs::shadow, AovSource::geometry},
     AovRow{"error", "error.Y", &FrameOutputs::error, AovSource::visibility},
     AovRow{"specular-occlusion", "specular.Y", &FrameOutputs::specular_occlusion, AovSource::open_directions},
     AovRow{"convexity", "convexity.Y", &FrameOutputs::convexity, AovSource::visibility},
@@ -114,6 +117,9 @@ std::vector<Aov> aovs_of(const OutputSettings& settings);
 std::size_t planes_of(const Aov& aov, const EstimatorSettings& settings);
 /// The channels of an AOV that has so many planes: scale1.Y of the smallest radius, hidden1.Z of the nearest surface.
 std::vector<std::string> channels_of(const Aov& aov, std::size_t planes);
+
+/// Fails with ErrorKind::usage where two planes of the output would have the same channel.
+void require_distinct_channels(const Settings& settings);
 
 /// Whether it is made of the receiver's own surface: convexity, cavity or curvature.
 bool is_of_curvature(const Aov& aov);
@@ -143,6 +149,7 @@ struct Wanted {
   bool completed = false;   // the visibility that completed surfaces block
   bool only_own = false;    // the estimate alone, for other frames
   bool multi_bounce = false;
+  std::vector<Light> lights;  // suns that stand in for those of the AOV shadow where a frame is rehearsed; soft as they
   PixelFilter filter;
   CompositeLook look;
 };
@@ -152,6 +159,8 @@ bool in_world(const Camera& camera, const OutputSettings& settings);
 
 /// Whether any output is AO or made from it.
 bool needs_ao(const OutputSettings& output);
+/// Whether any output is made with the radius: AO, and shadows, of which it says how thick surfaces may be.
+bool needs_radius(const OutputSettings& output);
 
 /// The order of the moments that any output is made from: 1 for bent normals, 2 for transfer; 0: none, or the estimator
 /// finds no open directions.

@@ -197,7 +197,7 @@ const AovNames kNormalNames{
 
 const AovNames kPositionNames{
     .what = "position",
-    .channel_option = "--position-channels",
+    .channel_option = "--set position-channels",
     .layers = {"position", "p", "pworld", "__pworld", "worldposition", "cgeometry_worldposition"},
     .in_layer = kVectors,
     .bare = {{"px", "py", "pz"}},

@@ -264,12 +264,12 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings, st
   std::string text;
   if (!seen && (std::get<NoResection>(found).median <= kNoCamera || !source.camera_from.empty())) return "";
   if (!why.empty()) {
-    text = fmt::format("the positions of {} tell no camera, since {} (--position-channels); {} is taken", held, why,
+    text = fmt::format("the positions of {} tell no camera, since {} (--set position-channels); {} is taken", held, why,
                        name_of_lens(source, settings));
   } else if (!seen) {
     text = fmt::format(
         "no camera fits the positions of {}: by the best of all half of them lie {:.3g} px and more from the pixels "
-        "that hold them, so they are of a panorama, or no positions (--position-channels); {} is taken",
+        "that hold them, so they are of a panorama, or no positions (--set position-channels); {} is taken",
         held, std::get<NoResection>(found).median, name_of_lens(source, settings));
   } else {
     const double px = beside(source.reading.camera, seen->camera, points);

@@ -1,0 +1,210 @@
+// Lights JSON.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/frame/find/lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+#include "core/base/text.h"
+
+namespace alcove {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kDeepestLights = 8;          // objects and lists within each other
+constexpr std::size_t kLongestName = 64;   // of a light: it is part of a channel's name
+constexpr std::size_t kLongestShown = 60;  // characters of a text of the file in a message
+constexpr double kFarthestLight = 1e12;    // scene units: kernels square it as a float
+constexpr double kWidestSun = 179;         // degrees
+
+/// A text of the file for a message.
+std::string shown(const std::string& text) {
+  return text.size() > kLongestShown ? as_utf8(text.substr(0, kLongestShown)) + "..." : text;
+}
+
+/// Reads the lights of a file: every complaint names the file and the light.
+struct LightReader {
+  std::string path, light;
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    fail(ErrorKind::input, "{}: {}: {} (--lights; docs/inputs.md lists the fields)", path, light, why);
+  }
+
+  /// Fails where an object has another field than these: a misspelt one would be ignored.
+  void require_known(const Json& object, const std::vector<std::string>& known) const {
+    for (const auto& [field, value] : object.items())
+      if (std::ranges::find(known, field) == known.end())
+        refuse(fmt::format("there is no field \"{}\"{}", shown(field), suggestion(shown(field), known)));
+  }
+
+  const Json& required(const Json& object, const char* field) const {
+    if (!object.contains(field)) refuse(fmt::format("\"{}\" is missing", field));
+    return object[field];
+  }
+
+  std::string word(const Json& value, const char* field, const std::vector<std::string>& words) const {
+    if (!value.is_string() || std::ranges::find(words, value.get<std::string>()) == words.end())
+      refuse(fmt::format("\"{}\" must be {}, not {}", field, fmt::join(words, " or "), shown(value.dump())));
+    return value.get<std::string>();
+  }
+
+  double number(const Json& value, const char* field, double low, double high) const {
+    if (!value.is_number() || !(value.get<double>() >= low && value.get<double>() <= high))
+      refuse(fmt::format("\"{}\" must be of numbers from {} to {}, not {}", field, low, high, shown(value.dump())));
+    return value.get<double>();
+  }
+
+  int frame_number(const Json& value) const {
+    using Int = std::numeric_limits<int>;
+    const double frame = number(value, "frame", Int::min(), Int::max());
+    if (frame != std::floor(frame)) refuse(fmt::format("\"frame\" must be a whole number, not {}", frame));
+    return int(frame);
+  }
+
+  Vector3 vector(const Json& value, const char* field) const {
+    if (!value.is_array() || value.size() != 3)
+      refuse(fmt::format("\"{}\" must be three numbers, not {}", field, shown(value.dump())));
+    Vector3 result{};
+    for (std::size_t i = 0; i < 3; i++) result[i] = number(value[i], field, -kFarthestLight, kFarthestLight);
+    return result;
+  }
+
+  /// The direction of this way, however short.
+  Vector3 direction(Vector3 way) const {
+    const double most = std::max({std::abs(way[0]), std::abs(way[1]), std::abs(way[2])});
+    if (most == 0) refuse("\"direction\" has no length");
+    for (double& x : way) x /= most;
+    const double distance = length(way);
+    for (double& x : way) x /= distance;
+    return way;
+  }
+
+  /// Takes where an object says that the light is, and how large. Gives whether it says where.
+  bool take(const Json& object, Light& taken) const {
+    const char* const where = taken.is_lamp ? "position" : "direction";
+    const char* const size = taken.is_lamp ? "radius" : "angular_diameter";
+    if (object.contains(size)) taken.size = number(object[size], size, 0, taken.is_lamp ? kFarthestLight : kWidestSun);
+    if (!object.contains(where)) return false;
+    taken.at = vector(object[where], where);
+    if (!taken.is_lamp) taken.at = direction(taken.at);
+    return true;
+  }
+};
+
+bool is_name(const std::string& name) {
+  const auto is_fine = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '-' || c == '_'); };
+  return !name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, is_fine);
+}
+
+LightsFile::Entry entry_of(LightReader reader, const Json& json) {
+  if (!json.is_object()) reader.refuse("it must be an object, not " + shown(json.dump()));
+  LightsFile::Entry entry;
+  const Json& name = reader.required(json, "name");
+  if (!name.is_string() || !is_name(name.get<std::string>()))
+    reader.refuse(
+        fmt::format("\"name\" must be up to {} letters, digits, - and _, not {}", kLongestName, shown(name.dump())));
+  entry.name = name.get<std::string>();
+  reader.light = fmt::format("light \"{}\"", entry.name);
+  Light light;
+  light.is_lamp = reader.word(reader.required(json, "kind"), "kind", {"sun", "point"}) == "point";
+  std::vector<std::string> fields = light.is_lamp ? std::vector<std::string>{"position", "radius"}
+                                                  : std::vector<std::string>{"direction", "angular_diameter"};
+  const std::string where = fields.front();
+  fields.insert(fields.end(), {"name", "kind", "space", "frames"});
+  reader.require_known(json, fields);
+  fields.resize(2);
+  fields.emplace_back("frame");
+  light.in_world = !json.contains("space") || reader.word(json["space"], "space", {"world", "view"}) == "world";
+  const bool is_placed = reader.take(json, light);
+  entry.is_constant = !json.contains("frames");
+  if (entry.is_constant) {
+    if (!is_placed) reader.refuse(fmt::format("\"{}\" is missing", where));
+    entry.of_frames[0] = light;
+    return entry;
+  }
+  const Json& frames = json["frames"];
+  if (!frames.is_array() || frames.empty()) reader.refuse("\"frames\" must be a list of objects");
+  for (const auto& frame : frames) {
+    if (!frame.is_object() || !frame.contains("frame")) reader.refuse("\"frames\" must list objects with a \"frame\"");
+    reader.require_known(frame, fields);
+    const int number = reader.frame_number(frame["frame"]);
+    Light of_frame = light;
+    if (!reader.take(frame, of_frame) && !is_placed)
+      reader.refuse(fmt::format("\"{}\" is missing in frame {}", where, number));
+    if (!entry.of_frames.emplace(number, of_frame).second)
+      reader.refuse(fmt::format("\"frames\" has frame {} twice", number));
+  }
+  return entry;
+}
+
+}  // namespace
+
+void LightsFile::require_frames(const std::vector<int>& frames) const {
+  for (const auto& light : lights)
+    for (const int frame : frames) {
+      if (light.is_constant || light.of_frames.contains(frame)) continue;
+      std::vector<int> listed;
+      for (const auto& [number, of_frame] : light.of_frames) listed.push_back(number);
+      fail(ErrorKind::input,
+           "{}: light \"{}\" has no frame {}, but {}: it must list all frames of the run (--lights, --frames)", path,
+           light.name, frame, short_frames_text(listed));
+    }
+}
+
+std::vector<Light> LightsFile::in_view(const Camera& camera, int frame) const {
+  require_frames({frame});
+  std::vector<Light> result;
+  for (const auto& [name, of_frames, is_constant] : lights) {
+    Light light = is_constant ? of_frames.begin()->second : of_frames.at(frame);
+    if (light.in_world && !camera.view_from_world)
+      fail(ErrorKind::input,
+           "{}: light \"{}\" is in world space, and needs a camera with world_to_camera: give a --camera file with it, "
+           "or the light in view space (--lights)",
+           path, name);
+    if (light.in_world) light.at = times(*camera.view_from_world, light.at);
+    if (light.in_world && light.is_lamp)
+      for (std::size_t i = 0; i < 3; i++) light.at[i] += camera.view_from_world_offset[i];
+    if (!light.in_world && camera.left_handed) light.at[2] = -light.at[2];
+    light.in_world = false;
+    result.push_back(light);
+  }
+  return result;
+}
+
+bool LightsFile::is_soft(std::size_t light) const {
+  return std::ranges::any_of(lights[light].of_frames, [](const auto& of_frame) { return of_frame.second.size > 0; });
+}
+
+std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::string& path) {
+  LightsFile file{path, {}};
+  LightReader reader{path, "the file"};
+  const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepestLights) reader.refuse(fmt::format("its JSON nests deeper than {}", kDeepestLights));
+    return true;
+  };
+  const Json top = Json::parse(text, bounded, false);
+  if (!top.is_object() || !top.contains("lights") || !top["lights"].is_array())
+    reader.refuse("it must be a JSON object with a list \"lights\"");
+  reader.require_known(top, {"lights"});
+  const Json& lights = top["lights"];
+  if (lights.empty() || lights.size() > kMostLights)
+    reader.refuse(fmt::format("it lists {} lights, and a run takes 1 to {}", lights.size(), kMostLights));
+  for (const auto& json : lights) {
+    reader.light = fmt::format("light {} of the list", file.lights.size() + 1);
+    file.lights.push_back(entry_of(reader, json));
+    const std::string& name = file.lights.back().name;
+    if (std::ranges::count(file.lights, name, &LightsFile::Entry::name) > 1)
+      reader.refuse(fmt::format("the name \"{}\" is there twice", name));
+  }
+  return std::make_shared<const LightsFile>(std::move(file));
+}
+
+std::shared_ptr<const LightsFile> read_lights(const std::string& path) {
+  return lights_of(read_text(path, "lights", "--lights"), path);
+}
+
+}  // namespace alcove

@@ -1,0 +1,349 @@
+// The part of a light that each pixel sees.
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In: planar depth, view normals; surfaces that may block, and the nearest in every block; how far back each is solid.
+// Out: visibility of the light, 1 = lit.
+//
+// The ray to the light is walked along its image, pixel by pixel. The steps have their numbers at the code:
+//  1. A surface that faces away from the light has 0.
+//  2. A pixel's surface is before the ray or behind it, as seen by the eye. It is moved into the slice of ray and eye
+//     parallel to the receiver's tangent plane (slice.glsl), so that no plane shadows itself. The walk ends at the image
+//     of the lamp, of the farthest place that may block, or at the border.
+//  3. A surface that is before the ray in one pixel and behind it in the next blocks it.
+//  4. Behind a surface with edges before the ray, the ray is blocked within the surface's solid: to the known back; or
+//     as far as the pixel tells; or as far as the run of its pixels is wide (slice.glsl), or as the user says.
+//  5. Farther behind a surface than any solid may be deep a run begins anew. So blocks of pixels that are all behind the
+//     ray, or all that far before it, are passed over, which changes no result.
+//  6. Behind the border the surface of the last pixel goes on a little.
+//  7. A light of some size is sampled in several directions, which differ between neighbours.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#include "kernels/estimate/estimate.h"
+#include "kernels/base/view.glsl"
+#include "kernels/base/normal.glsl"
+#include "kernels/base/arcs.glsl"
+#include "kernels/base/noise.glsl"
+#include "kernels/base/clearance.glsl"
+#include "kernels/estimate/slice.glsl"
+#include "kernels/estimate/backs.glsl"
+
+layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
+// bits of kThickness*, kCompletesBorder and kTellsBacks, and kHiddenSurface times as many surfaces as a pixel may have
+// behind the first
+layout(constant_id = 0) const uint kSolid = kThicknessWidth | kCompletesBorder | kTellsBacks;
+layout(constant_id = 1) const uint kDirections = 1;  // of the light
+layout(scalar, push_constant) uniform Push { ShadowParams params; };
+readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
+readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
+// one float per pixel, depth of the first surfaces that may block
+readonly buffer Occluders { float occluder_depth[]; };
+readonly buffer Nearest { vec2 nearest[]; };  // nearest and farthest depth per block, from nearest
+readonly buffer Hidden { float hidden[]; };   // planes of hidden surfaces that may block, see GBuffer; with layers only
+readonly buffer Backs { uint backs[]; };      // one uint per pixel, from backs; only with kTellsBacks
+writeonly buffer Result { float result[]; };  // one float per pixel, in [0, 1]
+
+const int kSurfaces = ALCOVE_SURFACES;
+const uint kThickness = kSolid & 3u;
+const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
+const bool kHasBacks = (kSolid & kTellsBacks) != 0u;
+
+/// A run is so many times as thick as it is wide, and so many pixels' widths more; less where it is known what lies
+/// behind it.
+const float kThicknessPerWidth = 1.25, kKnownThicknessPerWidth = 0.6, kMorePixels = 1.0;
+
+/// Beyond the border nothing goes on farther than this: as tangent, and with parallel rays in radii. Farther away it is
+/// more often wrong than right.
+const float kTangentBeyond = 0.3, kSizesBeyond = 4.0;
+
+/// Beyond the border a surface goes on where it is seen no more edge-on than this.
+const float kLeastFacingToGoOn = 0.02;
+
+/// A light so near to the eye's ray, by its sine, is seen wherever the eye sees.
+const float kLeastSine = 1e-4;
+
+/// Scene units: where nothing bounds the reach.
+const float kFarther = 1e20;
+
+/// A ray to the light on the image.
+struct Ray {
+  vec3 position, direction;
+  float far;          // scene units: where it ends
+  vec2 step_px;       // pixels per step; the longer component is +-1
+  float whole_steps;  // to its end, on the image or not; kEndless: any number
+  int steps;          // of them, those on the image
+  // A surface of depth z so many pixels beside the receiver is before the ray if z * facing - scale * dot(change,
+  // beside) <= most; scale: z, or 1 orthographic.
+  float facing, most;
+  vec2 change;
+};
+
+/// 2. The ray in a direction that is cosine * eye + sine * t.
+Ray ray_of(View view, Receiver r, vec3 position, vec3 direction, float cosine, float sine, vec3 t, float far) {
+  const Slice slice = slice_along(view, r, t, 1.0);
+  const float pixels = max(abs(slice.image_t.x), abs(slice.image_t.y));
+  const float z = r.perspective ? r.z - far * direction.z : 1.0;
+  Ray ray;
+  ray.position = position;
+  ray.direction = direction;
+  ray.far = far;
+  ray.step_px = slice.image_t / pixels;
+  ray.whole_steps = z > 0.0 ? far * sine * pixels / z : kEndless;
+  ray.steps = int(min(steps_to_border(view, r.pixel, ray.step_px), ray.whole_steps));
+  ray.facing = sine * r.ray_length;
+  ray.most = ray.facing * r.z;
+  ray.change = sine * slice.toward - cosine * slice.across;
+  return ray;
+}
+
+/// What is compared with ray.most.
+float ahead(Receiver r, Ray ray, float change, float z) {
+  return r.perspective ? z * (ray.facing - change) : z * ray.facing - change;
+}
+bool is_before(Receiver r, Ray ray, float change, float z) { return ahead(r, ray, change, z) <= ray.most; }
+
+/// By how much depth the ray is behind a surface; kSkyDepth: it does not come there.
+float depth_behind(Receiver r, Ray ray, float change, float z) {
+  const float facing = r.perspective ? ray.facing - change : ray.facing;
+  const float there = (r.perspective ? ray.most : ray.most + change) / facing;
+  return facing > 0.0 ? there - z : kSkyDepth;
+}
+
+/// 5. Whether the ray is farther behind a surface than any solid is deep. Hidden solids may be of any depth.
+bool is_deep(Receiver r, Ray ray, float change, float z) {
+  const bool is_endless = kThickness == kThicknessEndless || kSurfaces > 1;
+  const float most = max(params.thickness, kMostBack * params.size);
+  return is_endless ? false : ahead(r, ray, change, z + most) < ray.most;
+}
+
+/// The last step in a block of a step, and whether nothing up to there can block the ray.
+struct Stretch {
+  int last;
+  bool passes;
+};
+Stretch stretch_from(Receiver r, Ray ray, int first) {
+  const ivec2 pixel = r.pixel + ivec2(round(ray.step_px * float(first)));
+  const bvec2 forward = greaterThanEqual(ray.step_px, vec2(0));
+  const ivec2 block = mix(max(pixel / kNearestStep - 1, 0), pixel / kNearestStep, forward);
+  const ivec2 within = pixel - block * kNearestStep;
+  // A pixel less, since both ends are rounded.
+  const vec2 room = vec2(mix(within, kNearestBlock - 1 - within, forward) - 1) / max(abs(ray.step_px), 1e-3);
+  const int last = min(first + max(int(min(room.x, room.y)), 0), ray.steps);
+  const vec2 depths = nearest[block.y * ((params.view.size.x + kNearestStep - 1) / kNearestStep) + block.x];
+  const float change = dot(ray.change, ray.step_px), rounding = 1e-5 * (ray.facing + abs(change) * float(last));
+  const float aside = 0.5 * max(abs(ray.change.x), abs(ray.change.y)) + rounding;
+  const float most = max(change * float(first), change * float(last)) + aside;
+  const float least = min(change * float(first), change * float(last)) - aside;
+  const bool is_behind = ahead(r, ray, most, depths.x) > 1.00001 * ray.most;
+  return Stretch(last, is_behind || is_deep(r, ray, least, depths.y));
+}
+
+/// A surface of the last pixel.
+struct Last {
+  float z;      // kSkyDepth: there is none
+  bool before;  // the ray
+  // Of its run before the ray: where it starts, from the receiver; how far behind it the ray is at least, along the
+  // eye's ray; whether it begins at a rounded outline, of which its back is the mirror image.
+  vec3 start;
+  float least;
+  bool is_round;
+};
+
+/// Whether two depths in neighbouring pixels are one surface's.
+bool are_one(Receiver r, float z, float last_z) {
+  const float pixel = params.view.tangent_per_pixel.x * (r.perspective ? lesser(z, last_z) : 1.0);
+  return both(abs(z - last_z) < kRunSlope * pixel, z < kSkyDepth);
+}
+
+/// 4. How thick a run is, in scene units along the eye's ray.
+float thickness_of(Receiver r, Last run, vec3 end, float z, float per_width) {
+  if (kThickness == kThicknessLength) return params.thickness;
+  const float pixel = params.view.tangent_per_pixel.x * (r.perspective ? z : 1.0);
+  const float width = per_width * (length(end - run.start) + pixel) + kMorePixels * pixel;
+  return run.is_round ? 0.0 : levelled(width, kWidestRun * params.size);
+}
+
+/// A pixel's surface by its number; below 0: it closes the solid of the one before it.
+float surface_at(int index, int i) {
+  return kSurfaces == 1 || i == 0 ? occluder_depth[index]
+                                  : hidden[index + (i - 1) * params.view.size.x * params.view.size.y];
+}
+
+ivec2 pixel_of_step(Receiver r, Ray ray, int k) { return r.pixel + ivec2(round(ray.step_px * float(k))); }
+
+/// Whether a surface is before the ray, and clear of the receiver's tangent plane.
+bool is_clear_before(Receiver r, Ray ray, Reach reach, vec2 beside, float z, int k) {
+  const float scale = r.perspective ? z : 1.0, height = height_of(r, beside, z, scale);
+  const vec3 place = offset_to(r, beside, z, scale);
+  const bool is_clear = both(height > r.least_height + scale * (reach.least_rise * float(k)),
+                             is_elevated(height, reach.per_elevation, dot(place, place)));
+  return both(z < kSkyDepth, both(is_clear, is_before(r, ray, dot(ray.change, beside), z)));
+}
+
+/// The surfaces of a step that is passed over.
+void pass(Receiver r, Ray ray, Reach reach, int k, inout Last last[kSurfaces]) {
+  const ivec2 pixel = pixel_of_step(r, ray, k);
+  const vec2 beside = vec2(pixel - r.pixel);
+  for (int i = 0; i < kSurfaces; i++) {
+    const float z = abs(surface_at(index_of(params.view, pixel), i));
+    last[i] = Last(k > 0    ? z
+                   : i == 0 ? r.z
+                            : kSkyDepth,
+                   both(k > 0, is_clear_before(r, ray, reach, beside, z, k)),
+                   offset_to(r, beside, z, r.perspective ? z : 1.0), kSkyDepth, false);
+  }
+}
+
+/// Whether nothing of a step can block the ray, be it alone.
+bool passes(Receiver r, Ray ray, int k) {
+  const ivec2 pixel = pixel_of_step(r, ray, k);
+  const float change = dot(ray.change, vec2(pixel - r.pixel)), z = occluder_depth[index_of(params.view, pixel)];
+  return !is_before(r, ray, change, z) || is_deep(r, ray, change, z);
+}
+
+/// Takes the surfaces of a step. Gives whether one of them blocks the ray.
+bool take_step(Receiver r, Ray ray, Reach reach, uint outline, int k, inout Last last[kSurfaces]) {
+  const ivec2 pixel = pixel_of_step(r, ray, k);
+  const vec2 beside = vec2(pixel - r.pixel), tangent = r.tangent + r.tangent_per_pixel * beside;
+  const int index = index_of(params.view, pixel);
+  const float change = dot(ray.change, beside), ray_length = r.perspective ? sqrt(1.0 + dot(tangent, tangent)) : 1.0;
+  const uint word = kHasBacks ? backs[index] : 0u;
+  Last here[kSurfaces];
+  float surface = surface_at(index, 0);
+  bool blocked = false;
+  for (int i = 0; i < kSurfaces; i++) {
+    const float z = abs(surface), scale = r.perspective ? z : 1.0;
+    const vec3 place = offset_to(r, beside, z, scale);
+    const bool before = is_clear_before(r, ray, reach, beside, z, k);
+    Last from = last[0];
+    for (int j = 1; j < kSurfaces; j++)
+      if (abs(last[j].z - z) < abs(from.z - z)) from = last[j];
+    const bool goes_on = are_one(r, z, from.z);
+    blocked = both(goes_on, before != from.before) ? true : blocked;  // 3.
+    // 4.
+    const float next = i + 1 < kSurfaces ? surface_at(index, i + 1) : kSkyDepth;
+    const float behind = depth_behind(r, ray, change, z);
+    const bool deep = is_deep(r, ray, change, z), begins = both(both(goes_on, from.before), !deep) ? false : true;
+    const bool is_told = both(kHasBacks, both(i == 0, next >= kSkyDepth));
+    const float mirrored = is_told ? unpack_mirrored(word >> outline) : -1.0;
+    const bool is_round = begins ? mirrored >= 0.0 : from.is_round;
+    const float least = begins ? behind * ray_length : lesser(behind * ray_length, from.least);
+    here[i] = Last(z, before, begins ? place : from.start, deep ? kSkyDepth : least, both(is_round, !deep));
+    const float told = both(is_round, mirrored >= 0.0) ? mirrored : unpack_depth(word);
+    const bool is_within_told = both(is_told, behind <= told * params.view.tangent_per_pixel.x * scale);
+    const float per_width = next < kSkyDepth ? kKnownThicknessPerWidth : kThicknessPerWidth;
+    const bool is_within_run =
+        kThickness == kThicknessEndless || here[i].least <= thickness_of(r, here[i], place, z, per_width);
+    const bool is_within = next < 0.0 ? behind <= -next - z : is_within_told ? true : is_within_run;
+    blocked = both(both(before, surface > 0.0), is_within) ? true : blocked;
+    surface = next;
+  }
+  for (int i = 0; i < kSurfaces; i++) last[i] = here[i];
+  return blocked;
+}
+
+/// 6. Whether the surface of the image's last pixel blocks the ray beyond the border.
+bool is_blocked_beyond(View view, Receiver r, Ray ray) {
+  const float border = floor(steps_to_border(view, r.pixel, ray.step_px));
+  const ivec2 pixel = pixel_of_step(r, ray, int(border));
+  const int index = index_of(view, pixel);
+  const vec3 n = octahedral_direction(unpackSnorm2x16(normal[index]));
+  const float z = occluder_depth[index], toward = dot(n, ray.direction);
+  const float far = dot(n, position_of(view, vec2(pixel) + 0.5, lesser(z, kFarther)) - ray.position) / toward;
+  const vec3 place = ray.position + far * ray.direction;
+  const vec2 from = tangent_of(view, vec2(pixel) + 0.5), to = r.perspective ? place.xy / -place.z : place.xy;
+  const vec2 way = (to - from) / view.tangent_per_pixel, whole_way = (to - r.tangent) / view.tangent_per_pixel;
+  const ivec2 mirrored = clamp(pixel - ivec2(round(clamp(way, -1e6, 1e6))), ivec2(0), view.size - 1);
+  const float there = depth_beyond(view, from, z, n, tangent_of(view, vec2(mirrored) + 0.5),
+                                   occluder_depth[index_of(view, mirrored)], to, kLeastFacingToGoOn);
+  const bool exists = both(there < kSkyDepth, both(place.z < 0.0, both(toward < 0.0, both(far > 0.0, far <= ray.far))));
+  const bool is_beyond = max(abs(whole_way.x), abs(whole_way.y)) > border;
+  const bool is_near = length(to - from) <= (r.perspective ? kTangentBeyond : kSizesBeyond * params.size);
+  const bool is_risen = far * dot(r.normal, ray.direction) > kLeastRisen * params.size + r.least_height;
+  return both(both(exists, is_beyond), both(is_near, is_risen));
+}
+
+/// Whether a light is blocked, from its direction and its distance, or that of the farthest place that may block.
+bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far) {
+  const float cosine = dot(direction, r.eye);
+  const vec3 across = direction - cosine * r.eye;
+  const float sine = length(across);
+  if (sine < kLeastSine) return false;
+  const Ray ray = ray_of(view, r, position, direction, cosine, sine, across / sine, far);
+  const Reach reach = reach_of(view, params.size, 0.0, params.size, params.thickness, params.bias);
+  const uint outline = outline_of(ray.step_px);
+  Last last[kSurfaces];
+  for (int i = 0; i < kSurfaces; i++) last[i] = Last(kSkyDepth, false, vec3(0), kSkyDepth, false);
+  bool blocked = false;
+  int k = 1;
+  if (ray.steps > 0) {
+    do {
+      // 5. In a loop of its own, which is short: blocks, then single pixels.
+      bool is_found = false;
+      do {
+        Stretch stretch;
+        do {
+          stretch = stretch_from(r, ray, k);
+          k = stretch.passes ? stretch.last + 1 : k;
+        } while (stretch.passes && k <= ray.steps);
+        if (k <= stretch.last) {
+          do {
+            is_found = !passes(r, ray, k);
+            k += is_found ? 0 : 1;
+          } while (!is_found && k <= stretch.last);
+        }
+      } while (!is_found && k <= ray.steps);
+      if (is_found) {
+        pass(r, ray, reach, k - 1, last);
+        bool goes_on;
+        do {
+          blocked = take_step(r, ray, reach, outline, k, last);
+          goes_on = false;
+          for (int i = 0; i < kSurfaces; i++)
+            goes_on = both(last[i].before, last[i].least < kSkyDepth) ? true : goes_on;
+        } while (++k <= ray.steps && goes_on && !blocked);
+      }
+    } while (k <= ray.steps && !blocked);
+  }
+  if (kBeyondBorder && !blocked && float(ray.steps + 1) < ray.whole_steps) blocked = is_blocked_beyond(view, r, ray);
+  return blocked;
+}
+
+/// A direction to the light, and how far away it is: with two numbers in [0, 1), a place of its disc.
+vec4 towards(vec3 position, vec2 place) {
+  const bool is_lamp = params.is_lamp != 0u;
+  const vec3 way = is_lamp ? params.light - position : params.light;
+  const float distance = length(way);
+  vec3 direction = way / max(distance, 1e-30);
+  if (kDirections > 1u) {
+    vec3 x, y;
+    const float turn = direction.z < 0.0 ? -1.0 : 1.0;
+    basis_of(turn * direction, x, y);
+    const vec2 offset = sqrt(place.x) * params.spread / (is_lamp ? max(distance, params.spread) : 1.0) *
+                        direction_of(2.0 * kPi * place.y);
+    direction = normalize(direction + offset.x * x + offset.y * y);
+  }
+  const float reach = params.reach > 0.0 ? params.reach : kFarther;
+  return vec4(direction, is_lamp ? min(distance, reach) : reach);
+}
+
+void main() {
+  const View view = params.view;
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (!inside(view, pixel)) return;
+  const int index = index_of(view, pixel), at = index + int(params.plane) * view.size.x * view.size.y;
+  const float z = depth[index];
+  if (z >= kSkyDepth) {
+    result[at] = 1.0;
+    return;
+  }
+  const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.size, params.depth_precision);
+  const vec3 position = position_of(view, vec2(pixel) + 0.5, z);
+  const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
+  float seen = 0.0;
+  for (uint k = 0u; k < kDirections; k++) {
+    const vec2 place = vec2((float(k) + noise.x) / float(kDirections), fract(noise.y + kGolden * float(k)));  // 7.
+    const vec4 light = towards(position, place);
+    if (dot(light.xyz, r.normal) > 0.0 && !is_blocked(view, r, position, light.xyz, light.w)) seen += 1.0;  // 1.
+  }
+  result[at] = seen / float(kDirections);
+}
