@@ -14,8 +14,8 @@
 #include "core/frame/find/environment.h"
 #include "core/frame/raw_plane.h"
 #include "core/inspect/inspect.h"
-#include "core/run/first_look.h"
 #include "core/run/run_files.h"
+#include "core/run/run_preview.h"
 
 namespace alcove {
 

@@ -17,8 +17,8 @@
 #include "core/frame/raw_plane.h"
 #include "core/options/files.h"
 #include "core/run/batch.h"
-#include "core/run/first_look.h"
 #include "core/run/run_files.h"
+#include "core/run/run_preview.h"
 
 namespace alcove {
 namespace {
@@ -41,7 +41,7 @@ Words without_empty(const Words& arguments) {
 
 /// Prints a line for each missing option, and the command that has all of them. Returns whether none is missing.
 /// `of_frame` begins messages on a frame of a list.
-bool has_all(FirstLook& look, const Settings& settings, const Words& arguments, const std::string& of_frame) {
+bool has_all(RunPreview& look, const Settings& settings, const Words& arguments, const std::string& of_frame) {
   const MissingOptions missing = look.missing_options();
   if (!missing.any()) return true;
   std::string command = "alcove run";
@@ -108,7 +108,7 @@ std::string with_presets(const std::string& sentence, const Settings& settings) 
 
 /// Computes the frames of one input. Gives the exit code.
 int run_input(const RunOptions& options, const Words& arguments, const std::string& of_frame) {
-  FirstLook look(options.settings);
+  RunPreview look(options.settings);
   if (!has_all(look, options.settings, arguments, of_frame)) return int(ErrorKind::usage);
   if (options.dry_run) {
     fmt::print("{}", plan_text(look));

@@ -15,8 +15,8 @@
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
 #include "core/frame/raw_plane.h"
-#include "core/run/first_look.h"
 #include "core/run/run_files.h"
+#include "core/run/run_preview.h"
 
 namespace alcove {
 namespace {
@@ -221,7 +221,7 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
     all.insert(all.end(), {{"--radius"}, radii});
     return all;
   };
-  FirstLook first(look_of(typed, with_radii({"auto"}), 0).settings);
+  RunPreview first(look_of(typed, with_radii({"auto"}), 0).settings);
   check_reports(typed, first.plan());
   std::size_t frames = first.plan().frames().size();
   const bool names_frames = std::ranges::count(arguments, Words{"--frames"}) > 0;

@@ -207,7 +207,7 @@ struct OutputSettings {
   std::string aovs = "ao";
   std::string environment;  // a lat-long picture of the light for the AOVs relight and relight-open
   std::string lights;       // a file of suns and lamps, for the AOV shadow, which it asks for
-  std::shared_ptr<const LightsFile> read_lights;  // what it lists; null before FirstLook::prepare()
+  std::shared_ptr<const LightsFile> read_lights;  // what it lists; null before RunPreview::prepare()
   // mono: Y; rgb: R, G, B, as compositors expect, and coloured with multi_bounce
   AoChannels ao_channels = AoChannels::mono;
   // space of directions; automatic: world if the camera has world_to_camera, else view

@@ -123,7 +123,7 @@ constexpr std::uint64_t kCopies = 3;                          // of a chunk: pac
 enum class Role { none, front, back, alpha };
 
 /// A channel that is read, and its place: chunks hold each line channel by channel.
-struct TakenChannel {
+struct WantedChannel {
   Role role;
   Imf::PixelType type;
   std::size_t offset;  // bytes of a sample's channels before it
@@ -145,9 +145,9 @@ struct Part : DeepStored {
                                 : header.compression() == Imf::RLE_COMPRESSION ? DeepCompression::rle
                                                                                : DeepCompression::zip;
   std::uint64_t file_bytes = 0;
-  std::vector<Chunk> chunks;        // row by row
-  std::vector<TakenChannel> taken;  // channels to read
-  std::size_t sample_bytes = 0;     // of all channels
+  std::vector<Chunk> chunks;         // row by row
+  std::vector<WantedChannel> taken;  // channels to read
+  std::size_t sample_bytes = 0;      // of all channels
   // Bytes of the counts of a whole tile, which tiles at the border may store too; 0: more than any chunk may hold.
   std::uint64_t whole_table = 0;
   bool has_back = false;

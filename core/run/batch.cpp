@@ -18,13 +18,13 @@
 #include "core/formats/color.h"
 #include "core/formats/sheet.h"
 #include "core/options/options.h"
-#include "core/run/first_look.h"
 #include "core/run/frame_run.h"
 #include "core/run/lanes.h"
 #include "core/run/memory.h"
 #include "core/run/pipeline.h"
 #include "core/run/resume.h"
 #include "core/run/run_files.h"
+#include "core/run/run_preview.h"
 
 namespace alcove {
 namespace {
@@ -55,12 +55,12 @@ class RunDevice {
     if (lanes_->count() == 1 && threads_ > 1)
       warm_up_.emplace(lanes_->device(), settings_.estimator, settings_.output, std::min(threads_, kWarmingThreads));
     if (settled_) memory = without_shared_frames(memory, plan_, *settled_, settings_, frames_, lanes_->count());
-    room_ = room_of_lane(memory, lanes_->count(), info());
+    budget_ = budget_of_lane(memory, lanes_->count(), info());
   }
 
   const gpu::DeviceInfo& info() { return lanes_->device().info(); }
   Lanes& lanes() { return *lanes_; }
-  const Room& room() const { return room_; }
+  const MemoryBudget& budget() const { return budget_; }
 
  private:
   /// Divides the cores among the frames in flight on a CPU, and tells the codecs and lavapipe how many threads each
@@ -88,7 +88,7 @@ class RunDevice {
   const std::span<const int> frames_;
   const int threads_ = threads_of(settings_.device);
   std::optional<Lanes> lanes_;
-  Room room_;
+  MemoryBudget budget_;
   std::optional<WarmUp> warm_up_;
 };
 
@@ -97,7 +97,7 @@ class RunDevice {
 /// The frames of a run, whose reports are told and counted.
 class Batch {
  public:
-  Batch(FirstLook& look, InputIdentities& identities, const RunWatch& watch, RunReport& report)
+  Batch(RunPreview& look, InputIdentities& identities, const RunWatch& watch, RunReport& report)
       : look_(look), identities_(identities), watch_(watch), report_(report) {}
 
   /// Computes the frames; those that a lost device took with it once more, on a fresh one.
@@ -176,7 +176,7 @@ class Batch {
         device.info().type == gpu::DeviceType::cpu && lower_case(plan_.settings().device.device) == "auto";
     report_.at_once = device.lanes().count();
     run_pipeline(
-        device.lanes(), run, device.room(), frames, [this](FrameReport&& frame) { take(std::move(frame)); },
+        device.lanes(), run, device.budget(), frames, [this](FrameReport&& frame) { take(std::move(frame)); },
         watch_.working);
     report_.at_once = device.lanes().count();
     if (const int messages = device.lanes().validation_messages())
@@ -213,7 +213,7 @@ class Batch {
     if (!plan_.settings().output.stats.empty()) report_.frames.push_back(std::move(frame));
   }
 
-  FirstLook& look_;
+  RunPreview& look_;
   InputIdentities& identities_;
   const RunWatch& watch_;
   RunReport& report_;
@@ -225,7 +225,7 @@ class Batch {
 
 }  // namespace
 
-RunReport run_frames(FirstLook& look, const RunWatch& watch) {
+RunReport run_frames(RunPreview& look, const RunWatch& watch) {
   const Stopwatch wall;
   keep_no_spare_memory();
   RunReport report;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/base/settings.h"
-#include "core/run/first_look.h"
+#include "core/run/run_preview.h"
 #include "core/run/run_report.h"
 
 namespace alcove {
@@ -29,6 +29,6 @@ struct RunWatch {
 /// Computes the frames of a run and writes their outputs. A lost device is replaced by a fresh one, once. Fails on
 /// errors before the first frame. The error of a frame is in its report, and ends the run unless the settings say to
 /// keep going.
-RunReport run_frames(FirstLook& look, const RunWatch& watch);
+RunReport run_frames(RunPreview& look, const RunWatch& watch);
 
 }  // namespace alcove

@@ -83,7 +83,7 @@ bool is_cut_between(const EstimatedFrame& a, const EstimatedFrame& b) {
 
 std::size_t planes_in(const EstimatedFrame& frame) { return frame.values.size() / frame.depth.size(); }
 
-/// See TakenFrame.
+/// See NeighbourFrame.
 std::size_t words_of(const EstimatedFrame& frame) { return frame.depth.size() * (2 + planes_in(frame) / 2); }
 
 /// Of a value in [0, 1].
@@ -99,7 +99,7 @@ std::uint32_t taken_normal(std::uint32_t packed) {
   return packed == kNoNormal ? kNoTakenNormal : shorter(packed & 0xffffu) | shorter(packed >> 16) << 8;
 }
 
-TakenFrame seen_as(const EstimatedFrame& other, const EstimatedFrame& own, std::size_t first) {
+NeighbourFrame seen_as(const EstimatedFrame& other, const EstimatedFrame& own, std::size_t first) {
   const ViewMap map = view_from_view(other.camera, own.camera);
   const auto row = [&](std::size_t i) { return vec3{float(map[i][0]), float(map[i][1]), float(map[i][2])}; };
   const vec3 &a = other.depth_precision, &b = own.depth_precision;
@@ -133,7 +133,7 @@ gpu::Buffer& uploaded(gpu::Recorder& gpu, const char* name, const std::vector<T>
 
 }  // namespace
 
-EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, const TakenEstimates& taken, int frame,
+EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, const NeighbourEstimates& taken, int frame,
                                   std::uint64_t most_bytes) {
   EstimateSet result;
   if (taken.of.empty()) return result;
@@ -146,13 +146,14 @@ EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, con
   std::size_t stride = 0;
   for (const auto& estimated : taken.of) stride = std::max(stride, words_of(*estimated));
   const std::size_t slots = std::size_t(plan.turns()), bytes = stride * sizeof(std::uint32_t);
-  const std::size_t together = std::clamp<std::size_t>(most_bytes / bytes, 1, std::min<std::size_t>(slots, kMostTaken));
+  const std::size_t together =
+      std::clamp<std::size_t>(most_bytes / bytes, 1, std::min<std::size_t>(slots, kMostNeighbours));
   groups_.resize((slots + together - 1) / together);
   for (std::size_t i = 0; i < groups_.size(); i++) {
     Group& group = groups_[i];
     gpu::Buffer& planes = gpu.buffer(fmt::format("estimates {}", i), together * bytes, gpu::Use::upload);
     gpu::Buffer& table =
-        gpu.buffer(fmt::format("estimated frames {}", i), together * sizeof(TakenFrame), gpu::Use::upload);
+        gpu.buffer(fmt::format("estimated frames {}", i), together * sizeof(NeighbourFrame), gpu::Use::upload);
     const bool is_as_before =
         group.buffer == planes.host().data() && group.stride == stride && group.held.size() == together;
     if (!is_as_before) group.held.assign(together, {});
@@ -160,19 +161,19 @@ EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, con
     group.stride = stride;
     uint count = 0;
     for (const auto& estimated : taken.of) {
-      const std::size_t slot = std::size_t(plan.turn_of(estimated->frame));
+      const std::size_t slot = std::size_t(plan.slot_of(estimated->frame));
       if (slot / together != i || estimated->frame == frame) continue;
       const std::size_t first = slot % together * stride;
       if (group.held[slot % together].lock() != estimated)
         put(*estimated, planes.as<std::uint32_t>().subspan(first, stride));
       group.held[slot % together] = estimated;
-      table.as<TakenFrame>()[count++] = seen_as(*estimated, own, first);
+      table.as<NeighbourFrame>()[count++] = seen_as(*estimated, own, first);
     }
     if (count == 0) continue;
     // All but the frame itself, where nothing is cut away or missing.
     const std::size_t room = std::min(together, slots - i * together);
     const uint listed = std::max(count, uint(room) - 1);
-    const auto frames = table.as<TakenFrame>();
+    const auto frames = table.as<NeighbourFrame>();
     std::fill(frames.begin() + count, frames.begin() + listed, frames.front());
     result.groups.push_back({&planes, &table, count, listed});
   }
@@ -208,11 +209,11 @@ struct PartCopy {
 
 }  // namespace
 
-const EstimatedFrame& TakenEstimates::own(int frame) const {
+const EstimatedFrame& NeighbourEstimates::own(int frame) const {
   return **std::ranges::find_if(of, [&](const auto& estimated) { return estimated->frame == frame; });
 }
 
-std::string text_of(const TakenEstimates& taken) {
+std::string text_of(const NeighbourEstimates& taken) {
   if (taken.of.empty()) return "";
   std::vector<int> frames;
   for (const auto& estimated : taken.of) frames.push_back(estimated->frame);
@@ -221,9 +222,9 @@ std::string text_of(const TakenEstimates& taken) {
   return "frames " + frames_text(frames) + missing;
 }
 
-TakenEstimates SharedFrames::estimates_of(const EstimateRoom& where, int frame, PreparationCost& cost) {
+NeighbourEstimates SharedFrames::estimates_of(const EstimateContext& where, int frame, PreparationCost& cost) {
   const FramesAround window = plan_.accumulated(frame);
-  TakenEstimates taken{
+  NeighbourEstimates taken{
       {}, estimated_.of(window.there, [&](int other) { return estimate(where, other, cost); }), window.missing};
   {
     const std::lock_guard lock(mutex_);
@@ -234,7 +235,7 @@ TakenEstimates SharedFrames::estimates_of(const EstimateRoom& where, int frame, 
   return taken;
 }
 
-EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, PreparationCost& cost) {
+EstimatedFrame SharedFrames::estimate(const EstimateContext& where, int frame, PreparationCost& cost) {
   const Settings settings = of_estimate(plan_.at(frame));
   FrameSource source = open_frame(settings, frame);
   if (settled_) settle_like(source, *settled_);
@@ -242,7 +243,7 @@ EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, Prep
   const Window whole = source.reading.data;
   EstimatedFrame result;
   result.frame = frame;
-  result.others = others_of(where.gpu, source, frame, cost);
+  result.others = neighbours_of(where.gpu, source, frame, cost);
   FrameTally tally(result.report);
   Wanted wanted{settings.output};
   wanted.only_own = wanted.visibility = true;
@@ -250,9 +251,9 @@ EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, Prep
   std::vector<float> scales, moments;  // over the whole frame
   const auto compute = [&](const Window& window, const Window& part) {
     if (where.begin) where.begin(window);
-    FrameInputs inputs = load_frame(where.gpu, source, window, settings, plan_.turn_of(frame), &read);
+    FrameInputs inputs = load_frame(where.gpu, source, window, settings, plan_.slot_of(frame), &read);
     inputs.others = result.others.seen;
-    inputs.turn = plan_.turn_of(frame);
+    inputs.turn = plan_.slot_of(frame);
     if (part == whole) read = kept_planes(inputs);
     const FrameOutputs outputs = run_chain(where.gpu, inputs, settings.estimator, wanted);
     where.gpu.run();
@@ -267,12 +268,13 @@ EstimatedFrame SharedFrames::estimate(const EstimateRoom& where, int frame, Prep
     copy(own.visibility.scales, scales);
     copy(own.visibility.moments, moments);
   };
-  const WindowLimits limits{memory_with_others(plan_, source, settings), where.room, longest_side(settings.estimator)};
+  const WindowLimits limits{memory_with_others(plan_, source, settings), where.budget,
+                            longest_side(settings.estimator)};
   if (limits.allow(whole)) {
     compute(whole, whole);
   } else {
     const WindowLimits of_parts = limits.in_parts(source, settings);
-    read_for_parts(source, settings, read, of_parts.room.bytes - of_parts.kept);
+    read_for_parts(source, settings, read, of_parts.budget.bytes - of_parts.kept);
     Surroundings surroundings(source, settings, read[RawPlane::depth]);
     for (const auto& row : tiles_of(whole, surroundings, of_parts, source))
       for (const auto& tile : row) compute(surroundings.around(tile), tile);

@@ -50,7 +50,7 @@ void FrameTally::add_others(const PreparationCost& cost) {
   before_ = report_.passes.size();
 }
 
-void FrameTally::add_estimate(const FrameReport& estimate, const Others& others) {
+void FrameTally::add_estimate(const FrameReport& estimate, const Neighbours& others) {
   report_.tiles = estimate.tiles;
   report_.estimates = estimate.estimates;
   is_quick_ = is_quick_ || estimate.search == word_of(SliceSearch::quick);
@@ -249,12 +249,13 @@ struct Dropped {};
 
 class FrameRun {
  public:
-  FrameRun(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& watch, FrameReport& report)
+  FrameRun(Lane& lane, const RunContext& run, const MemoryBudget& budget, int frame, const PartWatch& watch,
+           FrameReport& report)
       : gpu_(lane.gpu),
         last_(lane.last),
         slots_(lane.estimates),
         run_(run),
-        room_(room),
+        budget_(budget),
         frame_(frame),
         watch_(watch),
         settings_(run.plan.at(frame)),
@@ -263,10 +264,10 @@ class FrameRun {
 
   void run() {
     const Stopwatch total;
-    go_on();
+    throw_if_stopped();
     FrameSource source = open();
     require_numbered_lines(source, settings_.estimator);
-    const WindowLimits limits{memory_of_looks(source), room_, longest_side(settings_.estimator)};
+    const WindowLimits limits{memory_of_looks(source), budget_, longest_side(settings_.estimator)};
     require_room_for_preview(source, limits);
     take_others(source);
     if (!run_.planes && !source.region && limits.allow(source.reading.data))
@@ -279,7 +280,7 @@ class FrameRun {
 
  private:
   /// Ends the frame here where the run is to stop.
-  void go_on() const {
+  void throw_if_stopped() const {
     if (run_.stop && run_.stop()) throw Dropped{};
   }
 
@@ -287,7 +288,7 @@ class FrameRun {
   FrameSource open() {
     const Stopwatch reading;
     FrameSource source = run_.look.open(settings_, frame_);
-    if (run_.settled && settle_like_or_alone(source, *run_.settled, settings_.input, room_.bytes))
+    if (run_.settled && settle_like_or_alone(source, *run_.settled, settings_.input, budget_.bytes))
       take_over_notes(source, *run_.settled);
     report_.read_ms += reading.ms();
     refuse_by_notes(source);
@@ -327,7 +328,7 @@ class FrameRun {
   /// Computes what depends on a part of the frame, or the frame in tiles: all of them from planes that are read once.
   void run_parts(FrameSource& source, const WindowLimits& limits) {
     const Stopwatch reading;
-    read_for_parts(source, settings_, read_, limits.room.bytes - limits.kept);
+    read_for_parts(source, settings_, read_, limits.budget.bytes - limits.kept);
     Surroundings surroundings(source, settings_, read_[RawPlane::depth]);
     const Window computed = surroundings.around(written_of(source));
     report_.read_ms += reading.ms();
@@ -349,16 +350,16 @@ class FrameRun {
     PreparationCost cost;
     // Where the device has no memory for a part of an estimate, smaller ones are computed as of the frame itself.
     const auto begin = [this](const Window& computed) {
-      go_on();
+      throw_if_stopped();
       tally_.begin(computed);
     };
-    if (run_.takes_means) estimates_ = run_.shot->estimates_of({gpu_, room_, begin}, frame_, cost);
-    if (needs_others()) others_ = run_.shot->others_of(gpu_, source, frame_, cost);
+    if (run_.takes_means) estimates_ = run_.shot->estimates_of({gpu_, budget_, begin}, frame_, cost);
+    if (needs_others()) others_ = run_.shot->neighbours_of(gpu_, source, frame_, cost);
     tally_.add_others(cost);
     if (run_.takes_means) take_estimates();
     if (!others_.frames.empty() || !others_.missing.empty()) report_.frames_around = others_.frames;
     report_.read_ms += reading.ms();
-    go_on();
+    throw_if_stopped();
   }
 
   /// What the frame's own estimate was made of and has found counts as the frame's.
@@ -366,7 +367,7 @@ class FrameRun {
     const EstimatedFrame& own = estimates_.own(frame_);
     if (others_.seen.empty()) others_ = own.others;
     tally_.add_estimate(own.report, others_);
-    in_slots_ = slots_.filled(gpu_, run_.plan, estimates_, frame_, room_.buffer_bytes);
+    in_slots_ = slots_.filled(gpu_, run_.plan, estimates_, frame_, budget_.buffer_bytes);
     read_ = std::move(estimates_.read);
   }
 
@@ -383,7 +384,7 @@ class FrameRun {
     tally_.add_inputs(source, window, inputs, written_of(source));
     report_.read_ms += reading.ms();
     refuse_by_notes(source);
-    go_on();
+    throw_if_stopped();
     return inputs;
   }
 
@@ -411,7 +412,7 @@ class FrameRun {
     }
     if (reuses) last_.keep(outputs);
     tally_.add_outputs(outputs, window, is_same);
-    go_on();
+    throw_if_stopped();
     return outputs;
   }
 
@@ -429,7 +430,7 @@ class FrameRun {
     run_passes();
     LookTime time{report_.compute_ms};  // with what other frames took
     for (std::size_t i = 0; i < run_.looks.size(); i++) {
-      go_on();
+      throw_if_stopped();
       const Settings& look = run_.looks[i];
       const FrameOutputs outputs = results_of(gpu_, inputs, seen, look.estimator, look.output);
       time.own_ms = run_passes();
@@ -520,7 +521,7 @@ class FrameRun {
     constexpr std::uint64_t kBytes = 3 * (sizeof(float) + 1);  // per pixel: display values, and the bytes of a PNG
     const std::uint64_t side_by_side = settings_.output.preview_style == "split" ? 4 : 1;  // each, and both
     const std::uint64_t bytes = picture_of(source.reading, source.reading.display).pixels() * kBytes * side_by_side;
-    if (bytes > room_.bytes)
+    if (bytes > budget_.bytes)
       limits.refuse(fmt::format("{}: {} shows the display window, {}: {}", report_.input,
                                 run_.take_look ? "a wedge" : "a preview", to_string(source.reading.display),
                                 run_.take_look ? "use a smaller frame" : "leave out --preview"),
@@ -558,14 +559,14 @@ class FrameRun {
   LastFrame& last_;
   EstimateSlots& slots_;
   const RunContext& run_;
-  const Room& room_;
+  const MemoryBudget& budget_;
   int frame_;
   const PartWatch& watch_;
   int part_ = 0, parts_ = 1;
   std::string why_in_parts_;
   Settings settings_;
-  Others others_;             // that the frame takes
-  TakenEstimates estimates_;  // the same
+  Neighbours others_;             // that the frame takes
+  NeighbourEstimates estimates_;  // the same
   ReadPlanes own_planes_;
   // of the whole frame, for its parts; without planes these come from the files
   ReadPlanes& read_ = run_.planes ? *run_.planes : own_planes_;
@@ -596,12 +597,12 @@ void put_failure(FrameReport& report, const Error& error) {
   report.device_lost = dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr;
 }
 
-FrameReport run_on(Lane& lane, const RunContext& run, const Room& room, int frame, const PartWatch& watch) {
+FrameReport run_on(Lane& lane, const RunContext& run, const MemoryBudget& budget, int frame, const PartWatch& watch) {
   FrameReport report;
   lane.gpu.abandon();  // commands that a frame that failed has left
   try {
     report = report_of(run.plan, frame);
-    FrameRun(lane, run, room, frame, watch, report).run();
+    FrameRun(lane, run, budget, frame, watch, report).run();
     report.state = FrameState::done;
   } catch (const Dropped&) {
     report.state = FrameState::dropped;
@@ -625,10 +626,11 @@ FrameReport run_on(Lane& lane, const RunContext& run, const Room& room, int fram
 
 }  // namespace
 
-FrameReport run_frame(Lanes& lanes, const RunContext& run, const Room& room, int frame, const PartWatch& watch) {
+FrameReport run_frame(Lanes& lanes, const RunContext& run, const MemoryBudget& budget, int frame,
+                      const PartWatch& watch) {
   try {
     Lanes::Lease lease(lanes);
-    FrameReport report = run_on(lease.lane(), run, room, frame, watch);
+    FrameReport report = run_on(lease.lane(), run, budget, frame, watch);
     if (!report.out_of_memory) lease.keep_buffers();
     return report;
   } catch (const Error& error) {  // of making the lane, which is no fault of the frame

@@ -11,11 +11,11 @@
 #include "core/frame/find/behind.h"
 #include "core/frame/find/frame_source.h"
 #include "core/frame/pixels/radius.h"
-#include "core/run/first_look.h"
 #include "core/run/frame_files.h"
 #include "core/run/lanes.h"
 #include "core/run/plan.h"
 #include "core/run/resume.h"
+#include "core/run/run_preview.h"
 #include "core/run/run_report.h"
 #include "core/run/shot.h"
 #include "core/run/tiles.h"
@@ -34,7 +34,7 @@ class FrameTally {
   /// The cost of preparing others comes before the passes of the frame.
   void add_others(const PreparationCost& cost);
   /// Counts of this frame's estimate, if frames are averaged; `others`: of the other frames that it uses.
-  void add_estimate(const FrameReport& estimate, const Others& others);
+  void add_estimate(const FrameReport& estimate, const Neighbours& others);
   void add_passes(std::span<const gpu::PassTime> passes);
   /// is_same: all results were kept from the frame before.
   void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
@@ -75,7 +75,7 @@ using TakeLook =
 
 /// The common state of all frames of a run.
 struct RunContext {
-  FirstLook& look;
+  RunPreview& look;
   const FramePlan& plan;
   InputIdentities& identities;                  // of the plan
   const FrameSource* settled = nullptr;         // all frames are read as this one; null: each by itself
@@ -101,6 +101,7 @@ FrameReport report_of(const FramePlan& plan, int frame);
 using PartWatch = std::function<void(int part, int parts, double done)>;
 
 /// Reads, computes and writes one frame on a lane, within the room. Never throws: the report has the error.
-FrameReport run_frame(Lanes& lanes, const RunContext& run, const Room& room, int frame, const PartWatch& watch);
+FrameReport run_frame(Lanes& lanes, const RunContext& run, const MemoryBudget& budget, int frame,
+                      const PartWatch& watch);
 
 }  // namespace alcove

@@ -80,9 +80,9 @@ FrameMemory::Bytes FrameMemory::of(const Window& computed) const {
   return {device, device + computed.pixels() * beside + copies + fixed_bytes, rehearsal.largest_bytes()};
 }
 
-std::uint64_t FrameMemory::codec_bytes(std::uint64_t room) const {
+std::uint64_t FrameMemory::codec_bytes(std::uint64_t budget) const {
   std::uint64_t bytes = 0;
-  for (const std::uint64_t group : codec_groups) bytes += exr_codec_bytes(group, room / kCodecPart);
+  for (const std::uint64_t group : codec_groups) bytes += exr_codec_bytes(group, budget / kCodecPart);
   return bytes;
 }
 
@@ -179,7 +179,7 @@ RunMemory memory_with(const DeviceSettings& settings, std::uint64_t program_byte
   memory.is_chosen = settings.memory > 0;
   const std::uint64_t allowed = settings.memory ? settings.memory : free_memory() / 2;
   memory.host_bytes = std::max(settings.least_memory, allowed - std::min(allowed, program_bytes));
-  memory.device_bytes = Room::kEndless;
+  memory.device_bytes = MemoryBudget::kEndless;
   return memory;
 }
 
@@ -208,23 +208,23 @@ std::uint64_t frames_in(const RunMemory& memory, const FrameMemory& frame, const
   return std::max<std::uint64_t>(1, std::min(on_host, on_device));
 }
 
-Room room_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& device) {
+MemoryBudget budget_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& device) {
   const auto count = std::uint64_t(lanes);
   const std::uint64_t of_lanes = (count - 1) * memory.lane_bytes;
-  Room room;
-  room.bytes = (memory.host_bytes - std::min(memory.host_bytes, of_lanes)) / count;
-  room.device_bytes = memory.device_bytes / count;
-  room.buffer_bytes = device.buffer_bytes;
-  room.program_bytes = memory.program_bytes;
-  room.is_chosen = memory.is_chosen;
-  return room;
+  MemoryBudget budget;
+  budget.bytes = (memory.host_bytes - std::min(memory.host_bytes, of_lanes)) / count;
+  budget.device_bytes = memory.device_bytes / count;
+  budget.buffer_bytes = device.buffer_bytes;
+  budget.program_bytes = memory.program_bytes;
+  budget.is_chosen = memory.is_chosen;
+  return budget;
 }
 
 // What frames see of each other.
 
 namespace {
 
-constexpr std::size_t kPlanesOfSeen = 3;    // depth, normals, what moves
+constexpr std::size_t kPlanesOfView = 3;    // depth, normals, what moves
 constexpr std::size_t kPlanesPrepared = 5;  // that passes make of it: depth, normals, flags, what moves, surfels
 
 /// Planes of values of an estimate: see EstimateSet.
@@ -303,8 +303,8 @@ FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, 
   if (!takes_others(settings.input)) return memory;
   // What tells what moves in one of them takes those around it.
   const int count = around_of(settings.input);
-  const std::size_t judges = count == 0 ? 0 : std::min(plan.shot().size(), std::size_t(most_judges(count)));
-  const std::size_t buffers = others == 0 ? 0 : kPlanesOfSeen * std::max(others, judges + 1);
+  const std::size_t witnesses = count == 0 ? 0 : std::min(plan.shot().size(), std::size_t(most_witnesses(count)));
+  const std::size_t buffers = others == 0 ? 0 : kPlanesOfView * std::max(others, witnesses + 1);
   const std::size_t prepared =
       frame.channels[RawPlane::depth].size() + frame.channels[RawPlane::normal].size() + kPlanesPrepared;
   memory.fixed_on_device += sizeof(float) * frame.reading.data.pixels() * (buffers + prepared);
@@ -318,7 +318,7 @@ std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, con
   // computed at once may lie far from each other.
   const std::uint64_t means = 2 * std::uint64_t(settings.accumulate);
   const std::uint64_t window = std::uint64_t(lanes) * (around + means) + means;
-  return kPlanesOfSeen * sizeof(float) * frame.reading.data.pixels() *
+  return kPlanesOfView * sizeof(float) * frame.reading.data.pixels() *
          std::min<std::uint64_t>(plan.shot().size(), window);
 }
 

@@ -37,7 +37,7 @@ struct FrameMemory {
   /// Rehearses the chain for a window.
   Bytes of(const Window& computed) const;
   /// Host memory of the codecs of the frame's files if `room` bytes are left for the frame.
-  std::uint64_t codec_bytes(std::uint64_t room) const;
+  std::uint64_t codec_bytes(std::uint64_t budget) const;
   /// Takes over the settings; a radius that is unknown yet counts as 1.
   void take(const Settings& settings);
 
@@ -79,7 +79,7 @@ RunMemory memory_for_frames(const Settings& settings, const gpu::DeviceInfo& dev
 std::uint64_t frames_in(const RunMemory& memory, const FrameMemory& frame, const Window& computed);
 
 /// The memory that one frame in flight may take.
-struct Room {
+struct MemoryBudget {
   static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
 
   std::uint64_t bytes = 0;                // of host memory
@@ -92,7 +92,7 @@ struct Room {
 };
 
 /// The room of each of `lanes` frames in flight.
-Room room_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& device);
+MemoryBudget budget_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& device);
 
 // Other frames of a shot.
 

@@ -20,14 +20,14 @@ constexpr std::chrono::seconds kTold{1};  // between two times that it is told h
 /// they hand to each other passes under one mutex, and nobody prints or computes while holding it.
 class Pipeline {
  public:
-  Pipeline(Lanes& lanes, const RunContext& run, const Room& room, std::span<const int> frames,
+  Pipeline(Lanes& lanes, const RunContext& run, const MemoryBudget& budget, std::span<const int> frames,
            const TakeReport& take_report, const TakeProgress& take_progress)
       : lanes_(lanes),
         run_(run),
         frames_(frames),
         take_report_(take_report),
         take_progress_(take_progress),
-        room_(room),
+        budget_(budget),
         most_in_flight_(lanes.count()) {}
 
   /// Starts a thread for each lane. Where the system gives no more threads the run ends with its error, once those that
@@ -76,7 +76,7 @@ class Pipeline {
   /// A try at one frame, with what was learned from earlier ones.
   struct Attempt {
     std::size_t place;  // of the frame, in the list
-    Room room;
+    MemoryBudget budget;
     int most_in_flight;      // frames, when it began
     bool was_alone = false;  // no other frame was in flight, and no buffers were left of earlier ones
     Notes notes = {};
@@ -92,7 +92,7 @@ class Pipeline {
     const int frame = frames_[begun_];
     if (run_.shot) run_.shot->begin(frame);
     working_on_[frame] = {Stopwatch(), main_input(run_.plan.at(frame).input)};
-    return Attempt{begun_++, room_, most_in_flight_};
+    return Attempt{begun_++, budget_, most_in_flight_};
   }
 
   /// Computes a frame, again and again where the device has no memory for it and less at once may find some.
@@ -101,7 +101,7 @@ class Pipeline {
     const auto watch = [&](int part, int parts, double done) { note_part(frame, part, parts, done); };
     FrameReport report;
     do {
-      report = run_frame(lanes_, run_, attempt.room, frame, watch);
+      report = run_frame(lanes_, run_, attempt.budget, frame, watch);
       if (report.out_of_memory) attempt.out_of_memory = report.error;
     } while (report.out_of_memory && make_room(report.pixels_at_once, attempt));
 
@@ -113,7 +113,7 @@ class Pipeline {
     if (is_too_large && attempt.out_of_memory)
       report.error = Error(ErrorKind::device, fmt::format("{}; in smaller parts: {}", attempt.out_of_memory->what(),
                                                           report.error->what()));
-    finish(attempt.place, attempt.room, std::move(report));
+    finish(attempt.place, attempt.budget, std::move(report));
   }
 
   void note_part(int frame, int part, int parts, double done) {
@@ -147,7 +147,7 @@ class Pipeline {
           {NoteCode::device_memory,
            fmt::format("the device had no memory for {} pixels at once; now at most {} are computed at once", pixels,
                        pixels / 2)});
-      attempt.room.pixels = pixels / 2;
+      attempt.budget.pixels = pixels / 2;
     }
     in_flight_--;
     waiting_++;
@@ -161,13 +161,13 @@ class Pipeline {
     return !error_;
   }
 
-  void finish(std::size_t place, const Room& room, FrameReport&& report) {
+  void finish(std::size_t place, const MemoryBudget& budget, FrameReport&& report) {
     // What a frame takes is kept where a second device computes it again.
     if (run_.shot && !report.device_lost) run_.shot->done(report.frame);
     const Lock lock(mutex_);
     in_flight_--;
     // Later frames begin with what this one has learned.
-    if (report.state == FrameState::done) room_.pixels = std::min(room_.pixels, room.pixels);
+    if (report.state == FrameState::done) budget_.pixels = std::min(budget_.pixels, budget.pixels);
     const bool ends_run = report.state == FrameState::failed && !run_.plan.settings().frames.keep_going;
     if (report.device_lost || ends_run) ended_ = true;
     if (const auto work = working_on_.find(report.frame); work != working_on_.end()) work->second.has_ended = true;
@@ -227,7 +227,7 @@ class Pipeline {
 
   std::mutex mutex_;  // of all below
   std::condition_variable changed_;
-  Room room_;                                    // of each frame in flight
+  MemoryBudget budget_;                          // of each frame in flight
   int most_in_flight_;                           // frames
   int in_flight_ = 0;                            // frames
   int waiting_ = 0;                              // frames to be computed again; they go before those not begun
@@ -242,9 +242,9 @@ class Pipeline {
 
 }  // namespace
 
-void run_pipeline(Lanes& lanes, const RunContext& run, const Room& room, std::span<const int> frames,
+void run_pipeline(Lanes& lanes, const RunContext& run, const MemoryBudget& budget, std::span<const int> frames,
                   const TakeReport& take_report, const TakeProgress& take_progress) {
-  Pipeline pipeline(lanes, run, room, frames, take_report, take_progress);
+  Pipeline pipeline(lanes, run, budget, frames, take_report, take_progress);
   {
     std::vector<std::jthread> workers;
     pipeline.start(workers);

@@ -19,7 +19,7 @@ using TakeProgress = std::function<void(std::span<const FrameProgress>)>;
 /// first in the order of the frames. If the device has no memory for a frame, the number of lanes is halved, down to
 /// one, and then the window that is computed at once. The frame is computed again, with a note; later frames keep these
 /// limits.
-void run_pipeline(Lanes& lanes, const RunContext& run, const Room& room, std::span<const int> frames,
+void run_pipeline(Lanes& lanes, const RunContext& run, const MemoryBudget& budget, std::span<const int> frames,
                   const TakeReport& take_report, const TakeProgress& take_progress);
 
 }  // namespace alcove

@@ -259,7 +259,7 @@ bool FramePlan::is_accumulated(int other, int frame) const {
   return place_of(other) >= first && place_of(other) < last;
 }
 
-int FramePlan::turn_of(int frame) const { return int(place_of(frame) % turns()); }
+int FramePlan::slot_of(int frame) const { return int(place_of(frame) % turns()); }
 
 std::vector<int> FramePlan::missing_around() const {
   std::set<int> missing;

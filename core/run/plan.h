@@ -63,7 +63,7 @@ class FramePlan {
   bool is_accumulated(int other, int frame) const;
   /// The size of a mean, and a frame's slot in it; slots in one mean are distinct.
   int turns() const { return 2 * settings_.input.accumulate + 1; }
-  int turn_of(int frame) const;
+  int slot_of(int frame) const;
   /// Frames around those to compute that have no file, if the settings skip them.
   std::vector<int> missing_around() const;
   /// All of the shot.

@@ -107,7 +107,7 @@ InputIdentities::Identity InputIdentities::all_of(int frame) {
   const InputSettings& input = plan_.settings().input;
   Identity all = own(frame);
   if (!shot_option(input)) return all;
-  if (input.accumulate > 0) all.text += fmt::format("\nturn {}", plan_.turn_of(frame));
+  if (input.accumulate > 0) all.text += fmt::format("\nturn {}", plan_.slot_of(frame));
   for (const int other : frames_seen_for(plan_, frame)) {
     const Identity identity = own(other);
     all.newest = std::max(all.newest, identity.newest);

@@ -22,9 +22,9 @@ namespace {
 
 /// The least number of frames on each side that detect motion in a frame. More do if more are used: a thing that rests
 /// for a while is detected only by frames that see the place before it comes or after it has left.
-constexpr int kLeastJudges = 2;
+constexpr int kLeastWitnesses = 2;
 
-int judges_to_each_side(int count) { return std::max(count, kLeastJudges); }
+int witnesses_to_each_side(int count) { return std::max(count, kLeastWitnesses); }
 
 bool has_deep_depth(const FrameSource& source) {
   const ChannelRef& depth = source.channels[RawPlane::depth][0];
@@ -73,7 +73,7 @@ Movement movement(std::vector<std::uint32_t> flags) {
 }
 
 /// Puts what was seen into upload buffers, the `place`-th of the frame that is computed.
-OtherView filled(gpu::Recorder& gpu, const SeenFrame& seen, const Movement& moving, const Camera& here,
+OtherView filled(gpu::Recorder& gpu, const NeighbourView& seen, const Movement& moving, const Camera& here,
                  std::size_t place) {
   const auto plane = [&]<class T>(const char* name, const std::vector<T>& values) -> const gpu::Buffer* {
     if (values.empty()) return nullptr;
@@ -96,8 +96,8 @@ OtherView filled(gpu::Recorder& gpu, const SeenFrame& seen, const Movement& movi
 }
 
 /// What moves as the witnesses tell, or cannot stand for its surface.
-std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const SeenFrame& seen,
-                                  const std::vector<std::shared_ptr<const SeenFrame>>& witnesses,
+std::vector<std::uint32_t> judged(gpu::Recorder& gpu, const NeighbourView& seen,
+                                  const std::vector<std::shared_ptr<const NeighbourView>>& witnesses,
                                   PreparationCost& cost) {
   FrameInputs inputs;
   for (const auto& witness : witnesses)
@@ -120,7 +120,7 @@ std::vector<int> seen_around(const FramePlan& plan, int frame) {
   if (count == kWholeShot) return around;
   std::set<int> seen(around.begin(), around.end());
   for (const int other : around)
-    for (const int judge : judges_of(plan, other)) seen.insert(judge);
+    for (const int witness : witnesses_of(plan, other)) seen.insert(witness);
   seen.erase(frame);
   return {seen.begin(), seen.end()};
 }
@@ -147,7 +147,7 @@ bool takes_frames(const InputSettings& settings) {
 
 bool takes_others(const InputSettings& settings) { return takes_frames(settings) || settings.other_views; }
 
-std::string text_of(const Others& others) {
+std::string text_of(const Neighbours& others) {
   std::vector<std::string> parts;
   if (!others.frames.empty()) parts.push_back("frames " + frames_text(others.frames));
   if (!others.missing.empty()) parts.push_back("missing " + frames_text(others.missing));
@@ -187,8 +187,8 @@ void SharedFrames::done(int frame) {
   std::erase_if(read_, [&](const auto& read) { return !is_taken(read.first); });
 }
 
-SeenFrame SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, int frame, const char* option,
-                                PreparationCost& cost) const {
+NeighbourView SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, int frame, const char* option,
+                                    PreparationCost& cost) const {
   Settings settings;
   settings.input = input;
   FrameSource source = find_frame(input, false, frame);
@@ -204,14 +204,14 @@ SeenFrame SharedFrames::prepare(gpu::Recorder& gpu, const InputSettings& input, 
   cost.passes.insert(cost.passes.end(), gpu.passes().begin(), gpu.passes().end());
   const auto depth = gbuffer.depth->as<const float>();
   const auto normal = gbuffer.normal->as<const std::uint32_t>();
-  SeenFrame seen{source.reading.camera,   source.reading.data,          source.reading.display,        gbuffer.view,
-                 gbuffer.depth_precision, {depth.begin(), depth.end()}, {normal.begin(), normal.end()}};
+  NeighbourView seen{source.reading.camera,   source.reading.data,          source.reading.display,        gbuffer.view,
+                     gbuffer.depth_precision, {depth.begin(), depth.end()}, {normal.begin(), normal.end()}};
   seen.hash = hash_of(seen.normal, hash_of(seen.depth));
   return seen;
 }
 
-std::vector<SharedFrames::Seen> SharedFrames::seen(gpu::Recorder& gpu, const std::vector<int>& frames,
-                                                   PreparationCost& cost) {
+std::vector<SharedFrames::SharedView> SharedFrames::seen(gpu::Recorder& gpu, const std::vector<int>& frames,
+                                                         PreparationCost& cost) {
   return seen_.of(frames, [&](int frame) {
     const InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
     return prepare(gpu, input, frame, shot_option(input), cost);
@@ -219,9 +219,9 @@ std::vector<SharedFrames::Seen> SharedFrames::seen(gpu::Recorder& gpu, const std
 }
 
 Movement SharedFrames::movement_of(gpu::Recorder& gpu, int frame, PreparationCost& cost) {
-  const Seen here = seen(gpu, {frame}, cost)[0];
+  const SharedView here = seen(gpu, {frame}, cost)[0];
   const auto vectors = moving_by_vectors(gpu, frame, cost, 1);
-  std::vector<std::uint32_t> moving = judged(gpu, *here, seen(gpu, judges_of(plan_, frame), cost), cost);
+  std::vector<std::uint32_t> moving = judged(gpu, *here, seen(gpu, witnesses_of(plan_, frame), cost), cost);
   // Vectors tell of one step: what another frame sees through has moved later or before. Who else has seen it does not
   // matter then.
   for (std::size_t i = 0; vectors && i < moving.size(); i++)
@@ -233,10 +233,10 @@ std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Re
                                                                          PreparationCost& cost, int around) {
   const InputSettings input = plan_.at(frame).input;
   if (input.motion.empty()) return std::nullopt;
-  const Seen here = seen(gpu, {frame}, cost)[0];
+  const SharedView here = seen(gpu, {frame}, cost)[0];
   MotionFrame motion{here->depth, here->view, {}, {}};
   for (const int other : plan_.around(frame, 1).there) {
-    const Seen beside = seen(gpu, {other}, cost)[0];
+    const SharedView beside = seen(gpu, {other}, cost)[0];
     std::optional<FromThere>& there = other < frame ? motion.previous : motion.next;
     there.emplace(
         FromThere{view_from_view(beside->camera, here->camera), view_of(beside->camera, here->data, here->display)});
@@ -256,8 +256,8 @@ std::optional<std::vector<std::uint8_t>> SharedFrames::moving_by_vectors(gpu::Re
        planes.path, frame);
 }
 
-std::vector<SharedFrames::SeenWithMovement> SharedFrames::frames_around(gpu::Recorder& gpu, const FrameSource& target,
-                                                                        int frame, Others& others,
+std::vector<SharedFrames::ViewWithMovement> SharedFrames::frames_around(gpu::Recorder& gpu, const FrameSource& target,
+                                                                        int frame, Neighbours& others,
                                                                         PreparationCost& cost) {
   const int count = around_of(plan_.at(frame).input);
   const FramesAround around = plan_.around(frame, count);
@@ -265,9 +265,9 @@ std::vector<SharedFrames::SeenWithMovement> SharedFrames::frames_around(gpu::Rec
   others.missing = around.missing;
   require_place(target, frame, "--around");
   seen(gpu, seen_around(plan_, frame), cost);
-  const std::vector<Seen> frames = seen(gpu, around.there, cost);
+  const std::vector<SharedView> frames = seen(gpu, around.there, cost);
   const auto moving = moving_.of(around.there, [&](int other) { return movement_of(gpu, other, cost); });
-  std::vector<SeenWithMovement> found;
+  std::vector<ViewWithMovement> found;
   for (std::size_t i = 0; i < frames.size(); i++) {
     found.push_back({frames[i], moving[i]});
     const auto projection = [](const Camera& camera) { return camera.orthographic ? "orthographic" : "perspective"; };
@@ -281,16 +281,16 @@ std::vector<SharedFrames::SeenWithMovement> SharedFrames::frames_around(gpu::Rec
   return found;
 }
 
-std::vector<SharedFrames::SeenWithMovement> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target,
-                                                                      int frame, Others& others,
+std::vector<SharedFrames::ViewWithMovement> SharedFrames::other_views(gpu::Recorder& gpu, const FrameSource& target,
+                                                                      int frame, Neighbours& others,
                                                                       PreparationCost& cost) const {
   InputSettings input = of_first_surface(plan_.at(frame).input, settled_);
   others.views = other_views_of(target);
   require_place(target, frame, "--set other-views");
-  std::vector<SeenWithMovement> found;
+  std::vector<ViewWithMovement> found;
   for (const auto& view : others.views) {
     input.view = view;
-    const auto other = std::make_shared<const SeenFrame>(prepare(gpu, input, frame, "--set other-views", cost));
+    const auto other = std::make_shared<const NeighbourView>(prepare(gpu, input, frame, "--set other-views", cost));
     if (is_same_place(other->camera, target.reading.camera))
       fail(ErrorKind::input,
            "{}: its views have one camera, and --set other-views needs that of each: give a --camera file with "
@@ -301,10 +301,11 @@ std::vector<SharedFrames::SeenWithMovement> SharedFrames::other_views(gpu::Recor
   return found;
 }
 
-Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparationCost& cost) {
+Neighbours SharedFrames::neighbours_of(gpu::Recorder& gpu, const FrameSource& target, int frame,
+                                       PreparationCost& cost) {
   const InputSettings input = plan_.at(frame).input;
-  Others others;
-  std::vector<SeenWithMovement> found;
+  Neighbours others;
+  std::vector<ViewWithMovement> found;
   if (around_of(input) > 0) found = frames_around(gpu, target, frame, others, cost);
   if (input.other_views) std::ranges::move(other_views(gpu, target, frame, others, cost), std::back_inserter(found));
   for (const auto& [seen, moving] : found)
@@ -312,11 +313,11 @@ Others SharedFrames::others_of(gpu::Recorder& gpu, const FrameSource& target, in
   return others;
 }
 
-std::vector<int> judges_of(const FramePlan& plan, int frame) {
-  return plan.nearest(frame, judges_to_each_side(around_of(plan.at(frame).input)));
+std::vector<int> witnesses_of(const FramePlan& plan, int frame) {
+  return plan.nearest(frame, witnesses_to_each_side(around_of(plan.at(frame).input)));
 }
 
-int most_judges(int count) { return count == kWholeShot ? count : 2 * judges_to_each_side(count); }
+int most_witnesses(int count) { return count == kWholeShot ? count : 2 * witnesses_to_each_side(count); }
 
 std::vector<int> frames_seen_for(const FramePlan& plan, int frame) {
   std::vector<int> first = plan.accumulated(frame).there;
@@ -345,7 +346,7 @@ SharedCounts shared_counts(const FramePlan& plan, std::span<const int> frames) {
     const std::vector<int> around =
         around_of(input) > 0 ? plan.around(taker, around_of(input)).there : std::vector<int>();
     add(prepared, around);
-    for (const int other : around) add(prepared, judges_of(plan, other));
+    for (const int other : around) add(prepared, witnesses_of(plan, other));
     // Vectors are proved by the frames beside theirs.
     if (estimated.empty() || input.motion.empty()) continue;
     add(prepared, {taker});
@@ -355,9 +356,9 @@ SharedCounts shared_counts(const FramePlan& plan, std::span<const int> frames) {
 }
 
 int farthest_seen(int count) {
-  const int judges = judges_to_each_side(count);
+  const int witnesses = witnesses_to_each_side(count);
   // At the ends of the shot they all lie on one side.
-  return count == kWholeShot ? count : std::max(count + judges, 2 * judges);
+  return count == kWholeShot ? count : std::max(count + witnesses, 2 * witnesses);
 }
 
 }  // namespace alcove

@@ -26,7 +26,7 @@ namespace alcove {
 /// Values of frames that several frames take: each is made once, by the first thread that needs it. Any thread may ask.
 /// A thread whose value is being made elsewhere makes another missing value first, then waits.
 template <class T>
-class MadeOnce {
+class SharedCache {
  public:
   using Value = std::shared_ptr<const T>;
 
@@ -86,7 +86,7 @@ class MadeOnce {
 };
 
 /// The first surface that one view of a frame sees, in host memory.
-struct SeenFrame {
+struct NeighbourView {
   Camera camera;
   Window data, display;
   View view{};
@@ -103,14 +103,14 @@ struct Movement {
 };
 
 /// Surfaces that a frame takes from others.
-struct Others {
+struct Neighbours {
   std::vector<OtherView> seen;
   std::vector<int> frames, missing;  // neighbouring frames that it uses, and those without a file
   std::vector<std::string> views;    // other views of its own instant
 };
 
 /// The text for a header; empty without others: "frames 3-5, 7; missing 6; views right".
-std::string text_of(const Others& others);
+std::string text_of(const Neighbours& others);
 
 /// The estimate of one frame, in host memory: planes over all of it.
 struct EstimatedFrame {
@@ -118,16 +118,16 @@ struct EstimatedFrame {
   Camera camera;
   View view{};
   vec3 depth_precision{};             // of planar depth: see DepthPrecision
-  std::vector<float> depth;           // see TakenFrame
+  std::vector<float> depth;           // see NeighbourFrame
   bool has_moving = false;            // some depth is below 0
   std::vector<std::uint32_t> normal;  // the same
   std::vector<float> values;          // planes: see EstimateSet
   FrameReport report;                 // times and counts of its estimate
-  Others others;                      // the names of the frames and views that show its hidden surfaces
+  Neighbours others;                  // the names of the frames and views that show its hidden surfaces
 };
 
 /// The estimates whose mean a frame is, its own among them.
-struct TakenEstimates {
+struct NeighbourEstimates {
   ReadPlanes read;  // of the frame itself; empty: not kept
   std::vector<std::shared_ptr<const EstimatedFrame>> of;
   std::vector<int> missing;  // frames without a file
@@ -137,7 +137,7 @@ struct TakenEstimates {
 };
 
 /// The text for a header; empty without estimates: "frames 3-7; missing 6".
-std::string text_of(const TakenEstimates& taken);
+std::string text_of(const NeighbourEstimates& taken);
 
 /// Passes run and rows read for other frames.
 struct PreparationCost {
@@ -146,9 +146,9 @@ struct PreparationCost {
 };
 
 /// The recorder and the memory for the estimate of a frame.
-struct EstimateRoom {
+struct EstimateContext {
   gpu::Recorder& gpu;
-  const Room& room;
+  const MemoryBudget& budget;
   // Called with each window of an estimate before it is computed; an exception ends the estimate.
   std::function<void(const Window&)> begin = {};
 };
@@ -171,10 +171,10 @@ class SharedFrames {
 
   /// Gives the surfaces that others show of a frame, in upload buffers of the recorder, which is idle before and after.
   /// Fails with ErrorKind::input, naming the file, if one cannot be read or has no position of its camera.
-  Others others_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparationCost& cost);
+  Neighbours neighbours_of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparationCost& cost);
 
-  /// Gives the estimates around a frame. Fails as others_of() does.
-  TakenEstimates estimates_of(const EstimateRoom& where, int frame, PreparationCost& cost);
+  /// Gives the estimates around a frame. Fails as neighbours_of() does.
+  NeighbourEstimates estimates_of(const EstimateContext& where, int frame, PreparationCost& cost);
 
   /// Pins the frames that this one needs.
   void begin(int frame);
@@ -186,17 +186,17 @@ class SharedFrames {
   std::size_t estimated_count() const { return estimated_.count(); }
 
  private:
-  using Seen = MadeOnce<SeenFrame>::Value;
-  struct SeenWithMovement {
-    Seen seen;
-    MadeOnce<Movement>::Value moving;
+  using SharedView = SharedCache<NeighbourView>::Value;
+  struct ViewWithMovement {
+    SharedView seen;
+    SharedCache<Movement>::Value moving;
   };
 
-  std::vector<SeenWithMovement> frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
-                                              PreparationCost& cost);
-  std::vector<SeenWithMovement> other_views(gpu::Recorder& gpu, const FrameSource& target, int frame, Others& others,
-                                            PreparationCost& cost) const;
-  std::vector<Seen> seen(gpu::Recorder& gpu, const std::vector<int>& frames, PreparationCost& cost);
+  std::vector<ViewWithMovement> frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame,
+                                              Neighbours& others, PreparationCost& cost);
+  std::vector<ViewWithMovement> other_views(gpu::Recorder& gpu, const FrameSource& target, int frame,
+                                            Neighbours& others, PreparationCost& cost) const;
+  std::vector<SharedView> seen(gpu::Recorder& gpu, const std::vector<int>& frames, PreparationCost& cost);
   Movement movement_of(gpu::Recorder& gpu, int frame, PreparationCost& cost);
   /// Marks pixels that move by their motion vectors, and up to `around` pixels beside each, with 1, all others with 0.
   /// None if the settings name no vectors, and at the end of a shot that they lead out of. Fails if no interpretation
@@ -204,15 +204,15 @@ class SharedFrames {
   std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparationCost& cost,
                                                              int around);
   /// `option`: the one that asks for other frames, for messages.
-  SeenFrame prepare(gpu::Recorder& gpu, const InputSettings& settings, int frame, const char* option,
-                    PreparationCost& cost) const;
-  EstimatedFrame estimate(const EstimateRoom& where, int frame, PreparationCost& cost);
+  NeighbourView prepare(gpu::Recorder& gpu, const InputSettings& settings, int frame, const char* option,
+                        PreparationCost& cost) const;
+  EstimatedFrame estimate(const EstimateContext& where, int frame, PreparationCost& cost);
 
   const FramePlan& plan_;
   const FrameSource* settled_;
-  MadeOnce<SeenFrame> seen_;
-  MadeOnce<Movement> moving_;
-  MadeOnce<EstimatedFrame> estimated_;
+  SharedCache<NeighbourView> seen_;
+  SharedCache<Movement> moving_;
+  SharedCache<EstimatedFrame> estimated_;
   std::mutex mutex_;                // of all below
   std::vector<int> left_;           // frames that are not done, in their order
   std::set<int> begun_;             // of them
@@ -220,9 +220,9 @@ class SharedFrames {
 };
 
 /// The frames that show movement in `frame`.
-std::vector<int> judges_of(const FramePlan& plan, int frame);
+std::vector<int> witnesses_of(const FramePlan& plan, int frame);
 /// Their largest number with `count` frames to each side.
-int most_judges(int count);
+int most_witnesses(int count);
 
 /// All frames that influence a frame: those around it, and the frames that show movement in these. In order.
 std::vector<int> frames_seen_for(const FramePlan& plan, int frame);
@@ -239,7 +239,7 @@ SharedCounts shared_counts(const FramePlan& plan, std::span<const int> frames);
 class EstimateSlots {
  public:
   /// Gives the estimates for a frame, or for any number of its parts. No buffer is larger than `most_bytes`.
-  EstimateSet filled(gpu::Recorder& gpu, const FramePlan& plan, const TakenEstimates& taken, int frame,
+  EstimateSet filled(gpu::Recorder& gpu, const FramePlan& plan, const NeighbourEstimates& taken, int frame,
                      std::uint64_t most_bytes);
 
  private:

@@ -332,7 +332,7 @@ MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, 
   smallest.kept = raw_bytes_of(source);
   needs.least =
       smallest.kept + row_bytes(limits, row) + limits.memory.of(largest_least(whole, surroundings, limits.memory)).host;
-  smallest.room = {.bytes = needs.least, .buffer_bytes = Room::kEndless};
+  smallest.budget = {.bytes = needs.least, .buffer_bytes = MemoryBudget::kEndless};
   // All of it at once may take less than such parts.
   const auto cut = needs.least < needs.at_once ? Cutter(surroundings, smallest).cut(whole) : Cutter::Cut();
   if (cut.rows.empty()) return {needs.at_once, needs.at_once};
@@ -346,7 +346,7 @@ namespace {
 
 /// The surroundings by a depth that is read when they are asked for. Settles the frame where nobody has.
 Surroundings surroundings_of(FrameSource& source, const Settings& settings, const WindowLimits& limits) {
-  if (!source.evidence) settle_by_rows(source, settings.input, limits.room.bytes);
+  if (!source.evidence) settle_by_rows(source, settings.input, limits.budget.bytes);
   return {source, settings, [&source](const Window& rows) {
             const auto& channels = source.channels[RawPlane::depth];
             std::vector<float> depth(channels.size() * rows.pixels());
@@ -378,35 +378,35 @@ MemoryNeeds tiles_within(FrameSource& source, const Settings& settings, const Wi
 WindowLimits WindowLimits::in_parts(FrameSource& source, const Settings& settings) const {
   WindowLimits limits = *this;
   limits.kept = raw_bytes_of(source);
-  if (limits.kept < room.bytes) return limits;
+  if (limits.kept < budget.bytes) return limits;
   refuse(fmt::format("{}: its pixels take {} MiB as they are read: use a smaller frame", source.depth_path(),
                      mebibytes_above(limits.kept)),
          memory_needs(source, settings, limits));
 }
 
 bool WindowLimits::allow(const Window& computed, std::uint64_t beside) const {
-  if (computed.pixels() > room.pixels || std::max(computed.width, computed.height) > longest_side) return false;
+  if (computed.pixels() > budget.pixels || std::max(computed.width, computed.height) > longest_side) return false;
   const FrameMemory::Bytes bytes = memory.of(computed);
-  return bytes.host + kept + beside <= room.bytes && bytes.device <= room.device_bytes &&
-         bytes.buffer <= room.buffer_bytes;
+  return bytes.host + kept + beside <= budget.bytes && bytes.device <= budget.device_bytes &&
+         bytes.buffer <= budget.buffer_bytes;
 }
 
 std::string WindowLimits::why_not(const Window& computed) const {
   if (std::max(computed.width, computed.height) > longest_side)
     return fmt::format("lines of an exact search have at most {} pixels", longest_side);
   const FrameMemory::Bytes bytes = memory.of(computed);
-  if (bytes.host + kept > room.bytes)
+  if (bytes.host + kept > budget.bytes)
     return fmt::format("{} leaves {} MiB for it, and at once it takes {} MiB",
-                       room.is_chosen ? "--memory" : "half of the free memory", (room.bytes - kept) / kMebibyte,
+                       budget.is_chosen ? "--memory" : "half of the free memory", (budget.bytes - kept) / kMebibyte,
                        mebibytes_above(bytes.host));
-  if (bytes.buffer > room.buffer_bytes)
-    return fmt::format("the device takes buffers of {} MiB at most", room.buffer_bytes / kMebibyte);
+  if (bytes.buffer > budget.buffer_bytes)
+    return fmt::format("the device takes buffers of {} MiB at most", budget.buffer_bytes / kMebibyte);
   return "the device has too little memory for it at once";
 }
 
 void WindowLimits::refuse(const std::string& what, const Window& computed) const {
   const std::uint64_t bytes = memory.of(computed).host + kept;
-  if (bytes > room.bytes) refuse(what, MemoryNeeds{bytes, bytes});
+  if (bytes > budget.bytes) refuse(what, MemoryNeeds{bytes, bytes});
   if (std::max(computed.width, computed.height) > longest_side)
     fail(ErrorKind::device, "{}, or give --search steps, since lines of an exact search have at most {} pixels", what,
          longest_side);
@@ -414,10 +414,10 @@ void WindowLimits::refuse(const std::string& what, const Window& computed) const
 }
 
 std::string WindowLimits::option_for(std::uint64_t bytes) const {
-  const std::uint64_t without = bytes - std::min(bytes, memory.codec_bytes(room.bytes));
-  std::uint64_t mebibytes = mebibytes_above(room.program_bytes + without);
+  const std::uint64_t without = bytes - std::min(bytes, memory.codec_bytes(budget.bytes));
+  std::uint64_t mebibytes = mebibytes_above(budget.program_bytes + without);
   // Terminates: codec memory grows more slowly than the limit, whose last MiB counts too.
-  while (without + memory.codec_bytes(mebibytes * kMebibyte - room.program_bytes) + room.program_bytes >
+  while (without + memory.codec_bytes(mebibytes * kMebibyte - budget.program_bytes) + budget.program_bytes >
          mebibytes * kMebibyte)
     mebibytes++;
   return fmt::format("{}M", mebibytes);
@@ -425,13 +425,13 @@ std::string WindowLimits::option_for(std::uint64_t bytes) const {
 
 void WindowLimits::refuse(const std::string& what, const MemoryNeeds& needs) const {
   const std::string at_once = fmt::format("--memory {}", option_for(needs.at_once));
-  fail(room.is_chosen ? ErrorKind::usage : ErrorKind::device,
+  fail(budget.is_chosen ? ErrorKind::usage : ErrorKind::device,
        "{}, or let the run take at least {}; {} MiB are for the program itself", what,
        option_for(needs.least) == option_for(needs.at_once)
            ? at_once
            : fmt::format("--memory {} ({}), or {} for all of it at once", option_for(needs.least), needs.cost(),
                          at_once),
-       mebibytes_above(room.program_bytes));
+       mebibytes_above(budget.program_bytes));
 }
 
 TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowLimits& limits,
@@ -442,7 +442,7 @@ TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowL
       "use smaller ones",
       source.depth_path());
   const MemoryNeeds needs = memory_needs(source, surroundings, limits);
-  if (needs.least > limits.room.bytes) limits.refuse(what, needs);
+  if (needs.least > limits.budget.bytes) limits.refuse(what, needs);
   limits.refuse(what, largest_least(whole, surroundings, limits.memory));
 }
 

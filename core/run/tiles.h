@@ -87,7 +87,7 @@ struct MemoryNeeds {
 /// The limits of a window that is computed at once.
 struct WindowLimits {
   FrameMemory memory;
-  Room room;
+  MemoryBudget budget;
   int longest_side = std::numeric_limits<int>::max();  // px
   std::uint64_t kept = 0;                              // bytes of host memory that are in use for any window
 

@@ -19,9 +19,9 @@
 #include "core/frame/raw_plane.h"
 #include "core/measure/report.h"
 #include "core/options/options.h"
-#include "core/run/first_look.h"
 #include "core/run/memory.h"
 #include "core/run/pipeline.h"
+#include "core/run/run_preview.h"
 
 namespace alcove {
 namespace {
@@ -167,7 +167,7 @@ class WedgeMaker {
   }
 
   void run_group(const std::vector<std::size_t>& group, int frame, std::vector<PageCell>& cells, Sheet* sheet) {
-    FirstLook& first = firsts_[group.front()];
+    RunPreview& first = firsts_[group.front()];
     const FramePlan& frames = first.plan();
     const FrameSource* const like = settled_ ? &*settled_ : nullptr;
     const InputSettings& input = frames.settings().input;
@@ -203,7 +203,7 @@ class WedgeMaker {
         add_new(look.notes, report.notes);
       }
     };
-    run_pipeline(lanes_, run, room_of_lane(memory_, 1, lanes_.device().info()), std::span(&frame, 1), take, {});
+    run_pipeline(lanes_, run, budget_of_lane(memory_, 1, lanes_.device().info()), std::span(&frame, 1), take, {});
   }
 
   /// The AO and the composite, if there is one.
@@ -237,7 +237,7 @@ class WedgeMaker {
   Lanes lanes_{{device_.device, device_.require_gpu, device_.validate, !device_.no_pipeline_cache}, 1};
   const RunMemory memory_ = memory_for_frames(looks_.front().settings, lanes_.device().info());
   const std::vector<std::vector<std::size_t>> groups_ = groups_of(looks_);
-  std::deque<FirstLook> firsts_;        // of each look
+  std::deque<RunPreview> firsts_;       // of each look
   std::optional<FrameSource> settled_;  // as which all are read
   ReadPlanes planes_;                   // of the frame
   std::size_t first_cell_ = 0;          // of the sheet, of the frame
@@ -259,7 +259,7 @@ void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const st
 }
 
 std::string wedge_text(const std::vector<WedgeLook>& looks) {
-  FirstLook first(with_planes_of_page(looks.front().settings));
+  RunPreview first(with_planes_of_page(looks.front().settings));
   const std::size_t estimates = groups_of(looks).size();
   const InputSettings& input = looks.front().settings.input;
   const bool takes_from_others = input.accumulate > 0 || takes_others(input);

@@ -189,7 +189,7 @@ void close(inout Open open, View view, LinePlane plane, int way, float steps) {
 }
 
 /// Goes on from the walk's last vertex to the next one, and ends what would be seen until there.
-void go_on(inout Open open, View view, LinePlane plane, Walk walk, Corner next, bool begins_run) {
+void extend(inout Open open, View view, LinePlane plane, Walk walk, Corner next, bool begins_run) {
   const float to_before = abs(float(walk.before.at) - open.from), to_next = abs(float(next.at) - open.from);
   const float behind_before = walk.before.hides - open.nearness - open.slope * to_before;
   const float behind_next = next.hides - open.nearness - open.slope * to_next;
@@ -239,9 +239,9 @@ void complete(View view, Lines lines, LinePlane plane, int line, int row, int fi
         if (opens.a.is_open) opens.b = opens.a;
         opens.a = from_end(view, lines, plane, line, walk, walk.inner, index - way);
       }
-      go_on(opens.a, view, plane, walk, next, begins_run);
-      go_on(opens.b, view, plane, walk, next, begins_run);
-      go_on(opens.c, view, plane, walk, next, begins_run);
+      extend(opens.a, view, plane, walk, next, begins_run);
+      extend(opens.b, view, plane, walk, next, begins_run);
+      extend(opens.c, view, plane, walk, next, begins_run);
       uint column = kNoVertex;
       if (opens.c.is_open) column = uint(opens.c.index - row);
       if (opens.b.is_open) column = uint(opens.b.index - row);

@@ -23,7 +23,7 @@
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const int kPlanes = 1;     // of values
-layout(constant_id = 1) const int kListed = 0;     // frames that the buffer lists, 0 to kMostTaken
+layout(constant_id = 1) const int kListed = 0;     // frames that the buffer lists, 0 to kMostNeighbours
 layout(constant_id = 2) const uint kOrder = 0;     // of the moments among the planes, 0 to 2
 layout(constant_id = 3) const int kCurvature = 0;  // planes of curvature, after the moments
 layout(scalar, push_constant) uniform Push { AccumulateParams params; };
@@ -31,7 +31,7 @@ readonly buffer Depth { float depth[]; };    // one float per pixel of the part,
 readonly buffer Normal { uint normal[]; };   // one uint per pixel of the part, see normal.glsl
 readonly buffer Values { float values[]; };  // planes of floats in [0, 1] over all of the frame: its own estimate
 readonly buffer Others { uint others[]; };   // planes of other frames, as words
-readonly buffer Frames { TakenFrame frames[]; };
+readonly buffer Frames { NeighbourFrame frames[]; };
 readonly buffer Near { uint near[]; };  // words of cells, from moved
 // planes of floats: how many estimates there are, or parts of them, and for each plane of values the sum of what they
 // are less than 1; not read where they begin
@@ -50,7 +50,7 @@ int pixels_of(ivec2 size) { return size.x * size.y; }
 
 /// The pixel of another frame that shows the point at this place in the frame's view space, with this normal; -1: none
 /// does. second: the word of its second plane.
-int index_in(TakenFrame other, vec3 here, vec3 n, out uint second) {
+int index_in(NeighbourFrame other, vec3 here, vec3 n, out uint second) {
   const View to = other.view;
   const vec3 position = position_there(other, here), facing = direction_there(other, n);
   const ivec2 place = pixel_of(to, position), nearest = clamp(place, ivec2(0), to.size - 1);
@@ -109,7 +109,7 @@ void main() {
   const vec3 here = position_of(params.view, vec2(in_frame) + 0.5, finite_depth(z)), n = unpack_normal(word);
   const Around cells = around(here);
   [[unroll]] for (int i = 0; i < kListed; i++) {
-    const TakenFrame other = frames[i];
+    const NeighbourFrame other = frames[i];
     uint words[(kPlanes + 2) / 2];
     const int at = index_in(other, here, n, words[0]), there = pixels_of(other.view.size);
     const bool is_taken = is_surface && at >= 0 && uint(i) < params.frames;

@@ -14,7 +14,7 @@ struct SuspectsParams {
 /// below 0, of the same size, where motion vectors tell that the surface moves. The second one holds normals in its
 /// lower half, 8 bits for each coordinate of normal.glsl and kNoTakenNormal for none, and in its upper half the first
 /// of the values, which lie in [0, 1]. The others hold two values each.
-struct TakenFrame {
+struct NeighbourFrame {
   View view;
   vec3 row_x, row_y, row_z;  // view space of the frame that takes its estimate -> its own: rows of the linear part
   vec3 offset;               // and what is added, scene units
@@ -23,7 +23,7 @@ struct TakenFrame {
 };
 
 ALCOVE_CONSTANT uint kNoTakenNormal = 0x8080;
-ALCOVE_CONSTANT uint kMostTaken = 9;  // frames of a buffer
+ALCOVE_CONSTANT uint kMostNeighbours = 9;  // frames of a buffer
 
 ALCOVE_CONSTANT int kSquares = kTile / 2;  // of 2 x 2 pixels, a side of a tile: one pixel of each is looked at
 

@@ -23,9 +23,9 @@
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const int kVectors = 0;  // 1: some frame has depths below 0
 layout(scalar, push_constant) uniform Push { MovedParams params; };
-readonly buffer Own { float own[]; };        // one float per pixel of the frame: depth as of a TakenFrame
+readonly buffer Own { float own[]; };        // one float per pixel of the frame: depth as of a NeighbourFrame
 readonly buffer Others { float others[]; };  // planes of other frames, as words
-readonly buffer Frames { TakenFrame frames[]; };
+readonly buffer Frames { NeighbourFrame frames[]; };
 // kMovedCells words, zeros at first: for the cells of space that share it a bit for each other frame, by its place,
 // from which to this one something moves within the radius of what is in the cell
 buffer Near { uint near[]; };
@@ -97,7 +97,7 @@ Box both(Box a, Box b) { return Box(min(a.low, b.low), max(a.high, b.high)); }
 /// The box of what moves at a position that a view shows, the frame's own or another one's: from the front that is seen
 /// to a radius farther from the eye. What lies about its hidden part loses its mean, too: taken as a sheet, a ball that
 /// lands lost its shadow on the floor.
-Box box_at(bool of_own, View view, TakenFrame other, vec3 position) {
+Box box_at(bool of_own, View view, NeighbourFrame other, vec3 position) {
   const vec3 back = position - params.radius * toward_eye(view, position);
   const vec3 a = of_own ? position : position_here(other, position), b = of_own ? back : position_here(other, back);
   return Box(min(a, b), max(a, b));
@@ -160,7 +160,7 @@ uint squares_with(Found found, int bit) {
 
 /// The part of a tile of one frame that the other has not: from the frame itself to another one, or the other way
 /// round, where it is looked at in these squares. Gives the last box, which is still to be marked for these frames.
-Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other, uint frames) {
+Box unseen_of(ivec2 tile, uint squares, bool from_own, NeighbourFrame other, uint frames) {
   View from = other.view, to = params.view;
   if (from_own) from = params.view;
   if (from_own) to = other.view;
@@ -184,7 +184,7 @@ Box unseen_of(ivec2 tile, uint squares, bool from_own, TakenFrame other, uint fr
 
 /// The part of a tile that moves by motion vectors: of the frame itself, or of another one. All pixels are looked at,
 /// since vectors also tell of what is as thin as one. Adds it to a box.
-void add_moving(inout Box box, ivec2 tile, bool of_own, TakenFrame other, uint frames) {
+void add_moving(inout Box box, ivec2 tile, bool of_own, NeighbourFrame other, uint frames) {
   View view = other.view;
   if (of_own) view = params.view;
   if (any(greaterThanEqual(tile, tiles_of(view.size)))) return;
@@ -208,13 +208,13 @@ void main() {
   // Each row of workgroups is for one frame, and its terms are loaded outside of conditions: so lavapipe loads them
   // once for all invocations.
   const int rows = params.rows * int(kGroupY), i = int(gl_WorkGroupID.y) / params.rows;
-  const TakenFrame other = frames[i];
+  const NeighbourFrame other = frames[i];
   const ivec2 tile = ivec2(gl_GlobalInvocationID.xy) - ivec2(0, i * rows);
   if (any(greaterThanEqual(tile * kSquares, params.squares))) return;
   const Found found = suspects_of(tile);
   const uint of_other = 1u << (params.place + uint(i)), of_all = ~0u;
   Box here = unseen_of(tile, squares_with(found, i), true, other, of_all);
-  Box there = unseen_of(tile, squares_with(found, i + int(kMostTaken)), false, other, of_other);
+  Box there = unseen_of(tile, squares_with(found, i + int(kMostNeighbours)), false, other, of_other);
   if (kVectors != 0 && i == 0) add_moving(here, tile, true, other, of_all);
   if (kVectors != 0) add_moving(there, tile, false, other, of_other);
   if (there.low.x <= there.high.x) mark(there, of_other);

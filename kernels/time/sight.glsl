@@ -9,12 +9,12 @@ const float kLifted = 0.5;  // pixels' widths that what is seen through a surfac
 ivec2 looked_at(ivec2 square) { return square * 2 + ivec2(square.y & 1, 0); }
 
 // From another frame's view space to the frame's, and back.
-vec3 direction_here(TakenFrame other, vec3 v) { return other.row_x * v.x + other.row_y * v.y + other.row_z * v.z; }
-vec3 position_here(TakenFrame other, vec3 p) { return direction_here(other, p - other.offset); }
-vec3 direction_there(TakenFrame other, vec3 v) {
+vec3 direction_here(NeighbourFrame other, vec3 v) { return other.row_x * v.x + other.row_y * v.y + other.row_z * v.z; }
+vec3 position_here(NeighbourFrame other, vec3 p) { return direction_here(other, p - other.offset); }
+vec3 direction_there(NeighbourFrame other, vec3 v) {
   return vec3(dot(other.row_x, v), dot(other.row_y, v), dot(other.row_z, v));
 }
-vec3 position_there(TakenFrame other, vec3 p) { return direction_there(other, p) + other.offset; }
+vec3 position_there(NeighbourFrame other, vec3 p) { return direction_there(other, p) + other.offset; }
 
 /// The depth that a view should have at a position that it sees.
 struct Sight {
@@ -24,7 +24,7 @@ struct Sight {
   float width;   // scene units: of a pixel there
 };
 
-/// error: that of both depths, see TakenFrame.
+/// error: that of both depths, see NeighbourFrame.
 Sight sight_of(View view, vec3 position, vec3 error) {
   const ivec2 place = pixel_of(view, position);
   const bool is_seen = -position.z > 0.0 && all(greaterThan(place, ivec2(0))) && all(lessThan(place, view.size - 1));

@@ -17,18 +17,18 @@
 #include "kernels/time/sight.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = 0) const int kListed = 1;  // frames that the buffer lists, 1 to kMostTaken
+layout(constant_id = 0) const int kListed = 1;  // frames that the buffer lists, 1 to kMostNeighbours
 layout(scalar, push_constant) uniform Push { SuspectsParams params; };
-readonly buffer Own { float own[]; };        // one float per pixel of the frame: depth as of a TakenFrame
+readonly buffer Own { float own[]; };        // one float per pixel of the frame: depth as of a NeighbourFrame
 readonly buffer Normal { uint normal[]; };   // one uint per pixel of the frame, see normal.glsl
 readonly buffer Others { float others[]; };  // planes of other frames, as words
-readonly buffer Frames { TakenFrame frames[]; };
-// a word per square: bit i: the i-th frame may see past what the frame itself has there; bit kMostTaken + i: the
+readonly buffer Frames { NeighbourFrame frames[]; };
+// a word per square: bit i: the i-th frame may see past what the frame itself has there; bit kMostNeighbours + i: the
 // frame may see past what that one has in its own picture there
 writeonly buffer Bits { uint bits[]; };
 
 /// The depth at a pixel of the frame itself, or of another one.
-float depth_at(bool of_own, TakenFrame other, ivec2 pixel) {
+float depth_at(bool of_own, NeighbourFrame other, ivec2 pixel) {
   return abs(of_own ? own[index_of(params.view, pixel)] : others[other.first + uint(index_of(other.view, pixel))]);
 }
 
@@ -36,7 +36,7 @@ vec3 position_in(View view, ivec2 pixel, float z) { return position_of(view, vec
 
 /// Whether a frame may see past a surface at a position in its view space: what it has there is farther than the
 /// position, and not on the surface's plane, which at a grazing angle is far off within a pixel.
-bool is_past(bool by_own, TakenFrame other, vec3 position, vec3 normal) {
+bool is_past(bool by_own, NeighbourFrame other, vec3 position, vec3 normal) {
   View view = other.view;
   if (by_own) view = params.view;
   const Sight sight = sight_of(view, position, other.depth_precision);
@@ -59,7 +59,7 @@ void main() {
   const bool is_own = inside(params.view, pixel) && z < kSkyDepth;
   uint found = 0u;
   [[unroll]] for (int i = 0; i < kListed; i++) {
-    const TakenFrame other = frames[i];
+    const NeighbourFrame other = frames[i];
     const ivec2 in_other = min(pixel, other.view.size - 1);
     const float z_there = depth_at(false, other, in_other);
     const vec3 there = position_in(other.view, in_other, z_there);
@@ -69,7 +69,7 @@ void main() {
     const vec3 n_there = packed == kNoTakenNormal ? vec3(0) : octahedral_direction(unpackSnorm4x8(packed).xy);
     const bool past_own = is_past(false, other, position_there(other, here), direction_there(other, n));
     const bool past_other = is_past(true, other, position_here(other, there), direction_here(other, n_there));
-    found |= uint(is_own && past_own) << i | uint(is_others && past_other) << (i + int(kMostTaken));
+    found |= uint(is_own && past_own) << i | uint(is_others && past_other) << (i + int(kMostNeighbours));
   }
   if (square.x < params.squares.x && square.y < params.squares.y) bits[square.y * params.squares.x + square.x] = found;
 }

@@ -38,7 +38,7 @@ class Means : public testing::Test {
     std::vector<std::uint32_t> words;
     for (const float z : other.depth) words.push_back(std::bit_cast<std::uint32_t>(units_ * z));
     for (const std::uint32_t n : other.normal) words.push_back((n & 0xffffu) | std::uint32_t(kOther * 65535) << 16);
-    const std::vector<TakenFrame> frames{
+    const std::vector<NeighbourFrame> frames{
         {kView, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {units_ * shift, 0, 0}, {units_ * 1e-5f, 0, 0}, 0}};
     std::vector<float> own_depth = own.depth;
     for (float& z : own_depth) z *= units_;
@@ -189,9 +189,10 @@ TEST(Mean, of_fewer_frames_than_are_listed_runs_the_same_kernels) {
     estimates.depth = estimates.normal = estimates.values = own;
     estimates.view = kView;
     for (const uint count : groups) {
-      gpu::Buffer* frames = made(fmt::format("frames {}", estimates.groups.size()), kMostTaken * sizeof(TakenFrame));
-      std::ranges::fill(frames->as<TakenFrame>(), TakenFrame{kView, {}, {}, {}, {}, {}, 0});
-      estimates.groups.push_back({own, frames, count, kMostTaken});
+      gpu::Buffer* frames =
+          made(fmt::format("frames {}", estimates.groups.size()), kMostNeighbours * sizeof(NeighbourFrame));
+      std::ranges::fill(frames->as<NeighbourFrame>(), NeighbourFrame{kView, {}, {}, {}, {}, {}, 0});
+      estimates.groups.push_back({own, frames, count, kMostNeighbours});
     }
     GBuffer gbuffer;
     gbuffer.view = kView;
@@ -202,7 +203,7 @@ TEST(Mean, of_fewer_frames_than_are_listed_runs_the_same_kernels) {
     const auto& names = gpu.rehearsed();
     return std::set<gpu::KernelName>(names.begin(), names.end());
   };
-  const auto of_all = kernels_for({kMostTaken});
+  const auto of_all = kernels_for({kMostNeighbours});
   for (const std::vector<uint>& groups : {std::vector<uint>{1}, {2}, {8}, {9, 1}, {9, 9, 9, 5}})
     EXPECT_EQ(kernels_for(groups), of_all) << testing::PrintToString(groups);
 }

@@ -77,8 +77,8 @@ void run_means(gpu::Recorder& gpu, std::set<std::string>& kernels, const Estimat
     std::ranges::copy(room().depth, buffer.as<float>().begin());
     return &buffer;
   };
-  gpu::Buffer& table = gpu.buffer("estimated frames", sizeof(TakenFrame), gpu::Use::upload);
-  table.as<TakenFrame>()[0] = {inputs.view, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1f, 0, 0}, {1e-4f, 1e-5f, 0}, 0};
+  gpu::Buffer& table = gpu.buffer("estimated frames", sizeof(NeighbourFrame), gpu::Use::upload);
+  table.as<NeighbourFrame>()[0] = {inputs.view, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1f, 0, 0}, {1e-4f, 1e-5f, 0}, 0};
   EstimateSet& estimates = inputs.estimates;
   estimates.depth = filled("own depth", pixels);
   estimates.normal = filled("own normal", pixels);

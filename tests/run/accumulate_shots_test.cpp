@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-const Room kMuchRoom{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
+const MemoryBudget kLargeBudget{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
 
 class AccumulatedShots : public WalkedShot {
  protected:
@@ -111,9 +111,9 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
     for (std::size_t i = 0; i < frames.size(); i++) {
       PreparationCost cost;
       shot.begin(frames[i]);
-      const TakenEstimates taken = shot.estimates_of({gpu, kMuchRoom}, frames[i], cost);
+      const NeighbourEstimates taken = shot.estimates_of({gpu, kLargeBudget}, frames[i], cost);
       EXPECT_EQ(taken.of.size(), 3u);
-      slots.filled(gpu, plan, taken, frames[i], kMuchRoom.buffer_bytes);
+      slots.filled(gpu, plan, taken, frames[i], kLargeBudget.buffer_bytes);
       all.insert(all.end(), taken.of.begin(), taken.of.end());
       most = std::max(most, shot.estimated_count());
       if (i + 1 >= lanes) shot.done(frames[i + 1 - lanes]);
@@ -146,11 +146,11 @@ TEST_F(AccumulatedShots, where_fewer_frames_count_as_many_are_listed) {
   gpu::Recorder gpu(device());
   PreparationCost cost;
   EstimateSlots slots;
-  TakenEstimates taken = shot.estimates_of({gpu, kMuchRoom}, 3, cost);
+  NeighbourEstimates taken = shot.estimates_of({gpu, kLargeBudget}, 3, cost);
   for (const uint count : {4u, 3u, 1u}) {
     const auto is_other = [](const auto& estimated) { return estimated->frame != 3; };
     while (taken.of.size() > count + 1) taken.of.erase(std::ranges::find_if(taken.of, is_other));
-    const EstimateSet set = slots.filled(gpu, plan, taken, 3, kMuchRoom.buffer_bytes);
+    const EstimateSet set = slots.filled(gpu, plan, taken, 3, kLargeBudget.buffer_bytes);
     ASSERT_EQ(set.groups.size(), 1u);
     EXPECT_EQ(set.groups[0].count, count);
     EXPECT_EQ(set.groups[0].listed, 4u);
@@ -177,7 +177,7 @@ TEST_F(AccumulatedShots, no_more_of_what_estimates_see_is_kept_than_is_counted) 
   for (const int frame : plan.frames()) {
     PreparationCost cost;
     shot.begin(frame);
-    shot.estimates_of({gpu, kMuchRoom}, frame, cost);
+    shot.estimates_of({gpu, kLargeBudget}, frame, cost);
     EXPECT_LE(shot.seen_count(), counted()) << frame;
     shot.done(frame);
   }

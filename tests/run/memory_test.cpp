@@ -198,7 +198,7 @@ TEST_F(Memory, is_expected_of_what_completed_surfaces_take) {
 TEST_F(Memory, of_parts_stays_within_any_limit_and_below_the_whole) {
   settings.estimator.radius = 0.05;
   const FrameMemory memory = memory_of(open_frame(settings, 0), settings);
-  WindowLimits limits{memory, {.bytes = Room::kEndless, .buffer_bytes = Room::kEndless}};
+  WindowLimits limits{memory, {.bytes = MemoryBudget::kEndless, .buffer_bytes = MemoryBudget::kEndless}};
   FrameSource first = open_frame(settings, 0);
   const auto [least, whole, parts, factor] = memory_needs(first, settings, limits);
   ASSERT_LT(least, whole);
@@ -208,7 +208,7 @@ TEST_F(Memory, of_parts_stays_within_any_limit_and_below_the_whole) {
     ReadPlanes planes;
     read_for_parts(source, settings, planes, whole);
     Surroundings surroundings(source, settings, planes[RawPlane::depth]);
-    limits.room.bytes = least + std::uint64_t(share * double(whole - least));
+    limits.budget.bytes = least + std::uint64_t(share * double(whole - least));
     limits.kept = raw_bytes_of(source);
     std::uint64_t peak = 0;
     for (const auto& row : tiles_of(window, surroundings, limits, source))
@@ -218,7 +218,7 @@ TEST_F(Memory, of_parts_stays_within_any_limit_and_below_the_whole) {
         peak = std::max<std::uint64_t>(peak, gpu.bytes() + memory.fixed_bytes + limits.kept);
         gpu.run();
       }
-    EXPECT_LE(peak, limits.room.bytes) << share;
+    EXPECT_LE(peak, limits.budget.bytes) << share;
     EXPECT_LT(peak, whole) << share;
   }
 }
@@ -232,7 +232,7 @@ TEST_F(Memory, of_a_cut_of_ramps_counts) {
 
 // A look that shapes has a buffer that one without shaping does not have.
 TEST_F(Memory, of_looks_is_that_of_the_one_that_takes_the_most) {
-  FirstLook first(settings);
+  RunPreview first(settings);
   first.prepare();
   InputIdentities identities(first.plan());
   Lanes lanes({"cpu", false, false, false}, 1);
@@ -243,8 +243,9 @@ TEST_F(Memory, of_looks_is_that_of_the_one_that_takes_the_most) {
       run.looks.back().estimator.intensity = intensity;
     }
     run.take_look = [](std::size_t, FrameSource&, const Window&, const FrameOutputs&, const LookTime&) {};
-    const Room room{.bytes = Room::kEndless, .device_bytes = device_bytes, .buffer_bytes = Room::kEndless};
-    return run_frame(lanes, run, room, 0, [](int, int, double) {});
+    const MemoryBudget budget{
+        .bytes = MemoryBudget::kEndless, .device_bytes = device_bytes, .buffer_bytes = MemoryBudget::kEndless};
+    return run_frame(lanes, run, budget, 0, [](int, int, double) {});
   };
   const std::uint64_t unshaped = memory_of(open_frame(settings, 0), settings).of(window).device;
   EXPECT_EQ(report_within(unshaped, {1, 1}).state, FrameState::done);

@@ -161,20 +161,20 @@ TEST_F(Shots, know_the_frames_around_each) {
   EXPECT_THAT(plan.around(1, 2).there, ElementsAre(2, 3));
   EXPECT_THAT(plan.around(7, 1).there, ElementsAre(6));
   EXPECT_THAT(plan.around(4, kWholeShot).there, ElementsAre(1, 2, 3, 5, 6, 7));
-  EXPECT_THAT(judges_of(plan, 4), ElementsAre(2, 3, 5, 6));
-  EXPECT_THAT(judges_of(plan, 1), ElementsAre(2, 3, 4, 5)) << "at the ends of the shot the others are on one side";
-  EXPECT_THAT(judges_of(plan, 6), ElementsAre(3, 4, 5, 7));
+  EXPECT_THAT(witnesses_of(plan, 4), ElementsAre(2, 3, 5, 6));
+  EXPECT_THAT(witnesses_of(plan, 1), ElementsAre(2, 3, 4, 5)) << "at the ends of the shot the others are on one side";
+  EXPECT_THAT(witnesses_of(plan, 6), ElementsAre(3, 4, 5, 7));
   EXPECT_THAT(frames_seen_for(plan, 4), ElementsAre(1, 2, 3, 5, 6, 7));
   EXPECT_THAT(frames_seen_for(plan, 1), ElementsAre(2, 3, 4, 5));
   settings.input.around = 3;
-  EXPECT_THAT(judges_of(FramePlan(settings), 4), ElementsAre(1, 2, 3, 5, 6, 7));
+  EXPECT_THAT(witnesses_of(FramePlan(settings), 4), ElementsAre(1, 2, 3, 5, 6, 7));
   settings.input.accumulate = 1;
   const FramePlan means(settings);
   EXPECT_THAT(means.accumulated(1).there, ElementsAre(1, 2, 3));
   EXPECT_THAT(means.accumulated(4).there, ElementsAre(3, 4, 5));
   EXPECT_THAT(means.accumulated(7).there, ElementsAre(5, 6, 7));
-  EXPECT_EQ(means.turn_of(2), means.turn_of(5));
-  EXPECT_NE(means.turn_of(2), means.turn_of(3));
+  EXPECT_EQ(means.slot_of(2), means.slot_of(5));
+  EXPECT_NE(means.slot_of(2), means.slot_of(3));
 }
 
 TEST_F(Shots, keep_no_more_frames_than_their_windows) {
@@ -191,7 +191,7 @@ TEST_F(Shots, keep_no_more_frames_than_their_windows) {
       PreparationCost cost;
       FrameSource target = open_frame(plan.at(frame), frame);
       shared.begin(frame);
-      shared.others_of(gpu, target, frame, cost);
+      shared.neighbours_of(gpu, target, frame, cost);
       EXPECT_LE(shared.seen_count(), std::size_t(2 * farthest_seen(2) + 1)) << order << " " << frame;
       EXPECT_GE(shared.seen_count(), 5u) << order << " " << frame;
       shared.done(frame);

@@ -55,7 +55,7 @@ inline RunReport run_here(const Options& arguments, std::uint64_t bytes = 0, con
   EXPECT_TRUE(parse_run_options(arguments, options));
   if (bytes) options.settings.device.memory = 1;
   if (bytes) options.settings.device.least_memory = bytes;
-  FirstLook look(options.settings);
+  RunPreview look(options.settings);
   return run_frames(look, watch);
 }
 

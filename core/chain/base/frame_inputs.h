@@ -62,7 +62,7 @@ struct OtherView : OtherTerms {
 /// Other frames, in upload buffers.
 struct SeenGroup {
   const gpu::Buffer* planes = nullptr;  // of all of them, as words
-  const gpu::Buffer* frames = nullptr;  // TakenFrame each
+  const gpu::Buffer* frames = nullptr;  // NeighbourFrame each
   uint count = 0;
   // Entries of the table. Kernels are compiled for this number, so it stays the same at cuts and beside missing frames:
   // entries beyond `count` repeat the first one and are ignored.
@@ -71,7 +71,7 @@ struct SeenGroup {
 
 /// The estimates whose mean is the AO of a frame.
 struct EstimateSet {
-  // The frame's own estimate, over all of it, in upload buffers: planar depth as in a TakenFrame, normals as in a
+  // The frame's own estimate, over all of it, in upload buffers: planar depth as in a NeighbourFrame, normals as in a
   // GBuffer, and values: the visibility, then, if asked for, that of each radius and the mean open direction. Null: the
   // frame is not averaged.
   const gpu::Buffer* depth = nullptr;

@@ -16,7 +16,7 @@ namespace {
 /// The tiles of the largest of all frames of a group, and of the frame.
 gpu::Extent most_tiles(const EstimateSet& estimates, const SeenGroup& group) {
   gpu::Extent most = tile_extent(estimates.view);
-  for (const auto& frame : group.frames->as<const TakenFrame>().first(group.count)) {
+  for (const auto& frame : group.frames->as<const NeighbourFrame>().first(group.count)) {
     const gpu::Extent of_frame = tile_extent(frame.view);
     most = {std::max(most.x, of_frame.x), std::max(most.y, of_frame.y)};
   }

@@ -36,7 +36,7 @@ class NormalDoubts : private NormalSettlement {
     if (straighter)
       return note(NoteCode::normals_disagree,
                   fmt::format("normals are read as {}; better fits {}: {} ({})", text_of(*chosen), text_of(*straighter),
-                              turn_of(*straighter, *chosen), kSpaceOptions));
+                              rotation_text(*straighter, *chosen), kSpaceOptions));
     note_other_cause(*chosen, scores);
     doubt_centre(*chosen);
     if (doubt_rotation(*chosen)) return;

@@ -45,7 +45,7 @@ const NormalScore* NormalSettlement::straighter_than(const NormalScore& score,
   return reading && is_straighter(*reading, score) ? reading : nullptr;
 }
 
-std::string NormalSettlement::turn_of(const NormalScore& chosen, const NormalScore& other) {
+std::string NormalSettlement::rotation_text(const NormalScore& chosen, const NormalScore& other) {
   return fmt::format(
       "as those of {} space the normals as a whole are turned by {:.1f} degrees against depth, as {} "
       "by {:.1f}",

@@ -46,7 +46,7 @@ class NormalSettlement : protected Settlement {
   bool is_straighter(const NormalScore& score, const NormalScore& other) const;
   /// The same reading in the other space, where it is straighter.
   const NormalScore* straighter_than(const NormalScore& score, const std::vector<NormalScore>& scores) const;
-  static std::string turn_of(const NormalScore& chosen, const NormalScore& other);
+  static std::string rotation_text(const NormalScore& chosen, const NormalScore& other);
   /// The camera turned back by the turn that the normals as a whole have by it, where that is at least so many degrees,
   /// and they then fit better, also than by another field of view. An angle of the best quarter below `fitting` is
   /// none that could be better.

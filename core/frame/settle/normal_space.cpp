@@ -55,7 +55,7 @@ class SpaceSettlement : private NormalSettlement {
     const NormalScore* straighter = straighter_than(best, scores);
     if (!straighter && !is_plain) refuse_ambiguous(best, scores);
     if (!has_world && !source_.open.camera) refuse_turned_world(best);
-    take(straighter ? *straighter : best, straighter ? turn_of(*straighter, best) : text_of(best), has_world);
+    take(straighter ? *straighter : best, straighter ? rotation_text(*straighter, best) : text_of(best), has_world);
     doubt_normals(*this, all_scores);
   }
 

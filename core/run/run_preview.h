@@ -31,9 +31,9 @@ struct MissingOptions {
 };
 
 /// Reads names, headers, and the pixels of one frame. A file that is opened here stays open for its frame.
-class FirstLook {
+class RunPreview {
  public:
-  explicit FirstLook(const Settings& settings) : settings_(settings) {}
+  explicit RunPreview(const Settings& settings) : settings_(settings) {}
 
   /// Finds the frames at the first call. Fails as FramePlan does.
   const FramePlan& plan();
@@ -82,6 +82,6 @@ Notes notes_on_number(const FramePlan& plan);
 
 /// The text of --dry-run: frames, files, size and memory. Fails as the run would on settings, names, and a single frame
 /// that cannot be read. is_wedge: for a run without outputs that needs whole frames.
-std::string plan_text(FirstLook& look, bool is_wedge = false);
+std::string plan_text(RunPreview& look, bool is_wedge = false);
 
 }  // namespace alcove

@@ -1,6 +1,6 @@
 // Finds a run's frames, opens the first of them where that is needed, and describes the run.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/run/first_look.h"
+#include "core/run/run_preview.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -103,19 +103,19 @@ Notes notes_on_number(const FramePlan& plan) {
                        *found.number, file_name(camera), found.digits)}};
 }
 
-const FramePlan& FirstLook::plan() {
+const FramePlan& RunPreview::plan() {
   if (!plan_) plan_.emplace(settings_);
   return *plan_;
 }
 
 /// The inputs of a frame, changed so that all else can be looked at where it lacks a camera or its world_to_camera.
-InputSettings FirstLook::input_of(int frame) {
+InputSettings RunPreview::input_of(int frame) {
   InputSettings input = plan().at(frame).input;
   if (leaves_normals_) input.normal = "none";
   return lacks_camera_ ? with_some_camera(input) : input;
 }
 
-FrameSource& FirstLook::opened(int frame) {
+FrameSource& RunPreview::opened(int frame) {
   const auto found = opened_.find(frame);
   if (found != opened_.end()) return found->second;
   const Settings settings = plan().at(frame);
@@ -125,7 +125,7 @@ FrameSource& FirstLook::opened(int frame) {
   return opened_.emplace(frame, std::move(source)).first->second;
 }
 
-FrameSource FirstLook::open(const Settings& settings, int frame) {
+FrameSource RunPreview::open(const Settings& settings, int frame) {
   const auto found = opened_.find(frame);
   if (found == opened_.end()) return open_frame(settings, frame);
   FrameSource source = std::move(found->second);
@@ -136,7 +136,7 @@ FrameSource FirstLook::open(const Settings& settings, int frame) {
 
 /// Whether an option or the header of the first frame gives a camera. A plan without frames, of a chunk of nothing,
 /// needs none.
-bool FirstLook::has_camera(std::string& why_not) {
+bool RunPreview::has_camera(std::string& why_not) {
   if (names_a_camera(settings_.input) || plan().evidence().empty()) return true;
   const int frame = plan().evidence().front();
   try {
@@ -152,7 +152,7 @@ bool FirstLook::has_camera(std::string& why_not) {
 
 /// The radii that a frame tells, of those settings; none where all is sky. Depth and camera alone decide: a fault of
 /// the beauty or of an output is found when the frame is computed.
-std::vector<double> FirstLook::radii_of(int frame, const EstimatorSettings& estimator) {
+std::vector<double> RunPreview::radii_of(int frame, const EstimatorSettings& estimator) {
   const InputSettings input = input_of(frame);
   const auto proposed = [&](FrameSource& source) {
     if (!source.evidence) settle_by_rows(source, input);
@@ -169,7 +169,7 @@ std::vector<double> FirstLook::radii_of(int frame, const EstimatorSettings& esti
 }
 
 /// The radii that the first frame tells that shows a surface, and why others could not be looked at.
-std::vector<double> FirstLook::radii_of_first(std::optional<Error>& error, const EstimatorSettings& estimator) {
+std::vector<double> RunPreview::radii_of_first(std::optional<Error>& error, const EstimatorSettings& estimator) {
   for (const int frame : plan().evidence()) {
     try {
       if (auto radii = radii_of(frame, estimator); !radii.empty()) return radii;
@@ -184,7 +184,7 @@ std::vector<double> FirstLook::radii_of_first(std::optional<Error>& error, const
 }
 
 /// The radius that is proposed where none is given.
-std::optional<double> FirstLook::proposed_radius(std::optional<Error>& error) {
+std::optional<double> RunPreview::proposed_radius(std::optional<Error>& error) {
   EstimatorSettings automatic;
   automatic.radius_auto = true;
   const auto radii = radii_of_first(error, automatic);
@@ -192,7 +192,7 @@ std::optional<double> FirstLook::proposed_radius(std::optional<Error>& error) {
 }
 
 /// Opens the first frame for what its channels need of a camera.
-void FirstLook::look_at_first(MissingOptions& missing) {
+void RunPreview::look_at_first(MissingOptions& missing) {
   if (plan().evidence().empty()) return;
   try {
     const FrameSource& source = opened(plan().evidence().front());
@@ -206,7 +206,7 @@ void FirstLook::look_at_first(MissingOptions& missing) {
   }
 }
 
-MissingOptions FirstLook::missing_options() {
+MissingOptions RunPreview::missing_options() {
   MissingOptions missing;
   const bool has_option = names_a_camera(settings_.input);
   missing.input = main_input(settings_.input).empty();
@@ -258,7 +258,7 @@ std::vector<std::string> MissingOptions::sentences() const {
   return sentences;
 }
 
-void FirstLook::take_radii_of_depth(Notes& notes) {
+void RunPreview::take_radii_of_depth(Notes& notes) {
   const FramePlan& frames = plan();
   notes_on_number(frames);  // fails early if the frame number is ambiguous
   std::optional<Error> error;
@@ -278,7 +278,7 @@ void FirstLook::take_radii_of_depth(Notes& notes) {
                    frames.is_sequence() ? " for all frames" : "")});
 }
 
-void FirstLook::take_lights() {
+void RunPreview::take_lights() {
   refuse_overwriting(plan());  // which says more than that an output is no lights file
   const auto lights = read_lights(settings_.output.lights);
   lights->require_frames(plan().frames());
@@ -287,7 +287,7 @@ void FirstLook::take_lights() {
   require_distinct_channels(settings_);
 }
 
-Notes FirstLook::prepare() {
+Notes RunPreview::prepare() {
   check_settings(settings_);
   if (!settings_.output.lights.empty()) take_lights();
   Notes notes;
@@ -296,7 +296,7 @@ Notes FirstLook::prepare() {
   return notes;
 }
 
-std::optional<FrameSource> FirstLook::settle(std::uint64_t most_bytes) {
+std::optional<FrameSource> RunPreview::settle(std::uint64_t most_bytes) {
   std::optional<int> best;
   bool is_refused = false;
   for (const int frame : plan().evidence()) {
@@ -341,11 +341,11 @@ std::string at_once_text(const RunMemory& memory, const FramePlan& plan, const F
 
 /// The memory that a frame of a CPU has.
 WindowLimits limits_of(const Settings& settings, const RunMemory& memory, const FrameMemory& frame) {
-  const Room room{.bytes = memory.host_bytes,
-                  .buffer_bytes = Room::kEndless,
-                  .program_bytes = memory.program_bytes,
-                  .is_chosen = memory.is_chosen};
-  return {frame, room, longest_side(settings.estimator)};
+  const MemoryBudget budget{.bytes = memory.host_bytes,
+                            .buffer_bytes = MemoryBudget::kEndless,
+                            .program_bytes = memory.program_bytes,
+                            .is_chosen = memory.is_chosen};
+  return {frame, budget, longest_side(settings.estimator)};
 }
 
 /// The number of tiles, and what they cost; "in tiles" where the depth is unreadable.
@@ -367,7 +367,7 @@ std::string needs_text(FrameSource& source, const Settings& settings, const Wind
   } catch (const Error&) {
     return "";  // the frame fails by itself, and others of a sequence may not
   }
-  const bool is_enough = needs.least <= limits.room.bytes;
+  const bool is_enough = needs.least <= limits.budget.bytes;
   if (!is_enough && !is_sequence) limits.refuse(fmt::format("{}: there is no room for it", source.depth_path()), needs);
   const std::string at_once = limits.option_for(needs.at_once) + " computes a frame at once";
   std::string text = at_once + ", and nothing less is enough";
@@ -384,7 +384,7 @@ std::string per_frame(std::size_t count, const char* what, std::size_t frames) {
 
 }  // namespace
 
-std::string plan_text(FirstLook& look, bool is_wedge) {
+std::string plan_text(RunPreview& look, bool is_wedge) {
   const Notes notes = look.prepare();
   const FramePlan& plan = look.plan();
   std::string text;

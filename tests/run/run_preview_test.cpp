@@ -5,7 +5,7 @@
 #include "tests/support/exr_header.h"
 #include "tests/support/sequence_folder.h"
 
-namespace alcove::first_look_test {
+namespace alcove::run_preview_test {
 namespace {
 
 using namespace test;
@@ -198,7 +198,7 @@ TEST_F(SingleFrame, of_which_nothing_is_used_is_said) {
 TEST_F(SingleFrame, is_opened_once) {
   RunOptions options;
   ASSERT_TRUE(parse_run_options({frame, "-o", ao, "--camera", camera, "--radius", "auto"}, options));
-  FirstLook look(options.settings);
+  RunPreview look(options.settings);
   look.prepare();
   fs::remove(frame);  // which stays readable for those who have it open
   EXPECT_EQ(run_frames(look, {}).done, 1);
@@ -352,4 +352,4 @@ TEST_F(Radius, auto_is_the_only_one_and_needs_a_surface) {
 }
 
 }  // namespace
-}  // namespace alcove::first_look_test
+}  // namespace alcove::run_preview_test
