@@ -5,8 +5,8 @@
 #include "core/base/half.h"
 #include "core/base/version.h"
 #include "core/frame/pixels/ramps.h"
-#include "tests/support/difference.h"
 #include "tests/support/library.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::library_test {
 namespace {

@@ -11,9 +11,8 @@
 #include "core/formats/exr.h"
 #include "core/frame/find/frame_source.h"
 #include "tests/support/device.h"
-#include "tests/support/expect_error.h"
-#include "tests/support/long_tests.h"
 #include "tests/support/program.h"
+#include "tests/support/test.h"
 
 namespace alcove::kept_references_test {
 namespace {

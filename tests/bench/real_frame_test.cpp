@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/find/frame_source.h"
 #include "tests/support/device.h"
-#include "tests/support/difference.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::real_frame_test {
 namespace {

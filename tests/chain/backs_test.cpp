@@ -3,7 +3,6 @@
 #include "core/chain/estimate/estimate.h"
 #include "kernels/estimate/estimate.h"
 #include "tests/support/chain.h"
-#include "tests/support/hidden_truth.h"
 
 namespace alcove::backs_test {
 namespace {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/results/shading.h"
 #include "core/reference/reference.h"
-#include "tests/support/bent.h"
 #include "tests/support/chain.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::bent_normal_test {
 namespace {

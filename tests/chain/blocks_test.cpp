@@ -7,7 +7,6 @@
 #include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
 #include "tests/support/site_frames.h"
-#include "tests/support/site_picture.h"
 
 namespace alcove::blocks_test {
 namespace {

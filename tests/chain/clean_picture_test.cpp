@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/metrics.h"
 #include "tests/support/chain.h"
-#include "tests/support/preset.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::clean_picture_test {
 namespace {

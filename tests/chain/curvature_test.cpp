@@ -3,7 +3,7 @@
 #include "core/reference/reference.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
-#include "tests/support/furnished.h"
+#include "tests/support/scenes.h"
 #include "tests/support/wall_frame.h"
 
 namespace alcove::curvature_test {

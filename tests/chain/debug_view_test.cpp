@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/results/debug.h"
 #include "tests/support/command_line.h"
-#include "tests/support/whole_picture.h"
+#include "tests/support/picture_file.h"
 
 namespace alcove::debug_view_test {
 namespace {

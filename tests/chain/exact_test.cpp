@@ -2,9 +2,9 @@
 // surfaces behind the first one that are known, crops, and what it refuses.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reference/reference.h"
+#include "tests/support/chain.h"
 #include "tests/support/command_line.h"
-#include "tests/support/hidden_truth.h"
-#include "tests/support/peels.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::exact_test {
 namespace {

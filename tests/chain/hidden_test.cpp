@@ -1,8 +1,7 @@
 // The sampled estimators with surfaces behind the first: what these must change, and what they must not.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/hidden_truth.h"
-#include "tests/support/peels.h"
-#include "tests/support/random_scenes.h"
+#include "tests/support/chain.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::hidden_test {
 namespace {

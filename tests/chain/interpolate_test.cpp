@@ -3,9 +3,8 @@
 #include "core/chain/estimate/sites.h"
 #include "core/chain/filters/filters.h"
 #include "tests/support/chain.h"
-#include "tests/support/random_scenes.h"
+#include "tests/support/scenes.h"
 #include "tests/support/site_frames.h"
-#include "tests/support/site_picture.h"
 
 namespace alcove::interpolate_test {
 namespace {

@@ -4,7 +4,7 @@
 #include "core/reference/reference_scene.h"
 #include "kernels/hidden/hidden.h"
 #include "tests/support/device.h"
-#include "tests/support/peels.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::pair_test {
 namespace {

@@ -5,8 +5,8 @@
 // surfaces they then miss exactly what is hidden.
 
 #include "core/reference/reference.h"
+#include "tests/support/chain.h"
 #include "tests/support/command_line.h"
-#include "tests/support/hidden_truth.h"
 
 namespace alcove::pieces_test {
 namespace {

@@ -1,8 +1,7 @@
 // What must hold of the AO whatever the scene and the settings: invariances, limits, repairs, odd sizes.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/chain.h"
-#include "tests/support/furnished.h"
-#include "tests/support/peels.h"
+#include "tests/support/scenes.h"
 #include "tests/support/site_frames.h"
 
 namespace alcove::property_test {

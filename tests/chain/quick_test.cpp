@@ -4,10 +4,9 @@
 #include "core/chain/quick/quick.h"
 #include "kernels/quick/quick.h"
 #include "tests/support/chain.h"
-#include "tests/support/preset.h"
-#include "tests/support/random_scenes.h"
+#include "tests/support/command_line.h"
+#include "tests/support/scenes.h"
 #include "tests/support/site_frames.h"
-#include "tests/support/site_picture.h"
 
 namespace alcove::quick_test {
 namespace {

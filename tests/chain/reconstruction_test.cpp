@@ -1,8 +1,8 @@
 // Normals reconstructed from depth are nearer to the truth than cross products of neighbours, on curved surfaces and at
 // edges.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/bent.h"
 #include "tests/support/chain.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::reconstruction_test {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/run/lanes.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
-#include "tests/support/difference.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::reuse_options_test {
 namespace {

@@ -5,8 +5,8 @@
 #include "core/formats/exr.h"
 #include "core/run/frame_run.h"
 #include "tests/support/chain.h"
-#include "tests/support/random_scenes.h"
-#include "tests/support/sequence_folder.h"
+#include "tests/support/command_line.h"
+#include "tests/support/scenes.h"
 #include "tests/support/site_frames.h"
 
 namespace alcove::reuse_test {

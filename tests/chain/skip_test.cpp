@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/estimate/estimate.h"
 #include "tests/support/chain.h"
-#include "tests/support/random_scenes.h"
+#include "tests/support/scenes.h"
 #include "tests/support/site_frames.h"
 
 namespace alcove::skip_test {

@@ -2,8 +2,8 @@
 // picture: against rays, and against wider pictures.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reference/reference.h"
-#include "tests/support/hidden_truth.h"
-#include "tests/support/peels.h"
+#include "tests/support/chain.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::solids_test {
 namespace {

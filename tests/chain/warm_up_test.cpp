@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/warm_up.h"
 
+#include "tests/support/command_line.h"
 #include "tests/support/device.h"
-#include "tests/support/preset.h"
 #include "tests/support/scenes.h"
 
 namespace alcove::warm_up_test {

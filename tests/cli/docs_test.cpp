@@ -3,8 +3,8 @@
 #include <regex>
 #include <sstream>
 
-#include "tests/support/dds_file.h"
-#include "tests/support/deep_file.h"
+#include "tests/support/openexr.h"
+#include "tests/support/picture_file.h"
 #include "tests/support/source_frame.h"
 #include "tests/support/wall_frame.h"
 

@@ -5,7 +5,7 @@
 #include "cli/commands.h"
 #include "core/base/error.h"
 #include "core/options/options.h"
-#include "tests/support/sequence_folder.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::overwriting_test {
 namespace {

@@ -6,10 +6,10 @@
 #include "core/chain/chain.h"
 #include "core/gpu/pipeline_cache.h"
 #include "core/run/lanes.h"
+#include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/fake_driver.h"
-#include "tests/support/single_pass.h"
 
 namespace alcove::driver_test {
 namespace {

@@ -3,10 +3,9 @@
 #include "core/frame/find/frame_source.h"
 #include "core/frame/settle/settle.h"
 #include "tests/support/command_line.h"
-#include "tests/support/dds_file.h"
-#include "tests/support/difference.h"
-#include "tests/support/expect_error.h"
 #include "tests/support/picture_file.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
 namespace alcove::capture_formats_test {
 namespace {

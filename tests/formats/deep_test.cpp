@@ -1,9 +1,9 @@
 // Deep EXR files: the surfaces that their samples make, in every way to store them; and damaged and hostile ones.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/exr.h"
-#include "tests/support/deep_file.h"
-#include "tests/support/expect_error.h"
+#include "tests/support/openexr.h"
 #include "tests/support/program.h"
+#include "tests/support/test.h"
 
 namespace alcove::deep_test {
 namespace {

@@ -8,11 +8,11 @@
 #include "core/formats/exr.h"
 #include "core/formats/image_io.h"
 #include "core/formats/png.h"
-#include "tests/support/expect_error.h"
 #include "tests/support/exr_header.h"
 #include "tests/support/openexr.h"
+#include "tests/support/picture_file.h"
 #include "tests/support/program.h"
-#include "tests/support/whole_picture.h"
+#include "tests/support/test.h"
 
 namespace alcove::file_test {
 namespace {

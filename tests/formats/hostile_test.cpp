@@ -5,7 +5,7 @@
 #include "core/frame/camera/camera.h"
 #include "core/frame/settle/settle.h"
 #include "tests/support/command_line.h"
-#include "tests/support/expect_error.h"
+#include "tests/support/test.h"
 
 namespace alcove::hostile_test {
 namespace {

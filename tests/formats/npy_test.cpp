@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/half.h"
 #include "tests/support/command_line.h"
-#include "tests/support/dds_file.h"
-#include "tests/support/expect_error.h"
+#include "tests/support/picture_file.h"
+#include "tests/support/test.h"
 
 namespace alcove::npy_test {
 namespace {

@@ -1,10 +1,9 @@
 // One rule opens files, in every command: what a file is, its first bytes tell, whatever its name ends in.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/command_line.h"
-#include "tests/support/dds_file.h"
-#include "tests/support/deep_file.h"
-#include "tests/support/expect_error.h"
+#include "tests/support/openexr.h"
 #include "tests/support/picture_file.h"
+#include "tests/support/test.h"
 
 namespace alcove::open_image_test {
 namespace {

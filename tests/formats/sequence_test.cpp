@@ -5,8 +5,8 @@
 #include "core/base/text.h"
 #include "core/formats/absent_frames.h"
 
-#include "tests/support/expect_error.h"
 #include "tests/support/program.h"
+#include "tests/support/test.h"
 
 namespace alcove::sequence_test {
 namespace {

@@ -9,10 +9,9 @@
 #include "core/base/half.h"
 #include "core/formats/exr.h"
 #include "core/formats/sample_loops.h"
-#include "tests/support/expect_error.h"
 #include "tests/support/openexr.h"
-#include "tests/support/openexr_planes.h"
 #include "tests/support/program.h"
+#include "tests/support/test.h"
 
 namespace alcove::zip_test {
 namespace {

@@ -7,7 +7,6 @@
 #include "core/formats/exr.h"
 #include "core/formats/sample_loops.h"
 #include "tests/support/openexr.h"
-#include "tests/support/openexr_planes.h"
 #include "tests/support/program.h"
 
 namespace alcove::zip_writer_test {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/camera/camera.h"
 
-#include "tests/support/expect_error.h"
 #include "tests/support/program.h"
+#include "tests/support/test.h"
 #include "tests/support/wall_frame.h"
 
 namespace alcove::camera_test {

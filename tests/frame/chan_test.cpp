@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/camera/camera.h"
 #include "tests/support/command_line.h"
-#include "tests/support/expect_error.h"
+#include "tests/support/test.h"
 
 namespace alcove::chan_test {
 namespace {

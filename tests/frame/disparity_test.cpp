@@ -3,8 +3,8 @@
 #include <random>
 
 #include "core/frame/pixels/statistics.h"
-#include "tests/support/expect_error.h"
 #include "tests/support/source_frame.h"
+#include "tests/support/test.h"
 
 namespace alcove::disparity_test {
 namespace {

@@ -8,8 +8,7 @@
 #include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
-#include "tests/support/difference.h"
-#include "tests/support/furnished.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::inputs_test {
 namespace {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/find/lights.h"
 
-#include "tests/support/expect_error.h"
 #include "tests/support/test.h"
 
 namespace alcove::lights_test {

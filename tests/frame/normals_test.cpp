@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/statistics.h"
-#include "tests/support/furnished.h"
-#include "tests/support/settled_file.h"
+#include "tests/support/scenes.h"
+#include "tests/support/source_frame.h"
 
 namespace alcove::normals_test {
 namespace {

@@ -1,6 +1,6 @@
 // Files and parts: where the planes of a frame are stored, and which storage is refused.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/deep_file.h"
+#include "tests/support/openexr.h"
 #include "tests/support/part_files.h"
 
 namespace alcove::parts_test {

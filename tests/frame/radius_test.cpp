@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/pixels/radius.h"
 
-#include "tests/support/settled_file.h"
+#include "tests/support/source_frame.h"
 
 namespace alcove::radius_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/base/system.h"
-#include "tests/support/expect_error.h"
+#include "tests/support/test.h"
 
 namespace alcove::ramps_test {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/frame/camera/position_faults.h"
 #include "core/inspect/inspect.h"
 #include "tests/support/command_line.h"
-#include "tests/support/difference.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::resection_test {
 namespace {

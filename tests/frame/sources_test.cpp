@@ -1,8 +1,8 @@
 // One scene as every program writes it gives the same AO, or is refused with the option that mends it; what is said
 // wrongly is noted.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/expect_error.h"
 #include "tests/support/source_frame.h"
+#include "tests/support/test.h"
 
 namespace alcove::sources_test {
 namespace {

@@ -7,8 +7,8 @@
 #include "core/formats/exr.h"
 #include "core/frame/camera/camera.h"
 #include "core/frame/camera/linear.h"
-#include "tests/support/difference.h"
 #include "tests/support/program.h"
+#include "tests/support/scenes.h"
 #include "tests/support/wall_frame.h"
 
 namespace alcove::strangers_test {

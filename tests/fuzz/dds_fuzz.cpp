@@ -1,7 +1,7 @@
 // DDS textures: header and pixels.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/fuzz.h"
-#include "tests/support/dds_file.h"
+#include "tests/support/picture_file.h"
 
 using namespace alcove;
 

@@ -1,7 +1,7 @@
 // NumPy's arrays: header and numbers.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/fuzz.h"
-#include "tests/support/whole_picture.h"
+#include "tests/support/picture_file.h"
 
 using namespace alcove;
 

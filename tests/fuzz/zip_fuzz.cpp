@@ -4,7 +4,7 @@
 
 #include "core/formats/exr.h"
 #include "tests/fuzz/fuzz.h"
-#include "tests/support/openexr_planes.h"
+#include "tests/support/openexr.h"
 
 using namespace alcove;
 

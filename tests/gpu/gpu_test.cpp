@@ -5,8 +5,8 @@
 #include "kernels/estimate/estimate.h"
 #include "kernels/geometry/geometry.h"
 #include "kernels/results/results.h"
+#include "tests/support/chain.h"
 #include "tests/support/device.h"
-#include "tests/support/single_pass.h"
 
 namespace alcove::gpu_test {
 namespace {

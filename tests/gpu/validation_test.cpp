@@ -4,8 +4,8 @@
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/chain/hidden/hidden.h"
+#include "tests/support/chain.h"
 #include "tests/support/device.h"
-#include "tests/support/single_pass.h"
 
 namespace alcove::validation_test {
 namespace {

@@ -3,7 +3,7 @@
 #include <regex>
 
 #include "tests/support/command_line.h"
-#include "tests/support/dwa_frame.h"
+#include "tests/support/wall_frame.h"
 
 namespace alcove::inspect_test {
 namespace {

@@ -3,8 +3,8 @@
 #include <regex>
 
 #include "core/formats/png.h"
-#include "tests/support/compare_command.h"
-#include "tests/support/formula_images.h"
+#include "tests/support/command_line.h"
+#include "tests/support/picture_file.h"
 
 namespace alcove::compare_test {
 namespace {

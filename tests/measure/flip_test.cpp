@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/metrics.h"
 
-#include "tests/support/formula_images.h"
+#include "tests/support/picture_file.h"
 #include "tests/support/test.h"
 
 namespace alcove::flip_test {

@@ -2,7 +2,7 @@
 // scripts see it.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/metrics.h"
-#include "tests/support/compare_command.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::grain_test {
 namespace {

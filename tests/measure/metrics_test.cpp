@@ -3,7 +3,7 @@
 #include "core/measure/metrics.h"
 
 #include "core/base/error.h"
-#include "tests/support/formula_images.h"
+#include "tests/support/picture_file.h"
 #include "tests/support/test.h"
 
 namespace alcove::metrics_test {

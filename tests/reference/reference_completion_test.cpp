@@ -5,9 +5,8 @@
 // surfaces it then misses exactly what is hidden, and each test shows that this is a lot.
 
 #include "core/reference/reference.h"
-#include "tests/support/bent.h"
-#include "tests/support/hidden_truth.h"
-#include "tests/support/random_scenes.h"
+#include "tests/support/chain.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::reference_completion_test {
 namespace {

@@ -1,9 +1,8 @@
 // Hidden surfaces in the CPU reference: analytic peels against rays, and what must change nothing.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reference/reference.h"
-#include "tests/support/hidden_truth.h"
-#include "tests/support/peels.h"
-#include "tests/support/random_scenes.h"
+#include "tests/support/chain.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::reference_layers_test {
 namespace {

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reference/reference.h"
 #include "core/reference/reference_slice.h"
-#include "tests/support/hidden_truth.h"
+#include "tests/support/chain.h"
 
 namespace alcove::solids_rules_test {
 namespace {

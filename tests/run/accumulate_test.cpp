@@ -1,6 +1,6 @@
 // Runs with --accumulate: what a mean of many frames gains, what it leaves alone, and that nothing changes its bits.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/long_tests.h"
+#include "tests/support/test.h"
 #include "tests/support/walked_shot.h"
 
 namespace alcove::accumulate_test {

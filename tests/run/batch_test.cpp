@@ -1,7 +1,7 @@
 // Sequences: which frames are computed, from and to which files, and what is told of them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/plan.h"
-#include "tests/support/sequence_folder.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::batch_test {
 namespace {

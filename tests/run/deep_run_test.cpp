@@ -2,7 +2,7 @@
 // and options.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/command_line.h"
-#include "tests/support/deep_file.h"
+#include "tests/support/openexr.h"
 
 namespace alcove::deep_run_test {
 namespace {

@@ -1,7 +1,7 @@
 // Runs keep within the memory that there is: a GPU with little of its own gets fewer frames at once, then tiles, and
 // always the same bits; the host keeps within --memory as the kernel counts it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/sequence_folder.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::device_memory_test {
 namespace {

@@ -1,6 +1,6 @@
 // The AO of disparity is that of the depth behind it, in radii that need no scene units.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/sequence_folder.h"
+#include "tests/support/command_line.h"
 #include "tests/support/source_frame.h"
 
 namespace alcove::disparity_run_test {

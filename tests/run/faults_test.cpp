@@ -10,7 +10,7 @@
 #include <chrono>
 #include <thread>
 
-#include "tests/support/sequence_folder.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::faults_test {
 namespace {

@@ -3,7 +3,7 @@
 #include "core/frame/find/matte.h"
 #include "core/frame/find/channels.h"
 #include "tests/support/command_line.h"
-#include "tests/support/difference.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::matte_test {
 namespace {

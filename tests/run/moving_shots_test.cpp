@@ -1,8 +1,8 @@
 // The mean over frames on shots by chance: spheres and boxes that move, before a camera that moves, too.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/hidden_truth.h"
-#include "tests/support/long_tests.h"
-#include "tests/support/settled_file.h"
+#include "tests/support/chain.h"
+#include "tests/support/source_frame.h"
+#include "tests/support/test.h"
 #include "tests/support/walked_shot.h"
 
 namespace alcove::moving_shots_test {

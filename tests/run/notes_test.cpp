@@ -1,9 +1,9 @@
 // Warnings and notes: where they are said and recorded, and how they end a run.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/base/note.h"
-#include "tests/support/dwa_frame.h"
+#include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
-#include "tests/support/sequence_folder.h"
+#include "tests/support/wall_frame.h"
 
 namespace alcove::notes_test {
 namespace {

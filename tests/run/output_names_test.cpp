@@ -1,6 +1,6 @@
 // Names of inputs and outputs: endings, folders that are made, what shells make of sequences.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/sequence_folder.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::output_names_test {
 namespace {

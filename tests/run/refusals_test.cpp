@@ -2,7 +2,7 @@
 // inputs, presets, suites and limits that make no sense, devices and modules that are not there. Refused frames:
 // bad_input_test.cpp.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/sequence_folder.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::refusals_test {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/formats/exr.h"
 #include "core/frame/find/environment.h"
 #include "tests/support/command_line.h"
-#include "tests/support/difference.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::relight_test {
 namespace {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/options.h"
 #include "core/run/batch.h"
+#include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
-#include "tests/support/sequence_folder.h"
 
 namespace alcove::run_preview_test {
 namespace {

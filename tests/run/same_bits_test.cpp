@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <regex>
 
-#include "tests/support/deep_file.h"
+#include "tests/support/openexr.h"
 #include "tests/support/walked_shot.h"
 
 namespace alcove::same_bits_test {

@@ -4,7 +4,7 @@
 // It computes slowly, so that frames are small. Its time to read a loop doubles with each branch that lies in it:
 // where a kernel has more of them than it takes, all is left out, with a line that says so.
 #include "core/base/text.h"
-#include "tests/support/long_tests.h"
+#include "tests/support/test.h"
 #include "tests/support/walked_shot.h"
 
 namespace alcove::second_driver_test {

@@ -5,8 +5,8 @@
 #include "core/run/memory.h"
 #include "core/run/plan.h"
 #include "core/run/resume.h"
-#include "tests/support/deep_file.h"
 #include "tests/support/device.h"
+#include "tests/support/openexr.h"
 #include "tests/support/walked_shot.h"
 
 namespace alcove::shot_test {

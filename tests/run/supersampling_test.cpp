@@ -2,8 +2,8 @@
 // samples.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/command_line.h"
-#include "tests/support/difference.h"
 #include "tests/support/exr_header.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::supersampling_test {
 namespace {

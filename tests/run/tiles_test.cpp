@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/frame_files.h"
 #include "tests/support/exr_header.h"
-#include "tests/support/long_tests.h"
+#include "tests/support/test.h"
 #include "tests/support/walked_shot.h"
 
 namespace alcove::tiles_test {

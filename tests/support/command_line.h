@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "cli/options.h"
 #include "core/formats/exr.h"
 #include "tests/support/program.h"
+#include "tests/support/test.h"
 #include "tests/support/wall_frame.h"
 
 namespace alcove::test {
@@ -81,6 +83,95 @@ class CommandLine : public Runs {
   }
 
   const std::string frame = folder / "wall.0042.exr", ao = folder / "ao.exr";
+};
+
+// The settings of the presets that are installed.
+
+inline EstimatorSettings preset(const std::string& name, double radius) {
+  ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1);
+  RunOptions options;
+  EXPECT_TRUE(
+      parse_run_options({"in.exr", "-o", "out.exr", "--preset", name, "--radius", std::to_string(radius)}, options));
+  return options.settings.estimator;
+}
+
+// A folder of pictures, and `alcove compare` on them.
+
+class CompareCommand : public testing::Test {
+ protected:
+  /// Writes an EXR and gives its path.
+  std::string exr_of(const std::string& name, const std::map<std::string, std::vector<float>>& planes,
+                     const Window& data) const {
+    FrameFile file;
+    file.data = file.display = data;
+    file.planes = planes;
+    file.write(folder / name);
+    return folder / name;
+  }
+
+  Finished compare(const Options& arguments) const { return run_program(joined({"compare"}, arguments)); }
+
+  json measured(const Options& arguments, int code = 0) const {
+    const Finished finished = compare(joined(arguments, {"--json"}));
+    EXPECT_EQ(finished.code, code) << finished;
+    return json::parse(finished.out);
+  }
+
+  void expect_error(int code, const Options& arguments, const Options& words) const {
+    expect_refused(compare(arguments), code, words);
+  }
+
+  TemporaryFolder folder;
+};
+
+// What the tests of batches share: a folder with a sequence, its camera, and runs on it.
+
+class SequenceFolder : public Runs {
+ protected:
+  SequenceFolder() {
+    fs::create_directory(in);
+    fs::create_directory(out);
+  }
+
+  void write_frames(int first, int last, const FrameFile& frame = wall_frame()) const {
+    frame.write(input(first));
+    for (int other = first + 1; other <= last; other++) fs::copy_file(input(first), input(other));
+  }
+  std::string input(int frame) const { return fmt::format("{}/f.{:04}.exr", in, frame); }
+  std::string output(int frame) const { return fmt::format("{}/ao.{:04}.exr", out, frame); }
+
+  /// `run` on the sequence with these arguments and, where they say nothing else, its camera and a radius of 1.
+  Finished run(const Options& more = {}, const Launch& launch = {}) const override {
+    return run_program(joined({"run"}, arguments(more)), launch);
+  }
+  Options arguments(const Options& more) const {
+    Options all{in + "/f.%04d.exr"};
+    for (const auto& [option, value] :
+         {std::pair<std::string, std::string>("-o", out + "/ao.%04d.exr"), {"--camera", camera}, {"--radius", "1"}})
+      if (std::ranges::find(more, option) == more.end()) all.insert(all.end(), {option, value});
+    return joined(all, more);
+  }
+
+  void remove_outputs() const {
+    fs::remove_all(out);
+    fs::create_directory(out);
+  }
+
+  /// The bytes of every output, by name.
+  std::map<std::string, std::string> outputs() const {
+    std::map<std::string, std::string> files;
+    for (const auto& name : names_in(out)) files[name] = read_bytes(out + "/" + name);
+    return files;
+  }
+
+  /// These runs, one after the other, must write what was written before.
+  void expect_same_outputs(const std::map<std::string, std::string>& before, const std::vector<Options>& runs) const {
+    remove_outputs();
+    for (const auto& more : runs) done(more);
+    EXPECT_TRUE(outputs() == before) << testing::PrintToString(runs);
+  }
+
+  const std::string in = folder / "in", out = folder / "out";
 };
 
 }  // namespace alcove::test

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/device.h"
 
-#include "tests/support/threads.h"
+#include "tests/support/test.h"
 
 namespace alcove::test {
 namespace {

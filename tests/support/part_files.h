@@ -3,9 +3,9 @@
 #pragma once
 
 #include "core/frame/find/frame_source.h"
-#include "tests/support/expect_error.h"
 #include "tests/support/openexr.h"
 #include "tests/support/program.h"
+#include "tests/support/test.h"
 
 namespace alcove::test {
 

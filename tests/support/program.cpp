@@ -19,7 +19,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "tests/support/threads.h"
+#include "tests/support/test.h"
 
 namespace alcove::test {
 namespace {

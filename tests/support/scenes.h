@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/base/settings.h"
 #include "core/chain/compute.h"
+#include "core/frame/reading.h"
 #include "tests/support/test.h"
 
 namespace alcove::test {
@@ -96,5 +98,161 @@ struct Rendering {
   double footprint(int x, int y) const;
 };
 Rendering render(const Scene& scene, const Shot& shot);
+
+// How far two results of the chain lie apart, and where they do so most.
+
+/// How far two results, or a result and a constant, lie apart.
+struct Difference {
+  double max = 0, mean = 0, rmse = 0, bias = 0;
+  std::size_t worst = 0;
+};
+
+inline Difference difference(const std::vector<float>& a, const std::function<double(std::size_t)>& b) {
+  Difference result;
+  for (std::size_t i = 0; i < a.size(); i++) {
+    const double error = a[i] - b(i);
+    if (!(std::abs(error) <= result.max)) result.max = std::abs(error), result.worst = i;
+    result.mean += std::abs(error) / double(a.size());
+    result.bias += error / double(a.size());
+    result.rmse += error * error / double(a.size());
+  }
+  result.rmse = std::sqrt(result.rmse);
+  return result;
+}
+
+inline Difference difference(const std::vector<float>& a, const std::vector<float>& b) {
+  return difference(a, [&](std::size_t i) { return double(b[i]); });
+}
+
+inline bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  return std::ranges::equal(a, b, {}, std::bit_cast<std::uint32_t, float>, std::bit_cast<std::uint32_t, float>);
+}
+
+inline std::string place(const Difference& d, const HostFrame& frame) {
+  const auto width = std::size_t(frame.data.width);
+  return "worst at pixel " + std::to_string(d.worst % width) + " " + std::to_string(d.worst / width) + ", depth " +
+         std::to_string(frame.depth[d.worst]);
+}
+
+// Analytic scenes with the surfaces behind the first one, as a renderer peels them.
+
+/// The frame of a rendering with as many peels as there are surfaces but the first, of all faces.
+HostFrame peeled(const Scene& scene, const Shot& shot, int surfaces);
+
+/// How much farther than a surface its ray goes on from there, as a part of the surface's depth.
+constexpr double kBehindSurface = 1e-6;
+
+/// Gives the rendering's frame two planes for each of so many surfaces behind the first: one of `fronts`, and one of
+/// backs, which are seen where a ray leaves a solid of the scene. What lies farther behind the first surface than
+/// `within` is left out.
+void add_solid_peels(Rendering& rendering, const Scene& scene, int count, const std::vector<int>& solids = {},
+                     double within = kNowhere, BehindKind fronts = BehindKind::fronts);
+
+// A furnished room as a rendering, and the depths that other programs would have written of it.
+
+constexpr double kNear = 0.1;  // of its z-buffers, scene units
+
+/// A floor, a wall and a ball, from outside or from within a corner, with sky.
+inline Rendering furnished(bool inside = false) {
+  const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
+                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
+  return render(scene, inside ? Shot::perspective({0.3, -0.5, 0.2}, {1, 0.6, 0.3}, 90, 160, 120)
+                              : Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, 160, 120));
+}
+
+/// The frame with each depth of a surface replaced, and all sky by `sky`.
+inline HostFrame with_depth(const Rendering& rendering, DepthKind kind, const std::function<double(const Hit&)>& value,
+                            float sky) {
+  HostFrame frame = rendering.frame;
+  frame.depth_kind = kind;
+  for (std::size_t i = 0; i < frame.depth.size(); i++)
+    frame.depth[i] = rendering.hits[i].primitive < 0 ? sky : float(value(rendering.hits[i]));
+  return frame;
+}
+
+/// The z-buffer by its projection matrix: the third row over the fourth, for a camera that looks along -z.
+inline double device_depth(double z, double far, bool reversed, DeviceRange device, double near = kNear) {
+  const double zero_to_one = std::isinf(far) ? 1 - near / z : (far / (far - near)) * (1 - near / z);
+  const double d = reversed ? 1 - zero_to_one : zero_to_one;
+  return device == DeviceRange::zero_to_one ? d : 2 * d - 1;
+}
+
+inline DepthRange between_planes(double far, bool reversed, DeviceRange device = DeviceRange::zero_to_one,
+                                 double near = kNear) {
+  DepthRange range;
+  range.near = near;
+  range.far = far;
+  range.reversed = reversed;
+  range.device = device;
+  return range;
+}
+
+// Scenes by chance, for what must hold in any.
+
+constexpr Estimator kEstimators[] = {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek};
+
+/// A scene of a few flat and round things, seen from anywhere, also from within a corner.
+class RandomScenes {
+ public:
+  explicit RandomScenes(unsigned seed) : random_(seed) {}
+
+  /// times: as many pixels in x and y.
+  HostFrame next(int times = 1) {
+    Scene scene;
+    scene.primitives.push_back(Plane{{0, 0, 0}, {0, 0, 1}});
+    if (number(0, 1) < 0.5)
+      scene.primitives.push_back(Plane{{0, number(1, 5), 0}, unit({number(-1, 1), -1, number(-0.3, 0.3)})});
+    if (number(0, 1) < 0.3) scene.primitives.push_back(Plane{{number(-3, -1), 0, 0}, {1, 0, 0}});
+    const int things = int(number(0, 6));
+    for (int i = 0; i < things; i++) {
+      const Vec3 at{number(-3, 3), number(-2, 4), number(0, 1)};
+      if (number(0, 1) < 0.5)
+        scene.primitives.push_back(Sphere{.center = at, .radius = number(0.02, 0.5)});
+      else
+        scene.primitives.push_back(parallelogram(at, vector(0.6), vector(0.6)));
+    }
+    const Vec3 eye{number(-0.8, 0.8), number(-4, 0.5), std::exp(number(-4, 1.5))},
+        target{number(-1, 1), number(0, 3), number(-0.5, 0.5)};
+    const int width = times * int(number(8, 97)), height = times * int(number(8, 65));
+    Shot shot = number(0, 1) < 0.8 ? Shot::perspective(eye, target, number(5, 150), width, height)
+                                   : Shot::orthographic(eye, target, number(0.5, 8), width, height);
+    if (number(0, 1) < 0.3) shot.camera.cx += number(-1, 1) * width, shot.camera.fy *= number(0.4, 2.5);
+    HostFrame frame = render(scene, shot).frame;
+    const double kind = number(0, 1);
+    if (kind < 0.15) {
+      frame.depth_is_half = true;
+      for (float& z : frame.depth) z = std::ldexp(std::round(std::ldexp(z, 10 - std::ilogb(z))), std::ilogb(z) - 10);
+    } else if (kind < 0.3) {
+      for (float& n : frame.normal) n = std::round(n * 2048) / 2048;
+    } else if (kind < 0.4) {
+      frame.normal.clear();
+    }
+    return frame;
+  }
+  double radius() { return std::exp(number(-5, 1.5)); }
+  int whole(int least, int most) { return std::uniform_int_distribution(least, most)(random_); }
+  Estimator estimator() { return kEstimators[int(number(0, 4)) & 3]; }
+  ThicknessKind thickness() { return ThicknessKind(int(number(0, 3)) % 3); }
+
+ private:
+  double number(double least, double most) { return std::uniform_real_distribution(least, most)(random_); }
+  Vec3 vector(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
+
+  std::mt19937 random_;
+};
+
+// Bent normals of a frame, as the chain writes them and as the estimator leaves them.
+
+/// Makes vectors of planes x, y, z.
+std::vector<Vec3> vectors_in(std::span<const float> planes, double scale = 1, double offset = 0);
+
+/// The same of the first band of nine planes, see transfer.comp.
+std::vector<Vec3> first_band(std::span<const float> transfer);
+
+/// The AOV: unit vectors in view space.
+std::vector<Vec3> bent_normals(const HostFrame& frame, const EstimatorSettings& settings);
+
+/// The mean open directions in view space, as the estimator leaves what is blocked.
+std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& settings);
 
 }  // namespace alcove::test

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "core/chain/estimate/sites.h"
+#include "tests/support/device.h"
 #include "tests/support/scenes.h"
 
 namespace alcove::test {
@@ -88,6 +90,102 @@ struct Crease {
     std::vector<float> sides;
     for (const Hit& hit : rendering.hits) sides.push_back(float(hit.primitive));
     return sides;
+  }
+};
+
+// Sites of a G-buffer as the host sees them.
+
+template <class T>
+std::vector<T> downloaded(const gpu::Buffer& buffer) {
+  recorder().download(buffer);
+  recorder().run();
+  const auto values = buffer.as<T>();
+  return {values.begin(), values.end()};
+}
+
+struct Prepared {
+  FrameInputs inputs;
+  GBuffer gbuffer;
+};
+
+inline Prepared prepared(const HostFrame& frame) {
+  Prepared result{upload(recorder(), frame), {}};
+  result.gbuffer = reconstruct(recorder(), prepare(recorder(), result.inputs));
+  return result;
+}
+
+/// Pixels of an image, and which of them are sites.
+struct Picture {
+  int width, height;
+  ivec2 origin;  // from the display window's corner
+  std::vector<bool> sites;
+
+  std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
+  bool is_site(int x, int y) const { return sites[index(x, y)]; }
+  int count_of_sites() const { return int(std::ranges::count(sites, true)); }
+  /// Whether a pixel lies on the lattice of a spacing; that of 16 has the pixels beside the middles of blocks.
+  bool is_on_lattice(int x, int y, int spacing) const {
+    return test::is_on_lattice(x + origin.x - 1, y + origin.y - 1, spacing);
+  }
+};
+
+/// What the words of all blocks say. Fails where they say anything of pixels beyond the border.
+inline Picture picture_of(const Sites& sites, const GBuffer& gbuffer) {
+  const std::vector<uint> words = downloaded<uint>(*sites.words);
+  const ivec2 size = gbuffer.view.size, overhang = sites.grid.overhang, blocks = sites.grid.blocks;
+  Picture picture{size.x, size.y, gbuffer.grid.origin, std::vector<bool>(std::size_t(size.x * size.y))};
+  for (int y = 0; y < blocks.y * kBlock; y++)
+    for (int x = 0; x < blocks.x * kBlock; x++) {
+      const uint word = words[std::size_t(y / kBlock * blocks.x + x / kBlock)];
+      if ((word >> (y % kBlock * kBlock + x % kBlock) & 1) == 0) continue;
+      const int u = x - overhang.x, v = y - overhang.y;
+      EXPECT_TRUE(u >= 0 && v >= 0 && u < size.x && v < size.y) << u << " " << v;
+      picture.sites[picture.index(u, v)] = true;
+    }
+  return picture;
+}
+
+inline Picture chosen(const GBuffer& gbuffer, const SiteRule& rule) {
+  return picture_of(sites(recorder(), gbuffer, rule), gbuffer);
+}
+
+inline Picture chosen(const HostFrame& frame, const SiteRule& rule) { return chosen(prepared(frame).gbuffer, rule); }
+
+/// Points and normals of a G-buffer in view space, as the kernels read them.
+struct Geometry {
+  View view;
+  std::vector<float> depth;
+  std::vector<uint> normal;
+
+  explicit Geometry(const GBuffer& gbuffer)
+      : view(gbuffer.view), depth(downloaded<float>(*gbuffer.depth)), normal(downloaded<uint>(*gbuffer.normal)) {}
+
+  std::size_t index(int x, int y) const { return std::size_t(y * view.size.x + x); }
+  Vec3 point(int x, int y) const {
+    const double z = depth[index(x, y)], scale = view.orthographic ? 1 : z;
+    return {(x + 0.5 - view.center.x) * view.tangent_per_pixel.x * scale,
+            (y + 0.5 - view.center.y) * view.tangent_per_pixel.y * scale, -z};
+  }
+  Vec3 normal_of(int x, int y) const {
+    const uint word = normal[index(x, y)];
+    const double u = std::int16_t(word & 0xffffu) / 32767.0, v = std::int16_t(word >> 16) / 32767.0;
+    Vec3 n{u, v, 1 - std::abs(u) - std::abs(v)};
+    if (n.z < 0) n = {(u >= 0 ? 1 : -1) * (1 - std::abs(v)), (v >= 0 ? 1 : -1) * (1 - std::abs(u)), n.z};
+    return unit(n);
+  }
+  bool is_surface(int x, int y) const { return x < view.size.x && y < view.size.y && depth[index(x, y)] < kSkyDepth; }
+  /// The larger of both distances from the other's plane, in widths of the pixel there, squared.
+  double apart_sq(int x, int y, int u, int v) const {
+    const Vec3 away = point(u, v) - point(x, y);
+    const double width = (std::abs(view.tangent_per_pixel.x) + std::abs(view.tangent_per_pixel.y)) / 2;
+    const auto width_at = [&](int i, int j) { return width * (view.orthographic ? 1 : depth[index(i, j)]); };
+    return std::pow(std::max(std::abs(dot(normal_of(x, y), away)) / width_at(x, y),
+                             std::abs(dot(normal_of(u, v), away)) / width_at(u, v)),
+                    2);
+  }
+  /// How far two pixels show one surface, 1 at most, as likeness.glsl has it.
+  double likeness(int x, int y, int u, int v) const {
+    return dot(normal_of(x, y), normal_of(u, v)) - apart_sq(x, y, u, v);
   }
 };
 

@@ -4,8 +4,8 @@
 
 #include "cli/options.h"
 #include "core/run/batch.h"
-#include "tests/support/difference.h"
-#include "tests/support/sequence_folder.h"
+#include "tests/support/command_line.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::test {
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/base/image.h"
+#include "tests/support/openexr.h"
 #include "tests/support/test.h"
 
 namespace alcove::test {
@@ -45,5 +46,16 @@ FrameFile beauty_over(const Window& data, const Window& display);
 
 /// The camera file that fits the frame.
 json wall_camera(const Window& display = kWallWindow, double pixel_aspect = 1);
+
+// A frame whose normals' channels are named as colours are, which DWA quantizes.
+
+inline void write_with_dwa(const std::string& path, Imf::Compression compression) {
+  FrameFile file = wall_frame();
+  for (const auto& [axis, color] : {std::pair("X", "R"), {"Y", "G"}, {"Z", "B"}})
+    file.rename(std::string("ViewLayer.Normal.") + axis, std::string("ViewLayer.Normal.") + color);
+  Imf::Header header(file.data.width, file.data.height);
+  header.compression() = compression;
+  write_openexr(path, header, file.planes);
+}
 
 }  // namespace alcove::test

@@ -5,7 +5,7 @@
 
 #include "core/formats/picture.h"
 #include "core/measure/report.h"
-#include "tests/support/sequence_folder.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::wedge_test {
 namespace {

@@ -19,7 +19,7 @@
 #include "core/reference/reference.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
-#include "tests/support/difference.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::accuracy_test {
 namespace {

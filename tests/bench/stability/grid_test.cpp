@@ -15,8 +15,8 @@
 #include "core/chain/estimate/sites.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
-#include "tests/support/difference.h"
-#include "tests/support/long_tests.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
 namespace alcove::grid_test {
 namespace {

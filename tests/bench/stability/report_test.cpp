@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench/stability.h"
 #include "tests/support/device.h"
-#include "tests/support/long_tests.h"
+#include "tests/support/test.h"
 
 namespace alcove::stability_report_test {
 namespace {

@@ -6,7 +6,7 @@
 #include "tests/bench/stability/cases.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
-#include "tests/support/difference.h"
+#include "tests/support/scenes.h"
 
 namespace alcove::scale_notes_test {
 namespace {
