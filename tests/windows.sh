@@ -170,18 +170,51 @@ shot windows both & second=$!
 wait $first || fail "the first of two processes"
 wait $second || fail "the second of two processes"
 same_shot both "two processes into one folder at the same time"
-# A process that stands still while it writes a frame: another takes its unfinished file for that of a living one.
+# A process that stands still while it writes a frame. Wine removes no open file, so that its lock is asked for.
+cat >lock.c <<'END'
+#include <stdio.h>
+#include <windows.h>
+int main(int count, char** words) {  // tries to lock all of a file
+  OVERLAPPED begin = {0};
+  HANDLE file = CreateFileA(words[count - 1], GENERIC_WRITE, 7, NULL, OPEN_EXISTING, 0, NULL);
+  if (file == INVALID_HANDLE_VALUE) return puts("failed");
+  return puts(LockFileEx(file, LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY, 0, -1, -1, &begin) ? "free" : "locked");
+}
+END
+x86_64-w64-mingw32-gcc lock.c -o lock.exe
 mkdir beside
 begin --preset draft -o 'beside\shot.####.exr'
 first=$!
 until compgen -G 'beside/.alcove*' >/dev/null && kill -STOP $first && compgen -G 'beside/.alcove*' >/dev/null; do
   kill -CONT $first 2>/dev/null || fail "no unfinished file was seen"
 done
-shot windows beside
-compgen -G 'beside/.alcove*' >/dev/null || fail "a file that a living process writes was removed"
+said=$(wine lock.exe beside/.alcove* || true)
 kill -CONT $first
+[ "${said%$'\r'}" = locked ] || fail "a file in the making is not locked: $said"
 wait $first || fail "the process that stood still"
-same_shot beside "a file in the making of a process that stands still is left to it"
+[[ $(wine lock.exe beside/shot.0001.exr || true) = free* ]] || fail "a finished file is locked"
+same_shot beside "a file in the making is locked, and a finished one is not"
+# Frames that are there already are replaced in one step: never is there none.
+cat >deleted.c <<'END'
+#include <stdio.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+int main(void) {  // says what is deleted in the folder beside
+  _Alignas(struct inotify_event) char bytes[4096];
+  const int events = inotify_init();
+  inotify_add_watch(events, "beside", IN_DELETE);
+  puts("watching");
+  for (fflush(stdout); read(events, bytes, sizeof(bytes)) > 0; fflush(stdout)) puts(((struct inotify_event*)bytes)->name);
+}
+END
+gcc deleted.c -o deleted
+./deleted >deletions & watcher=$!
+until grep -qs watching deletions; do sleep 0.1; done
+shot windows beside
+kill $watcher
+wait $watcher 2>/dev/null || true
+[ "$(cat deletions)" = watching ] || fail "files were deleted before they were replaced: $(cat deletions)"
+same_shot beside "files are replaced in one step"
 
 step "files that cannot be had"
 cat >hold.c <<'END'
