@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks beside the tests: the address, undefined-behaviour and thread sanitizers, clang-tidy, some seconds of fuzzing for each target; and the coverage of the tests.
 #   scripts/check.sh              readers of files, every estimator, and sequences
-#   scripts/check.sh PART...      only these parts: addresses (with undefined behaviour), threads, tidy, fuzzing
+#   scripts/check.sh PART...      only these parts: addresses (with undefined behaviour), threads, tidy, fuzzing; windows (installs packages.txt's [windows])
 #   scripts/check.sh all          all sources and all tests
 #   scripts/check.sh coverage     only this: lines and branches of core/ and cli/ that the tests reach
 # Builds are in build-fuzz/ (fuzzing, and the address sanitizer with clang), build-asan/ (without it), build-tsan/, build-tidy/ and build-coverage/. ALCOVE_STRICT=ON
@@ -27,7 +27,7 @@ if [ "$parts" = all ]; then
   tests=()
 fi
 for part in $parts; do
-  [[ " addresses threads tidy fuzzing coverage " = *" $part "* ]] || { echo "$0: there is no part $part" >&2; exit 2; }
+  [[ " addresses threads tidy windows fuzzing coverage " = *" $part "* ]] || { echo "$0: there is no part $part" >&2; exit 2; }
 done
 does() { [[ " $parts " = *" $1 "* ]]; }
 
@@ -113,6 +113,19 @@ if does tidy && has_clang clang-tidy; then
   # clang-tidy cannot read GCC's precompiled headers. Without them, it also checks that every file includes the headers that it uses.
   cmake -S . -B build-tidy -G Ninja -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DBUILD_TESTING=OFF >/dev/null
   printf '%s\n' "${readers[@]}" | xargs -P "$(nproc)" -n 1 clang-tidy --quiet -p build-tidy --extra-arg=-Wno-unknown-warning-option 2>/dev/null
+fi
+
+if does windows; then
+  step "compiling for Windows what asks for files and the system, without code"
+  scripts/setup.sh --only-packages windows
+  cmake -S . -B build-tidy -G Ninja -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DBUILD_TESTING=OFF >/dev/null
+  # These headers of Linux' packages hold for Windows too; others of their folder do not.
+  mkdir -p build-tidy/headers
+  ln -sfn /usr/include/{OpenEXR,Imath,fmt,nlohmann,CLI,toml++,vulkan,vk_video,spirv,png.h,pngconf.h,pnglibconf.h,libdeflate.h,xxhash.h} build-tidy/headers
+  git ls-files 'api/*.cpp' 'cli/*.cpp' 'core/*.cpp' | grep -vE '/(system|color|image_io)\.cpp$' |
+    xargs grep -lE '<(cstdio|filesystem|fstream)>|base/system\.h' |
+    xargs -P "$(nproc)" -n 1 x86_64-w64-mingw32-g++-posix -std=c++20 -fsyntax-only -Wall -Wextra -Werror -DIMATH_HALF_NO_LOOKUP_TABLE \
+      -I. -Ibuild-tidy/generated -isystem build-tidy/headers -isystem build-tidy/headers/OpenEXR -isystem build-tidy/headers/Imath
 fi
 
 if does fuzzing && [ "$sanitized" = build-fuzz ]; then

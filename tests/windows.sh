@@ -39,7 +39,7 @@ root=$(echo "$folder"/alcove-*)
 frame=$root/share/doc/alcove/examples/interior.gbuffer.exr
 camera=$root/share/doc/alcove/examples/interior.camera.json
 beauty=$root/share/doc/alcove/examples/interior.beauty.exr
-linux() { build/alcove "$@"; }
+linux() { "$build/alcove" "$@"; }
 windows() { wine "$root/bin/alcove.exe" "$@"; }
 path() { echo "Z:${1//\//\\}"; }  # as Windows spells it
 ao() { run=$1 && shift && $run run "$frame" --camera "$camera" --radius 0.35 -q "$@"; }
@@ -53,7 +53,6 @@ expect() {  # the exit code, a text that standard error has, and the command
 same() { cmp "$1" "$2" || fail "$3: other bytes than on Linux"; }
 cd "$folder"  # paths that are not whole begin here
 build=$OLDPWD/build
-linux() { "$build/alcove" "$@"; }
 
 step "the first picture"
 begun=$(date +%s%N)
@@ -64,6 +63,13 @@ ao windows -o first.exr
 passed "the second time: $((($(date +%s%N) - begun) / 1000000)) ms"
 compgen -G "$WINEPREFIX/drive_c/users/*/AppData/Local/alcove/pipelines-*" >/dev/null || fail "no compiled kernels in %LOCALAPPDATA%"
 passed "compiled kernels are in %LOCALAPPDATA%"
+
+page=$root/share/doc/alcove/docs/getting-started.md
+sed -n 's/^ *\(bin\\alcove .*\)/@\1\r\n@if errorlevel 1 exit 1\r/p' "$page" >"$root/first.cmd"
+[ "$(grep -c '^@bin' "$root/first.cmd")" -ge 2 ] || fail "the page has no first commands"
+(cd "$root" && wine cmd /c first.cmd >"$folder/said" 2>&1) || fail "the first commands of the page: $(cat said)"
+[ -s "$root/ao.exr" ] && [ -s "$root/ao.png" ] || fail "the first commands of the page write nothing: $(cat said)"
+passed "cmd runs the first commands of the page"
 
 step "the bits of Linux"
 for preset in draft standard production reference source/forfun-crytek source/forfun-hbao; do
@@ -133,12 +139,13 @@ same_shot() {
   [ "$(find "$1" -type f | wc -l)" = 6 ] || fail "$2: more than the frames: $(ls -A "$1")"
   passed "$2"
 }
+# Starts a run to which signals can be sent: its process is $!.
+begin() { (exec wine "$root/bin/alcove.exe" run 'seq\shot.####.exr' --camera "$camera" --radius 0.35 --noise animated -q "$@") & }
 # Starts a slow run, and sends a signal to it once its first frame is there. The run's exit code is in `code`.
 interrupted() {
   mkdir -p "$2"
   exec 4>&2 2>/dev/null  # bash tells of killed jobs
-  (exec wine "$root/bin/alcove.exe" run 'seq\shot.####.exr' --camera "$camera" --radius 0.35 --preset production --noise animated -q \
-    -o "$2\\shot.####.exr") &
+  begin --preset production -o "$2\\shot.####.exr"
   local job=$!
   until compgen -G "$2/shot.*" >/dev/null; do sleep 0.02; done
   kill "-$1" $job
@@ -163,6 +170,51 @@ shot windows both & second=$!
 wait $first || fail "the first of two processes"
 wait $second || fail "the second of two processes"
 same_shot both "two processes into one folder at the same time"
+# A process that stands still while it writes a frame. Wine removes no open file, so that its lock is asked for.
+cat >lock.c <<'END'
+#include <stdio.h>
+#include <windows.h>
+int main(int count, char** words) {  // tries to lock all of a file
+  OVERLAPPED begin = {0};
+  HANDLE file = CreateFileA(words[count - 1], GENERIC_WRITE, 7, NULL, OPEN_EXISTING, 0, NULL);
+  if (file == INVALID_HANDLE_VALUE) return puts("failed");
+  return puts(LockFileEx(file, LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY, 0, -1, -1, &begin) ? "free" : "locked");
+}
+END
+x86_64-w64-mingw32-gcc lock.c -o lock.exe
+mkdir beside
+begin --preset draft -o 'beside\shot.####.exr'
+first=$!
+until compgen -G 'beside/.alcove*' >/dev/null && kill -STOP $first && compgen -G 'beside/.alcove*' >/dev/null; do
+  kill -CONT $first 2>/dev/null || fail "no unfinished file was seen"
+done
+said=$(wine lock.exe beside/.alcove* || true)
+kill -CONT $first
+[ "${said%$'\r'}" = locked ] || fail "a file in the making is not locked: $said"
+wait $first || fail "the process that stood still"
+[[ $(wine lock.exe beside/shot.0001.exr || true) = free* ]] || fail "a finished file is locked"
+same_shot beside "a file in the making is locked, and a finished one is not"
+# Frames that are there already are replaced in one step: never is there none.
+cat >deleted.c <<'END'
+#include <stdio.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+int main(void) {  // says what is deleted in the folder beside
+  _Alignas(struct inotify_event) char bytes[4096];
+  const int events = inotify_init();
+  inotify_add_watch(events, "beside", IN_DELETE);
+  puts("watching");
+  for (fflush(stdout); read(events, bytes, sizeof(bytes)) > 0; fflush(stdout)) puts(((struct inotify_event*)bytes)->name);
+}
+END
+gcc deleted.c -o deleted
+./deleted >deletions & watcher=$!
+until grep -qs watching deletions; do sleep 0.1; done
+shot windows beside
+kill $watcher
+wait $watcher 2>/dev/null || true
+[ "$(cat deletions)" = watching ] || fail "files were deleted before they were replaced: $(cat deletions)"
+same_shot beside "files are replaced in one step"
 
 step "files that cannot be had"
 cat >hold.c <<'END'

@@ -86,19 +86,6 @@ BOOL WINAPI remember_event(DWORD event) {
 
 UINT code_page_before = 0;
 
-/// The bytes that the job of this process leaves it: containers and batch systems set limits so.
-std::uint64_t memory_left_in_job() {
-  JOBOBJECT_EXTENDED_LIMIT_INFORMATION job{};
-  if (!::QueryInformationJobObject(nullptr, JobObjectExtendedLimitInformation, &job, sizeof(job), nullptr))
-    return kNoMemoryLimit;
-  std::uint64_t limit = kNoMemoryLimit;
-  const DWORD flags = job.BasicLimitInformation.LimitFlags;
-  if (flags & JOB_OBJECT_LIMIT_PROCESS_MEMORY) limit = std::min<std::uint64_t>(limit, job.ProcessMemoryLimit);
-  if (flags & JOB_OBJECT_LIMIT_JOB_MEMORY) limit = std::min<std::uint64_t>(limit, job.JobMemoryLimit);
-  if (limit == kNoMemoryLimit) return limit;
-  return limit - std::min<std::uint64_t>(limit, memory_of_process().PagefileUsage);
-}
-
 }  // namespace
 
 int process_id() { return int(::GetCurrentProcessId()); }
@@ -176,8 +163,7 @@ void* symbol_of(const char* library, const char* symbol, std::string& why) {
   return reinterpret_cast<void*>(address);
 }
 
-std::uint64_t memory_left_in_groups(const std::string&) { return memory_left_in_job(); }
-
+// What the process may still commit is less than that of the machine where a job limits it.
 std::uint64_t memory_left_on_machine(const std::string&) {
   MEMORYSTATUSEX status{};
   status.dwLength = sizeof(status);
@@ -185,8 +171,10 @@ std::uint64_t memory_left_on_machine(const std::string&) {
   return std::min(status.ullAvailPhys, status.ullAvailPageFile);
 }
 
-std::uint64_t memory_of_slurm_job() { return kNoMemoryLimit; }  // there is no Slurm on Windows
-std::uint64_t free_memory() { return std::min(memory_left_in_groups(), memory_left_on_machine()); }
+// There are neither control groups nor Slurm on Windows.
+std::uint64_t memory_left_in_groups(const std::string&) { return kNoMemoryLimit; }
+std::uint64_t memory_of_slurm_job() { return kNoMemoryLimit; }
+std::uint64_t free_memory() { return memory_left_on_machine(); }
 
 std::string cache_home() { return folder_of_variable(L"LOCALAPPDATA"); }
 std::string config_home() { return folder_of_variable(L"APPDATA"); }

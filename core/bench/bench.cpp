@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/base/system.h"
+#include "core/base/text.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/chain/estimate/estimate.h"
@@ -149,12 +150,8 @@ struct Timings {
 
 /// The median that the yardstick program prints for a frame.
 double run_yardstick(const std::string& program, const SuiteFrame& frame, int runs) {
-  const auto quoted = [](std::string text) {
-    for (std::size_t at = 0; (at = text.find('\'', at)) != text.npos; at += 4) text.replace(at, 1, "'\\''");
-    return "'" + text + "'";
-  };
-  const std::string command =
-      fmt::format("{} {} {} {} {}", quoted(program), quoted(frame.input), quoted(frame.camera), frame.radius, runs);
+  const std::string command = fmt::format("{} {} {} {} {}", for_shell(program), for_shell(frame.input),
+                                          for_shell(frame.camera), frame.radius, runs);
   const std::string text = output_of_command(command);
   const std::size_t at = text.find("median ");
   const double ms = at == text.npos ? 0 : std::atof(text.c_str() + at + 7);

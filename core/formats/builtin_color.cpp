@@ -1,7 +1,6 @@
 // The built-in display transform of color.h, for systems without OpenColorIO.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <cstdlib>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -10,12 +9,9 @@
 namespace alcove {
 namespace {
 
-/// The curve of sRGB (IEC 61966-2-1), with its straight part where the two parts meet smoothly.
+/// The curve of sRGB (IEC 61966-2-1).
 float srgb_of(float linear) {
-  constexpr float kGamma = 2.4f, kOffset = 0.055f;
-  constexpr float kEnd = kOffset / (kGamma - 1);                         // of the straight part, as a display value
-  const float end = std::pow((kEnd + kOffset) / (1 + kOffset), kGamma);  // the same, as a linear value
-  return linear <= end ? linear * (kEnd / end) : (1 + kOffset) * std::pow(linear, 1 / kGamma) - kOffset;
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
 
 void require_builtin(const char* option, const std::string& name, const std::string& builtin) {
@@ -24,11 +20,6 @@ void require_builtin(const char* option, const std::string& name, const std::str
 }
 
 }  // namespace
-
-std::string display_config_file(const std::string& config) {
-  const char* variable = config.empty() ? std::getenv("OCIO") : nullptr;
-  return variable ? variable : config;
-}
 
 struct DisplayTransform::Impl {};
 

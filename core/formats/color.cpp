@@ -5,7 +5,6 @@
 #include <OpenColorIO/OpenColorIO.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <sstream>
 #include <vector>
 
@@ -80,11 +79,6 @@ std::string known_view(const OCIO::Config& opened, const std::string& config, co
 }
 
 }  // namespace
-
-std::string display_config_file(const std::string& config) {
-  const char* variable = config.empty() ? std::getenv("OCIO") : nullptr;
-  return variable ? variable : config;
-}
 
 struct DisplayTransform::Impl {
   OCIO::ConstCPUProcessorRcPtr processor;

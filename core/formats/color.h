@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdlib>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,7 +10,10 @@
 namespace alcove {
 
 /// The file that DisplayTransform reads: `config`, else that of the OCIO variable; "" for the built-in configuration.
-std::string display_config_file(const std::string& config);
+inline std::string display_config_file(const std::string& config) {
+  const char* variable = config.empty() ? std::getenv("OCIO") : nullptr;
+  return variable ? variable : config;
+}
 
 /// A view of a display, by a configuration: `config` (a file), else that of the OCIO variable, else a small built-in
 /// one (linear Rec.709 to sRGB). Empty names stand for the defaults. Fails with ErrorKind::input if the configuration
