@@ -23,8 +23,7 @@ std::string if_exact(const Settings& settings);
 std::string if_by_error(const Settings& settings);
 /// --aov confidence makes estimates by slices and steps of its own, whatever estimates the AO: it needs their settings.
 bool asks_for_confidence(const Settings& settings);
-/// Shadows of lights are made by samples along slices, whatever estimates the AO, and have their own thickness, noise and
-/// denoiser by the settings of these.
+/// Shadows of lights have thickness, noise and denoiser by the settings of these, whatever estimates the AO.
 bool asks_for_shadows(const Settings& settings);
 std::string unless_denoised(const Settings& settings, std::initializer_list<Denoise> kinds);
 /// Some pixels take the estimates of others, be it at another density.

@@ -42,9 +42,10 @@ class RunPreview {
   /// make no sense.
   MissingOptions missing_options();
 
-  /// Checks the settings, reads the lights of all frames, and finds radii by a frame's depth (--radius auto, 5%), the same for every chunk. Gives the
-  /// notes on all frames. Fails on contradicting settings, as notes_on_number() does, and with ErrorKind::input if no
-  /// examined frame shows a surface for the radius, or if a warning counts as an error.
+  /// Checks the settings, reads the lights of all frames, and finds radii by a frame's depth (--radius auto, 5%), the
+  /// same for every chunk. Gives the notes on all frames. Fails on contradicting settings, as notes_on_number() does,
+  /// and with ErrorKind::input if lights lack a frame, if no examined frame shows a surface for the radius, or if a
+  /// warning counts as an error.
   Notes prepare();
 
   /// Settles the reading of one frame, which all others share: the first one whose pixels decide everything that files

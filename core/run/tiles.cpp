@@ -84,10 +84,10 @@ double reach_of_occluders(const Settings& settings) {
   return std::max(radius, settings.estimator.shadow_reach.value_or(kEndlessReach));
 }
 
-/// Runs wider than this many radii block as if infinite: with `auto` a wider one is no thicker, and its other end decides
-/// nothing else. It is a little more than 4 radii, twice the width from which runs level off, since exact.comp rounds.
-/// Where surfaces are completed, a run is half as thick as wide, and may begin up to 3 radii beyond the reach: see
-/// complete.comp. In a search by samples, nothing farther away than kLongestChain counts.
+/// Runs wider than this many radii block as if infinite: with `auto` a wider one is no thicker, and its other end
+/// decides nothing else. It is a little more than 4 radii, twice the width from which runs level off, since exact.comp
+/// rounds. Where surfaces are completed, a run is half as thick as wide, and may begin up to 3 radii beyond the reach:
+/// see complete.comp. In a search by samples, nothing farther away than kLongestChain counts.
 double widest_run(const EstimatorSettings& settings) {
   if (tells_backs(settings)) return kLongestChain + 0.1;
   return completes(settings) ? 3 + 8.4 : 4.2;

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: depth of what may block.
-// Out: two depths per block of kNearestBlock x kNearestBlock pixels, one for each kNearestStep; of sky alone kSkyDepth, 0.
+// Out: two depths per block of kNearestBlock x kNearestBlock pixels, one for each kNearestStep.
+// Of sky alone they are kSkyDepth and 0.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"

@@ -7,13 +7,13 @@
 // The ray to the light is walked along its image, pixel by pixel. The steps have their numbers at the code:
 //  1. A surface that faces away from the light has 0.
 //  2. A pixel's surface is before the ray or behind it, as seen by the eye. It is moved into the slice of ray and eye
-//     parallel to the receiver's tangent plane (slice.glsl), so that no plane shadows itself. The walk ends at the image
-//     of the lamp, of the farthest place that may block, or at the border.
+//     parallel to the receiver's tangent plane (slice.glsl), so that no plane shadows itself. The walk ends at the
+//     image of the lamp, of the farthest place that may block, or at the border.
 //  3. A surface that is before the ray in one pixel and behind it in the next blocks it.
 //  4. Behind a surface with edges before the ray, the ray is blocked within the surface's solid: to the known back; or
 //     as far as the pixel tells; or as far as the run of its pixels is wide (slice.glsl), or as the user says.
-//  5. Farther behind a surface than any solid may be deep a run begins anew. So blocks of pixels that are all behind the
-//     ray, or all that far before it, are passed over, which changes no result.
+//  5. Farther behind a surface than any solid may be deep a run begins anew. So blocks of pixels that are all behind
+//     the ray, or all that far before it, are passed over, which changes no result.
 //  6. Behind the border the surface of the last pixel goes on a little.
 //  7. A light of some size is sampled in several directions, which differ between neighbours.
 #version 450

@@ -87,6 +87,8 @@ TEST(Lights, with_a_misspelt_or_senseless_field_are_refused_by_name) {
   expect_refused(file_of(kSun + R"(, "frames": [{"frame": 1, "radius": 2}])"), "no field \"radius\"");
   expect_refused(file_of(R"("kind": "sun", "direction": [0, 1], "frames": [{"frame": 1, "direction": [1, 0, 0]}])"),
                  "three numbers");
+  expect_refused(std::string(100000, '['), "nests deeper");
+  expect_refused(file_of(kSun + R"(, "frames": ["}}}]]]\"]]", [[[[[[[1]]]]]]])"), "nests deeper");
   std::string many = R"({"lights": [)";
   for (int i = 0; i < 17; i++) many += fmt::format(R"({}{{"name": "l{}", {}}})", i ? "," : "", i, kSun);
   expect_refused(many + "]}", "17 lights");

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kDeepestLights = 8;          // objects and lists within each other
+constexpr int kDeepestLights = 8;          // objects and lists within each other, since quoting them recurses
 constexpr std::size_t kLongestName = 64;   // of a light: it is part of a channel's name
 constexpr std::size_t kLongestShown = 60;  // characters of a text of the file in a message
 constexpr double kFarthestLight = 1e12;    // scene units: kernels square it as a float
@@ -24,6 +24,24 @@ constexpr double kWidestSun = 179;         // degrees
 /// A text of the file for a message.
 std::string shown(const std::string& text) {
   return text.size() > kLongestShown ? as_utf8(text.substr(0, kLongestShown)) + "..." : text;
+}
+
+/// How many objects and lists lie within each other at most. The parser would tell, but looks at all entries of a list
+/// for each of them where it is asked to.
+int nesting_of(const std::string& text) {
+  int depth = 0, most = 0;
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < text.size(); i++) {
+    if (is_quoted && text[i] == '\\')
+      i++;
+    else if (text[i] == '"')
+      is_quoted = !is_quoted;
+    else if (!is_quoted && (text[i] == '{' || text[i] == '['))
+      most = std::max(most, ++depth);
+    else if (!is_quoted && (text[i] == '}' || text[i] == ']'))
+      depth--;
+  }
+  return most;
 }
 
 /// Reads the lights of a file: every complaint names the file and the light.
@@ -182,11 +200,8 @@ bool LightsFile::is_soft(std::size_t light) const {
 std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::string& path) {
   LightsFile file{path, {}};
   LightReader reader{path, "the file"};
-  const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepestLights) reader.refuse(fmt::format("its JSON nests deeper than {}", kDeepestLights));
-    return true;
-  };
-  const Json top = Json::parse(text, bounded, false);
+  if (nesting_of(text) > kDeepestLights) reader.refuse(fmt::format("its JSON nests deeper than {}", kDeepestLights));
+  const Json top = Json::parse(text, nullptr, false);
   if (!top.is_object() || !top.contains("lights") || !top["lights"].is_array())
     reader.refuse("it must be a JSON object with a list \"lights\"");
   reader.require_known(top, {"lights"});
