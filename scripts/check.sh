@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks beside the tests: the address, undefined-behaviour and thread sanitizers, clang-tidy, some seconds of fuzzing for each target; and the coverage of the tests.
 #   scripts/check.sh              readers of files, every estimator, and sequences
-#   scripts/check.sh PART...      only these parts: addresses (with undefined behaviour), threads, tidy, fuzzing; windows (installs packages.txt's [windows])
+#   scripts/check.sh PART...      only these parts: addresses (with undefined behaviour), threads, tidy, fuzzing; windows (installs packages.txt's [build] and [windows])
 #   scripts/check.sh all          all sources and all tests
 #   scripts/check.sh coverage     only this: lines and branches of core/ and cli/ that the tests reach
 # Builds are in build-fuzz/ (fuzzing, and the address sanitizer with clang), build-asan/ (without it), build-tsan/, build-tidy/ and build-coverage/. ALCOVE_STRICT=ON
@@ -81,7 +81,7 @@ sanitized=build-asan arguments=(-DALCOVE_SANITIZE=address,undefined)
 fuzz_targets=(tests/fuzz/*_fuzz.cpp)
 fuzz_targets=("${fuzz_targets[@]##*/}")
 fuzz_targets=("${fuzz_targets[@]%.cpp}")
-if has_clang fuzzing; then
+if { does addresses || does fuzzing; } && has_clang fuzzing; then
   sanitized=build-fuzz arguments=(-DCMAKE_CXX_COMPILER=clang++ -DALCOVE_FUZZ=ON)
 fi
 
@@ -117,7 +117,7 @@ fi
 
 if does windows; then
   step "compiling for Windows what asks for files and the system, without code"
-  scripts/setup.sh --only-packages windows
+  scripts/setup.sh --only-packages build windows
   cmake -S . -B build-tidy -G Ninja -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DBUILD_TESTING=OFF >/dev/null
   # These headers of Linux' packages hold for Windows too; others of their folder do not.
   mkdir -p build-tidy/headers

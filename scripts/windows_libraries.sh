@@ -29,13 +29,14 @@ archives() {
 }
 fetch() {
   local options=(-o Dir::Etc::SourceList="$sources/sources.list" -o Dir::Etc::SourceParts=/dev/null
-    -o Dir::State::Lists="$sources/lists" -o Dir::Cache="$sources" -o APT::Sandbox::User=)
+    -o Dir::State::Lists="$sources/lists" -o Dir::Cache="$sources" -o APT::Sandbox::User= -o APT::Update::Error-Mode=any)
   (cd "$sources" && apt-get -qq "${options[@]}" update && apt-get -qq "${options[@]}" source $source_packages) >"$folder/log" 2>&1
 }
 archives >"$sources/sources.list"
+[ -s "$sources/sources.list" ] || { echo "apt knows no Debian archive: run apt-get update first" >&2; exit 1; }
 if ! fetch; then
   echo "Sources of security updates cannot be fetched; those of the release are built" >&2
-  archives | grep -v -- -security >"$sources/sources.list"
+  { archives | grep -v -- -security || true; } >"$sources/sources.list"
   fetch || { cat "$folder/log" >&2; exit 1; }
 fi
 

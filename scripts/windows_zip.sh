@@ -27,7 +27,7 @@ for program in "$root"/bin/*; do
     exit 1
   fi
 done
-rm -f "$build/$name.zip"
-find "$root" -exec touch -d "$(date -r CMakeLists.txt)" {} +
+rm -f "$build"/alcove-*-windows-x86_64.zip
+find "$root" -exec touch -r CMakeLists.txt {} +
 (cd "$folder" && find "$name" | LC_ALL=C sort | zip -9 -X -q "$build/$name.zip" -@)
 (cd "$build" && stat -c '%s bytes: %n' "$name.zip")

@@ -30,7 +30,7 @@ display=$folder/display
 Xvfb -displayfd 3 -screen 0 640x480x24 3>"$display" >/dev/null 2>&1 &  # Wine 8 finds Vulkan by its display
 xvfb=$!
 trap 'WINEPREFIX=$folder/prefix wineserver -k >/dev/null 2>&1 || true; kill $xvfb; rm -rf "$folder"' EXIT
-until [ -s "$display" ]; do sleep 0.1; done
+until [ -s "$display" ]; do kill -0 $xvfb 2>/dev/null || fail "Xvfb does not start"; sleep 0.1; done
 DISPLAY=:$(cat "$display")
 export DISPLAY
 wineboot -i >/dev/null 2>&1
@@ -100,7 +100,7 @@ name_works() {  # the output's name, as Windows is told and as Linux finds it
   ao windows --preset draft -o "$1"
   [ -s "$2" ] || fail "there is no $2"
   same "$2" draft.exr "$1"
-  expect 0 "Y" windows inspect "$1" --depth-channel Y --fov 60
+  expect 0 "depth: Y" windows inspect "$1" --depth-channel Y --fov 60
   passed "$(cut -c1-60 <<<"$1")${1:60:1}: written and read"
 }
 ao linux --preset draft -o draft.exr
@@ -147,7 +147,7 @@ interrupted() {
   exec 4>&2 2>/dev/null  # bash tells of killed jobs
   begin --preset production -o "$2\\shot.####.exr"
   local job=$!
-  until compgen -G "$2/shot.*" >/dev/null; do sleep 0.02; done
+  until compgen -G "$2/shot.*" >/dev/null; do kill -0 $job || { exec 2>&4; fail "the run ended before its first frame"; }; sleep 0.02; done
   kill "-$1" $job
   code=0
   wait $job || code=$?
@@ -199,21 +199,27 @@ cat >deleted.c <<'END'
 #include <stdio.h>
 #include <sys/inotify.h>
 #include <unistd.h>
-int main(void) {  // says what is deleted in the folder beside
+int main(void) {  // says what is deleted in the folder beside, and which names are moved to
   _Alignas(struct inotify_event) char bytes[4096];
   const int events = inotify_init();
-  inotify_add_watch(events, "beside", IN_DELETE);
-  puts("watching");
-  for (fflush(stdout); read(events, bytes, sizeof(bytes)) > 0; fflush(stdout)) puts(((struct inotify_event*)bytes)->name);
+  puts(inotify_add_watch(events, "beside", IN_DELETE | IN_MOVED_TO) < 0 ? "failed" : "watching");
+  fflush(stdout);
+  for (long size; (size = read(events, bytes, sizeof(bytes))) > 0; fflush(stdout))
+    for (char* at = bytes; at < bytes + size;) {
+      const struct inotify_event* event = (struct inotify_event*)at;
+      printf("%s %s\n", event->mask & IN_DELETE ? "deleted" : "moved", event->name);
+      at += sizeof(*event) + event->len;
+    }
 }
 END
 gcc deleted.c -o deleted
 ./deleted >deletions & watcher=$!
-until grep -qs watching deletions; do sleep 0.1; done
+until grep -qs watching deletions; do kill -0 $watcher 2>/dev/null || fail "nobody watches the folder"; sleep 0.1; done
 shot windows beside
+until [ "$(grep -c moved deletions)" -ge 6 ] || grep -q deleted deletions; do kill -0 $watcher || fail "the watcher ended"; sleep 0.1; done
 kill $watcher
 wait $watcher 2>/dev/null || true
-[ "$(cat deletions)" = watching ] || fail "files were deleted before they were replaced: $(cat deletions)"
+! grep deleted deletions || fail "files were deleted before they were replaced"
 same_shot beside "files are replaced in one step"
 
 step "files that cannot be had"
@@ -234,7 +240,7 @@ mkfifo end
 wine hold.exe locked.exr <end >held &
 holder=$!
 exec 5>end
-until [ -s held ]; do sleep 0.1; done
+until [ -s held ]; do kill -0 $holder 2>/dev/null || fail "hold.exe does not start"; sleep 0.1; done
 grep -q held held || fail "the file was not held"
 expect 4 "locked.exr: could not rename the finished file to it" ao windows --preset draft -o locked.exr
 expect 3 "locked.exr: picture file cannot be read" windows inspect locked.exr
@@ -245,6 +251,9 @@ same locked.exr draft.exr "the locked file"
 passed "a locked file is named, and stays as it was"
 expect 4 "could not make a temporary file" ao windows --preset draft -o 'Z:\sys\kernel\ao.exr'
 passed "a folder that cannot be written is named"
+mkdir case
+expect 2 "case" ao windows --preset draft -o 'case\AO.exr' --stats 'case\ao.exr'
+passed "names that differ in case only are one file"
 expect 3 "not found" windows inspect 'Z:\nowhere\a.exr'
 passed "a missing file is named"
 

@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace alcove {
 namespace {
@@ -27,6 +28,13 @@ std::string unfinished_name(const std::string& folder) {
   return (fs::path(folder) / fmt::format(".alcove-{}-{:08x}.tmp", process_id(), std::random_device()())).string();
 }
 
+/// Windows takes names for one that differ in case only, or in dots and blanks at their end.
+std::string plain_name(std::string name) {
+  if (fs::path::preferred_separator == '/') return name;
+  name.erase(name.find_last_not_of(". ") + 1);
+  return lower_case(name);
+}
+
 /// The same text for every name of a file. One that is not there is known by the nearest folder that is, and its place
 /// below it.
 std::string identity_of(const std::string& path) {
@@ -36,7 +44,7 @@ std::string identity_of(const std::string& path) {
   fs::path there = fs::weakly_canonical(path, error), below;
   if (error) return path;
   for (id = file_id(there.string()); id.empty() && there.has_relative_path(); id = file_id(there.string())) {
-    below = there.filename() / below;
+    below = plain_name(there.filename().string()) / below;
     there = folder_of(there.string());
   }
   return id + (below.empty() ? "" : "/" + below.string());

@@ -131,7 +131,8 @@ double cpu_seconds() {
 void set_environment(const std::string& name, const std::string& value) { ::_putenv_s(name.c_str(), value.c_str()); }
 
 std::string output_of_command(const std::string& command) {
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::_popen(command.c_str(), "rt"), ::_pclose);
+  // cmd.exe takes away the first and the last quote.
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::_popen(("\"" + command + "\"").c_str(), "rt"), ::_pclose);
   std::string text;
   std::array<char, 256> line;
   while (pipe && std::fgets(line.data(), int(line.size()), pipe.get())) text += line.data();
@@ -157,7 +158,9 @@ void catch_ending_signals() { ::SetConsoleCtrlHandler(remember_event, TRUE); }
 int caught_signal() { return signal_number; }
 
 void* symbol_of(const char* library, const char* symbol, std::string& why) {
-  const HMODULE loaded = ::LoadLibraryW(wide(library).c_str());
+  // Never from the working folder, where anybody's files lie.
+  const HMODULE loaded = ::LoadLibraryExW(wide(library).c_str(), nullptr,
+                                          LOAD_LIBRARY_SEARCH_APPLICATION_DIR | LOAD_LIBRARY_SEARCH_SYSTEM32);
   const auto address = loaded ? ::GetProcAddress(loaded, symbol) : nullptr;
   if (!address) why = std::string(library) + ": " + last_error().message();
   return reinterpret_cast<void*>(address);
@@ -188,7 +191,8 @@ std::string file_id(const std::string& path) {
     return text;
   }
   BY_HANDLE_FILE_INFORMATION old{};
-  if (!file || !::GetFileInformationByHandle(file.get(), &old)) return "";
+  const bool is_known = file && ::GetFileInformationByHandle(file.get(), &old);
+  if (!is_known || (old.nFileIndexHigh == 0 && old.nFileIndexLow == 0)) return "";  // some servers number no files
   return std::to_string(old.dwVolumeSerialNumber) + ":" +
          std::to_string(std::uint64_t(old.nFileIndexHigh) << 32 | old.nFileIndexLow);
 }
@@ -218,44 +222,46 @@ void sync_folder(const std::string&) {}  // rename_over() writes through
 
 namespace {
 
-/// Opens a file to write it and, by a lock on a byte far beyond its end, marks it as being written. Locks keep others
-/// from reading what they cover, so that they must not cover the pixels.
-std::error_code open_locked(const std::string& path, DWORD manner, DWORD flags, int& descriptor) {
+/// Opens a file to write it.
+std::error_code open_to_write(const std::string& path, DWORD manner, DWORD flags, int& descriptor) {
   const HANDLE file =
       ::CreateFileW(wide(path).c_str(), GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
                     manner, FILE_ATTRIBUTE_NORMAL | flags, nullptr);
   if (file == INVALID_HANDLE_VALUE) return last_error();
-  OVERLAPPED place{};
-  place.OffsetHigh = 0x7fffffff;
-  if (!::LockFileEx(file, LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY, 0, 1, 0, &place)) {
-    const std::error_code error = last_error();
-    ::CloseHandle(file);
-    return error;
-  }
   descriptor = descriptor_of(file);
   return {};
+}
+
+/// Marks a file as being written by a lock on a byte far beyond its end: locks keep others from reading what they cover.
+bool lock(int descriptor, DWORD flags) {
+  OVERLAPPED place{};
+  place.OffsetHigh = 0x7fffffff;
+  return ::LockFileEx(handle_of(descriptor), LOCKFILE_EXCLUSIVE_LOCK | flags, 0, 1, 0, &place);
 }
 
 }  // namespace
 
 std::error_code LockedFile::make(const std::string& path) {
   close();
-  const auto error = open_locked(path, CREATE_NEW, 0, descriptor_);
-  is_locked_ = !error;
-  return error;
+  if (const auto error = open_to_write(path, CREATE_NEW, 0, descriptor_)) return error;
+  is_locked_ = lock(descriptor_, 0);  // waits for a process that looks whether the file is abandoned
+  return {};
 }
 
 std::error_code LockedFile::open_abandoned(const std::string& path) {
   close();
-  const auto error = open_locked(path, OPEN_EXISTING, FILE_FLAG_OPEN_REPARSE_POINT, descriptor_);
-  is_locked_ = !error;
+  if (const auto error = open_to_write(path, OPEN_EXISTING, FILE_FLAG_OPEN_REPARSE_POINT, descriptor_)) return error;
+  is_locked_ = lock(descriptor_, LOCKFILE_FAIL_IMMEDIATELY);
+  if (is_locked_) return {};
+  const std::error_code error = last_error();
+  close();
   return error;
 }
 
 bool LockedFile::is_removed() const {
   FILE_STANDARD_INFO info{};
   return is_locked_ && ::GetFileInformationByHandleEx(handle_of(descriptor_), FileStandardInfo, &info, sizeof(info)) &&
-         info.DeletePending;
+         (info.DeletePending || info.NumberOfLinks == 0);
 }
 
 std::error_code LockedFile::write_at(std::uint64_t offset, std::span<const char> bytes) {
