@@ -100,7 +100,7 @@ name_works() {  # the output's name, as Windows is told and as Linux finds it
   ao windows --preset draft -o "$1"
   [ -s "$2" ] || fail "there is no $2"
   same "$2" draft.exr "$1"
-  expect 0 "depth: Y" windows inspect "$1" --depth-channel Y --fov 60
+  expect 0 ", Y, " windows inspect "$1" --depth-channel Y --fov 60
   passed "$(cut -c1-60 <<<"$1")${1:60:1}: written and read"
 }
 ao linux --preset draft -o draft.exr
