@@ -248,6 +248,7 @@ class WedgeMaker {
 }  // namespace
 
 void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet) {
+  for (auto& look : looks) look.settings.output.lights.clear();  // which a preset may name
   WedgeMaker maker(looks, !page.empty());
   std::set<std::optional<double>> radii;
   for (const auto& look : looks) radii.insert(look.settings.estimator.radius);

@@ -110,7 +110,7 @@ struct ShadowParams {
   vec3 light;            // unit vector to a sun, or scene units: the place of a lamp; in view space
   uint is_lamp;          // 0 or 1
   float spread;          // of a sun the tangent of half its angle; of a lamp its radius in scene units
-  float reach;           // scene units from the receiver up to which anything blocks; 0: anywhere
+  float reach;           // scene units from the receiver up to which anything blocks
   float size;            // scene units: the radius by which thickness levels off
   float bias;            // sine of the elevation above the tangent plane below which nothing blocks
   float thickness;       // scene units, infinite allowed; 0: as deep as wide

@@ -13,7 +13,7 @@
 //  4. Behind a surface with edges before the ray, the ray is blocked within the surface's solid: to the known back; or
 //     as far as the pixel tells; or as far as the run of its pixels is wide (slice.glsl), or as the user says.
 //  5. Farther behind a surface than any solid may be deep a run begins anew. So blocks of pixels that are all behind
-//     the ray, or all that far before it, are passed over, which changes no result.
+//     the ray, or all that far before it, are passed over. From one of these to the other rule 3 is looked at.
 //  6. Behind the border the surface of the last pixel goes on a little.
 //  7. A light of some size is sampled in several directions, which differ between neighbours.
 #version 450
@@ -115,10 +115,13 @@ bool is_deep(Receiver r, Ray ray, float change, float z) {
   return is_endless ? false : ahead(r, ray, change, z + most) < ray.most;
 }
 
-/// The last step in a block of a step, and whether nothing up to there can block the ray.
+/// On which side of the ray surfaces lie that cannot block it alone; kNoSide: they may.
+const uint kNoSide = 0u, kBehindRay = 1u, kFarBefore = 2u;
+
+/// The last step in a block of a step, and the side of all up to there.
 struct Stretch {
   int last;
-  bool passes;
+  uint side;
 };
 Stretch stretch_from(Receiver r, Ray ray, int first) {
   const ivec2 pixel = r.pixel + ivec2(round(ray.step_px * float(first)));
@@ -134,7 +137,7 @@ Stretch stretch_from(Receiver r, Ray ray, int first) {
   const float most = max(change * float(first), change * float(last)) + aside;
   const float least = min(change * float(first), change * float(last)) - aside;
   const bool is_behind = ahead(r, ray, most, depths.x) > 1.00001 * ray.most;
-  return Stretch(last, is_behind || is_deep(r, ray, least, depths.y));
+  return Stretch(last, is_behind ? kBehindRay : is_deep(r, ray, least, depths.y) ? kFarBefore : kNoSide);
 }
 
 /// A surface of the last pixel.
@@ -193,11 +196,11 @@ void pass(Receiver r, Ray ray, Reach reach, int k, inout Last last[kSurfaces]) {
   }
 }
 
-/// Whether nothing of a step can block the ray, be it alone.
-bool passes(Receiver r, Ray ray, int k) {
+/// The side of a step.
+uint side_of(Receiver r, Ray ray, int k) {
   const ivec2 pixel = pixel_of_step(r, ray, k);
   const float change = dot(ray.change, vec2(pixel - r.pixel)), z = occluder_depth[index_of(params.view, pixel)];
-  return !is_before(r, ray, change, z) || is_deep(r, ray, change, z);
+  return !is_before(r, ray, change, z) ? kBehindRay : is_deep(r, ray, change, z) ? kFarBefore : kNoSide;
 }
 
 /// Takes the surfaces of a step. Gives whether one of them blocks the ray.
@@ -275,6 +278,7 @@ bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far)
   for (int i = 0; i < kSurfaces; i++) last[i] = Last(kSkyDepth, false, vec3(0), kSkyDepth, false);
   bool blocked = false;
   int k = 1;
+  uint side = kBehindRay;  // of the step before; the receiver itself blocks nothing
   if (ray.steps > 0) {
     do {
       // 5. In a loop of its own, which is short: blocks, then single pixels.
@@ -283,11 +287,11 @@ bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far)
         Stretch stretch;
         do {
           stretch = stretch_from(r, ray, k);
-          k = stretch.passes ? stretch.last + 1 : k;
-        } while (stretch.passes && k <= ray.steps);
+          k = stretch.side == side ? stretch.last + 1 : k;
+        } while (stretch.side == side && k <= ray.steps);
         if (k <= stretch.last) {
           do {
-            is_found = !passes(r, ray, k);
+            is_found = side_of(r, ray, k) != side;
             k += is_found ? 0 : 1;
           } while (!is_found && k <= stretch.last);
         }
@@ -301,6 +305,7 @@ bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far)
           for (int i = 0; i < kSurfaces; i++)
             goes_on = both(last[i].before, last[i].least < kSkyDepth) ? true : goes_on;
         } while (++k <= ray.steps && goes_on && !blocked);
+        side = last[0].before ? kFarBefore : kBehindRay;
       }
     } while (k <= ray.steps && !blocked);
   }
@@ -322,8 +327,7 @@ vec4 towards(vec3 position, vec2 place) {
                         direction_of(2.0 * kPi * place.y);
     direction = normalize(direction + offset.x * x + offset.y * y);
   }
-  const float reach = params.reach > 0.0 ? params.reach : kFarther;
-  return vec4(direction, is_lamp ? min(distance, reach) : reach);
+  return vec4(direction, is_lamp ? min(distance, params.reach) : params.reach);
 }
 
 void main() {

@@ -102,6 +102,24 @@ TEST(Shadow, of_a_box_on_a_floor_ends_within_a_pixel) {
   }
 }
 
+// Else light would come through walls that are farther before the ray than solids are deep in one pixel, and behind it
+// in the next.
+TEST(Shadow, of_a_box_stays_closed_at_a_radius_below_a_pixel) {
+  const Scene scene = box_on_floor();
+  const Shot shot = Shot::perspective({0, -3, 3}, {0, -0.5, 0}, 45, 160, 120);
+  const Rendering rendering = render(scene, shot);
+  for (const Vec3& direction : {Vec3{0.6, -0.6, 0.5}, Vec3{0.8, 0.3, 0.3}, Vec3{0.1, 0.9, 0.5}}) {
+    std::vector<std::vector<float>> by_radius;
+    for (const double radius : {0.5, 0.0005}) {
+      EstimatorSettings settings = settings_of(radius);
+      settings.thickness = ThicknessKind::constant;
+      settings.thickness_length = 0.001;
+      by_radius.push_back(shadows(rendering.frame, {seen_by(shot, sun(direction))}, settings));
+    }
+    EXPECT_LT(difference(by_radius[0], by_radius[1]).mean, 2e-3) << direction.x << " " << direction.y;
+  }
+}
+
 TEST(Shadow, of_a_soft_sun_is_the_part_of_it_that_is_seen) {
   const Scene scene = box_on_floor();
   const Shot shot = Shot::perspective({0, -3, 3}, {0, -0.5, 0}, 45, 160, 120);

@@ -42,6 +42,14 @@ TEST(Lights, of_the_world_turn_with_the_camera_and_lamps_move_with_it) {
                [] { in_view(file_of(kLamp)); });
 }
 
+TEST(Lights, of_the_view_are_before_a_left_handed_camera_at_positive_z) {
+  Camera camera;
+  camera.left_handed = true;
+  camera.view_from_world = Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  EXPECT_EQ(in_view(file_of(kLamp + R"(, "space": "view")"), camera)[0].at, (Vector3{1, 2, -3}));
+  EXPECT_EQ(in_view(file_of(kLamp), camera)[0].at, (Vector3{1, 2, 3})) << "the matrix has turned it already";
+}
+
 TEST(Lights, change_from_frame_to_frame) {
   const std::string text = file_of(kSun + R"(, "space": "view", "angular_diameter": 1,
       "frames": [{"frame": 1001}, {"frame": 1002, "direction": [1, 0, 0]}, {"frame": 1003, "angular_diameter": 0}])");
@@ -73,7 +81,7 @@ TEST(Lights, with_a_misspelt_or_senseless_field_are_refused_by_name) {
   expect_refused(file_of(R"("kind": "sun", "direction": [0, 0, 0])"), "no length");
   for (const char* bad : {"[0, 1]", "[0, 1, null]", "[0, 1, 1e400]", "[0, 1, \"z\"]", "5"})
     expect_refused(file_of(R"("kind": "sun", "direction": )" + std::string(bad)), "");
-  expect_refused(file_of(kSun + R"(, "angular_diameter": 180)"), "0 to 179");
+  expect_refused(file_of(kSun + R"(, "angular_diameter": 180)"), "0 to 30");
   expect_refused(file_of(kLamp + R"(, "radius": -1)"), "\"radius\"");
   expect_refused(file_of(kSun + R"(, "space": "object")"), "world or view");
   expect_refused(file_of(kSun + R"(, "frames": [{"direction": [1, 0, 0]}])"), "\"frame\"");

@@ -86,8 +86,17 @@ TEST_F(ShadowSequence, is_refused_before_any_work_where_a_light_lacks_a_frame) {
   for (const char* more : {"", "--dry-run", "--keep-going"})
     expect_refused(3, joined({"--lights", lights}, typed(more)), {lights, "key", "no frame 3", "--lights", "--frames"});
   EXPECT_TRUE(outputs().empty());
-  done({"--lights", lights, "--frames", "1-2"});
-  EXPECT_EQ(outputs().size(), 2u);
+}
+
+TEST_F(ShadowSequence, is_that_of_the_light_of_its_frame) {
+  write_frames(1, 2);
+  const std::string lights = folder / "lights.json";
+  write_bytes(lights, file_of(kSun + R"(, "frames": [{"frame": 1}, {"frame": 2, "direction": [0, -1, 2]}])"));
+  done({"--lights", lights});
+  const Image first = read_exr_image(output(1)), second = read_exr_image(output(2));
+  const std::size_t wall = 64 * 5 + 32;
+  EXPECT_EQ(first.plane(std::string_view("shadow-key.Y"))[wall], 0) << "it faces away";
+  EXPECT_EQ(second.plane(std::string_view("shadow-key.Y"))[wall], 1) << "it faces the sun";
 }
 
 }  // namespace

@@ -16,6 +16,8 @@
 namespace alcove {
 namespace {
 
+constexpr double kAnywhere = 1e20;  // scene units: a reach that nothing bounds
+
 // Of a light of some size.
 constexpr uint kDirections = 4, kDirectionsExact = 16;
 
@@ -46,7 +48,7 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   }
   ShadowParams params{};
   params.view = gbuffer.view;
-  params.reach = float(settings.shadow_reach.value_or(0));
+  params.reach = float(settings.shadow_reach.value_or(kAnywhere));
   params.size = reach.radius;
   params.bias = settings.estimator == Estimator::crytek ? 0 : reach.bias;
   params.thickness = reach.thickness;
@@ -65,7 +67,7 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   const auto estimate = [&](bool soft, const gpu::Buffer& result) {
     for (std::size_t i = 0; i < frame.lights.size(); i++) {
       const Light& light = frame.lights[i];
-      if ((light.size > 0) != soft) continue;
+      if ((float(light.size) > 0) != soft) continue;
       params.light = to_vec3(light.at);
       params.is_lamp = light.is_lamp ? 1 : 0;
       params.spread = float(light.is_lamp ? light.size : std::tan(light.size * std::numbers::pi / 360));
@@ -82,7 +84,7 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   };
   // Noise is of soft lights alone. So these are filtered, and hard ones take their planes behind the filter.
   gpu::Buffer* result = &gpu.buffer("shadow", bytes);
-  if (std::ranges::any_of(frame.lights, [](const Light& light) { return light.size > 0; })) {
+  if (std::ranges::any_of(frame.lights, [](const Light& light) { return float(light.size) > 0; })) {
     gpu.clear(*result);
     estimate(true, *result);
     result = &denoise(gpu, gbuffer, *result, denoiser_of(sampled), "shadow ");

@@ -19,7 +19,7 @@ constexpr int kDeepestLights = 8;          // objects and lists within each othe
 constexpr std::size_t kLongestName = 64;   // of a light: it is part of a channel's name
 constexpr std::size_t kLongestShown = 60;  // characters of a text of the file in a message
 constexpr double kFarthestLight = 1e12;    // scene units: kernels square it as a float
-constexpr double kWidestSun = 179;         // degrees
+constexpr double kWidestSun = 30;          // degrees: wider ones are no discs any more
 
 /// A text of the file for a message.
 std::string shown(const std::string& text) {
