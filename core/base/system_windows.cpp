@@ -232,7 +232,7 @@ std::error_code open_to_write(const std::string& path, DWORD manner, DWORD flags
   return {};
 }
 
-/// Marks a file as being written by a lock on a byte far beyond its end: locks keep others from reading what they cover.
+/// Marks a file as being written by a lock far beyond its end: others cannot read what a lock covers.
 bool lock(int descriptor, DWORD flags) {
   OVERLAPPED place{};
   place.OffsetHigh = 0x7fffffff;
