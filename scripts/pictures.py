@@ -92,7 +92,8 @@ class Scene:
         return self.shown(self.scratch / "shown.exr", "Y")
 
     def truth(self):
-        return self.shown(self.frames / f"{self.name}.ao.R.a.exr", "AO")
+        """The sky, 0 in the files of truth, becomes white as in Alcove's AO."""
+        return [bytes(row).replace(b"\0", b"\xff") for row in self.shown(self.frames / f"{self.name}.ao.R.a.exr", "AO")]
 
 
 def main():
