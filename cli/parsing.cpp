@@ -106,7 +106,14 @@ const OptionRow* row_of(const Command& command, const std::string& complaint) {
   std::ranges::replace(text, '\n', ' ');
   auto rest = app.remaining();
   std::erase(rest, "--");
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty()) refuse_extra(command, rest.front());
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !rest.empty()) {
+    if (const CLI::Option* set = app.get_option_no_throw("--set"))
+      for (const std::string& word : set->results())
+        if (word.find('=') == word.npos)
+          fail(ErrorKind::usage, "--set {0} {1}: did you mean --set {0}={1}?{2}", word, rest.front(),
+               see_help(command.name));
+    refuse_extra(command, rest.front());
+  }
   const OptionRow* row = row_of(command, text);
   if (row && dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
     const bool is_repeated = text.find("At Most") != text.npos;

@@ -376,8 +376,12 @@ void ExrFile::read(std::span<const ExrRead> reads, int first, int rows) {
     try {
       impl_->read_rows(part, of_part, first, rows);
     } catch (const std::exception& error) {
+      // OpenEXR begins with the file's name, which is said already, and sometimes twice.
+      const std::string text = one_line(error);
+      const std::size_t named = text.rfind("image file \"" + impl_->path + "\". ");
+      const std::size_t from = named == text.npos ? 0 : named + impl_->path.size() + 15;
       fail(ErrorKind::input, "{}: the pixels of part {} cannot be read ({}), the file is damaged or incomplete: {}",
-           impl_->path, part, impl_->option, one_line(error));
+           impl_->path, part, impl_->option, text.substr(from));
     }
   }
   for (const auto& [read, from] : repeats)

@@ -396,9 +396,9 @@ Distances distances_of(const FrameSource& source, std::span<const float> raw) {
 CameraSearch look_for_camera(const InputSettings& settings, int frame) {
   if (names_a_camera(settings)) return {};
   try {
-    return {"", find_frame(settings, false, frame)};
+    return {true, "", find_frame(settings, false, frame)};
   } catch (const NoCamera& error) {
-    return {fmt::format("camera: {}{}", error.why.empty() ? "" : error.why + "; ", kCameraOptions), {}};
+    return {false, error.why, {}};
   } catch (const Error&) {
     // Something else is missing too, which comes later.
   }
@@ -407,7 +407,7 @@ CameraSearch look_for_camera(const InputSettings& settings, int frame) {
   } catch (const Error&) {
     // So is this.
   }
-  return {fmt::format("camera: {}", kCameraOptions), {}};
+  return {false, "", {}};
 }
 
 Inspection inspect_frame(const InputSettings& settings, int frame) {
@@ -416,13 +416,17 @@ Inspection inspect_frame(const InputSettings& settings, int frame) {
 
 Inspection inspect_frame(const InputSettings& settings, int frame, const CommandNames& run) {
   CameraSearch search = look_for_camera(settings, frame);
-  const bool has_camera = search.lacking.empty();
+  const bool has_camera = search.is_found;
   Inspector inspector{settings,   run,   has_camera ? settings : with_some_camera(settings),
-                      has_camera, frame, std::move(search.found)};
+                      has_camera, frame, std::move(search.frame)};
   const bool is_found = inspector.find();
   // A channel that is missing comes first: without it no camera helps.
   auto& missing = inspector.found.missing;
-  if (!has_camera) missing.insert(is_found ? missing.begin() : missing.end(), search.lacking);
+  const bool turns_normals = is_found && expects_world_normals(inspector.source, settings);
+  if (!has_camera)
+    missing.insert(is_found ? missing.begin() : missing.end(),
+                   "camera: " + search.why + (search.why.empty() ? "" : "; ") +
+                       (turns_normals ? kWorldCameraOptions : kCameraOptions));
   const bool is_read = is_found && inspector.read();
   if (is_read) inspector.look();
   if (is_found) inspector.look_at_deep();

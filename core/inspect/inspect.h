@@ -206,9 +206,9 @@ Inspection inspect_frame(const InputSettings& settings, int frame, const Command
 
 /// The result of a search for a camera in the settings and the frame.
 struct CameraSearch {
-  // missing input if nothing gives a camera, and why the frame's positions, if any, give none; "" if there is a camera
-  std::string lacking;
-  std::optional<FrameSource> found;  // the frame, if the search had to open it
+  bool is_found = true;
+  std::string why;                   // why the frame's header or its positions give none; "" if it has neither
+  std::optional<FrameSource> frame;  // if the search had to open it
 };
 /// Looks for a camera. A file that cannot be opened has none.
 CameraSearch look_for_camera(const InputSettings& settings, int frame);

@@ -117,7 +117,7 @@ class SequenceInspector {
     shown_.shown = shown_frame_;
     shown_.frames = plan_.frames();
     shown_.absent = plan_.missing();
-    has_camera_ = look_for_camera(plan_.at(shown_frame_).input, shown_frame_).lacking.empty();
+    has_camera_ = look_for_camera(plan_.at(shown_frame_).input, shown_frame_).is_found;
     for (const int frame : plan_.frames()) look_at_header(frame);
     for (const int frame : few()) look_at_pixels(frame);
     sort_out();

@@ -310,7 +310,7 @@ void check_scales(const Settings& settings) {
     if (settings.output.environment.empty() && std::ranges::count(split(settings.output.aovs), name) > 0)
       fail(ErrorKind::usage, "--aov {}: it is the light of a sky, which --environment gives", name);
   if (settings.output.lights.empty() && wants(settings.output, &FrameOutputs::shadow))
-    fail(ErrorKind::usage, "--aov shadow: it is that of lights, which --lights lists");
+    fail(ErrorKind::usage, "--aov shadow needs lights: --lights FILE.json");
   require_distinct_channels(settings);
   if (e.further_radii.empty()) return;
   const auto radii = radii_of(e);

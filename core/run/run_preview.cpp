@@ -196,9 +196,7 @@ void RunPreview::look_at_first(MissingOptions& missing) {
   if (plan().evidence().empty()) return;
   try {
     const FrameSource& source = opened(plan().evidence().front());
-    missing.turns_normals = missing.camera && !source.channels[RawPlane::normal].empty() &&
-                            source.program.rules->normal_space == NormalSpace::world &&
-                            settings_.input.normal_space != NormalSpace::view;
+    missing.turns_normals = missing.camera && expects_world_normals(source, settings_.input);
   } catch (const NoWorldToCamera&) {
     missing.lacks_matrix = leaves_normals_ = true;
   } catch (const Error& error) {
@@ -239,14 +237,7 @@ std::vector<std::string> MissingOptions::sentences() const {
   if (input) sentences.emplace_back("INPUT, an EXR with depth and normals, or --depth FILE, or --position FILE");
   if (output) sentences.emplace_back("-o FILE.exr, the AO");
   const std::string why = no_camera.empty() ? "" : no_camera + "; ";
-  if (camera && turns_normals)
-    sentences.push_back(fmt::format(
-        "a camera: {}--camera FILE.json with world_to_camera, since the normals are in world space; or --fov DEGREES "
-        "(--vertical-fov), or --focal-px PIXELS, or --focal MM with --aperture MM, or --ortho-width UNITS, each with "
-        "--normal none",
-        why));
-  else if (camera)
-    sentences.push_back(fmt::format("a camera: {}{}", why, kCameraOptions));
+  if (camera) sentences.push_back("a camera: " + why + (turns_normals ? kWorldCameraOptions : kCameraOptions));
   if (lacks_matrix)
     sentences.emplace_back(
         "world_to_camera, since the normals are in world space: --camera FILE.json with it, or --normal none, which "

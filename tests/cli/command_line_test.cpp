@@ -94,6 +94,7 @@ TEST_F(CommandLine, complaints_are_sentences_of_ours_and_name_the_nearest_words)
       {run + "--slices 65", "--slices: 65 is out of range: 1 to 64"},
       {run + "--slices 1,5", "--slices: 1,5 is no single number; decimals are written with a point"},
       {run + "--slices 1 --slices 2", "--slices is given more than once"},
+      {run + "--set least 0.2", "--set least 0.2: did you mean --set least=0.2?"},
       {run + "--set denoise-kernel=1,,2", "--set denoise-kernel: \"\" is no weight of 0 or more"},
       {run + "shot.0002.exr",
        "shot.0002.exr: alcove run takes one INPUT; a sequence is one name with a pattern: write shot.####.exr"},

@@ -442,7 +442,7 @@ TEST_F(Doubts, normals_that_agree_with_nothing_are_refused_unless_depth_is_half)
              return unit(cross(hit.normal, Vec3{0.31, 0.52, 0.79}));
            }).planes;
   write(settings.input);
-  expect(Reply::refused, {"nor in any other space", "--normal-encoding", "--normal none"});
+  expect(Reply::refused, {"no other space fits", "--normal-encoding", "--normal none"});
   settings.normal = "none";
   expect(Reply::silent);
   EXPECT_THAT(settled().channels[RawPlane::normal], IsEmpty());
@@ -452,7 +452,7 @@ TEST_F(Doubts, normals_that_agree_with_nothing_are_refused_unless_depth_is_half)
   for (const auto& [component, value] : {std::pair("X", 0.9f), {"Y", 0.3f}, {"Z", 0.3f}})
     std::ranges::fill(file.planes[std::string("ViewLayer.Normal.") + component], value);
   file.write(settings.input);
-  expect(Reply::refused, {"nor in any other space"});
+  expect(Reply::refused, {"no other space fits"});
   file.halves = {"ViewLayer.Depth.Z"};
   file.write(settings.input);
   EXPECT_THAT(said(), Contains(HasSubstr("only 0 % of the normals agree with depth")));

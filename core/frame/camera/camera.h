@@ -42,10 +42,13 @@ struct Camera {
   std::optional<Vector3> chan_angles;  // of a .chan file about x, y and z, radians, which --chan-rotation puts in order
 };
 
-/// The options that give a camera.
+/// The options that give a camera: any; or one that turns the normals of a world.
 inline constexpr const char* kCameraOptions =
     "--camera FILE.json, or --fov DEGREES (--vertical-fov), or --focal-px PIXELS, or --focal MM with --aperture MM, or "
     "--ortho-width UNITS";
+inline constexpr const char* kWorldCameraOptions =
+    "--camera FILE.json with world_to_camera, since the normals are in world space; or --fov DEGREES (--vertical-fov), "
+    "or --focal-px PIXELS, or --focal MM with --aperture MM, or --ortho-width UNITS, each with --normal none";
 
 /// ErrorKind::usage: nothing gives a camera to the frame of this file. `why` says why the header or the positions do
 /// not.

@@ -178,6 +178,7 @@ static const Components kVectors{{"x", "y", "z"}, {"r", "g", "b"}, {"red", "gree
 const AovNames kDepthNames{
     .what = "depth",
     .channel_option = "--depth-channel",
+    .file_option = "--depth",
     .layers = {"depth", "z", "zdepth", "vrayzdepth", "z-depth", "__depth", "cgeometry_zdepth",
                "finalimagemovierenderqueue_worlddepth"},
     .in_layer = {{"z"}, {"depth"}, {"r"}, {"red"}, {"y"}, {"v"}},
@@ -188,6 +189,7 @@ const AovNames kDepthNames{
 const AovNames kNormalNames{
     .what = "normal",
     .channel_option = "--normal-channels",
+    .file_option = "--normal",
     .layers = {"normal", "n", "nn", "normals", "ns", "__nworld", "cgeometry_normalsshading"},
     .in_layer = kVectors,
     .bare = {{"nx", "ny", "nz"}},
@@ -198,6 +200,7 @@ const AovNames kNormalNames{
 const AovNames kPositionNames{
     .what = "position",
     .channel_option = "--set position-channels",
+    .file_option = "--position",
     .layers = {"position", "p", "pworld", "__pworld", "worldposition", "cgeometry_worldposition"},
     .in_layer = kVectors,
     .bare = {{"px", "py", "pz"}},
@@ -207,6 +210,7 @@ const AovNames kPositionNames{
 const AovNames kBeautyNames{
     .what = "beauty",
     .channel_option = "--set beauty-channels",
+    .file_option = "--beauty",
     .layers = {"combined", "rgba", "beauty"},
     .in_layer = kColours,
     .bare = kColours,
@@ -254,6 +258,7 @@ const AovNames kAlbedoNames{
 const AovNames kMatteNames{
     .what = "matte",
     .channel_option = "--set matte-channel",
+    .file_option = "--matte",
     .layers = {"matte", "mask"},
     .in_layer = {{"y"}, {"a"}, {"r"}, {"v"}},
     .bare = {{"matte"}, {"mask"}},
@@ -594,9 +599,10 @@ std::vector<ChannelRef> ChannelSearch::require(std::size_t file, const AovNames&
     fail(ErrorKind::input,
          "{}: it holds deep data only, which has no single value per pixel: no {} ({}); --deep takes it",
          files_[file].path(), names.what, names.channel_option);
-  fail(ErrorKind::input, "{}: no {} channel found{}{}; there is {}; name it with {}", files_[file].path(), names.what,
+  const bool may_have_file = !own_file && *names.file_option;
+  fail(ErrorKind::input, "{}: no {} channel found{}{}; there is {}; name it with {}{}", files_[file].path(), names.what,
        where(file), suggestion(hint, takes(channels_[file], names)), list_of(full_names(channels_[file])),
-       names.channel_option);
+       names.channel_option, may_have_file ? fmt::format(", or give its own file with {}", names.file_option) : "");
 }
 
 std::string ChannelSearch::where(std::size_t file) const {

@@ -71,6 +71,7 @@ using Components = std::vector<std::vector<std::string>>;
 struct AovNames {
   const char* what;
   const char* channel_option;
+  const char* file_option = "";
   std::vector<std::string> layers = {};
   Components in_layer;    // These are looked for below one of the layers.
   Components bare = {};   // These name the AOV by themselves in any file.

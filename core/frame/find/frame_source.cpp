@@ -617,6 +617,11 @@ std::vector<std::string> other_depths(const FrameSource& source) {
   return others;
 }
 
+bool expects_world_normals(const FrameSource& source, const InputSettings& settings) {
+  return !source.channels[RawPlane::normal].empty() && source.program.rules->normal_space == NormalSpace::world &&
+         settings.normal_space != NormalSpace::view;
+}
+
 NoWorldToCamera::NoWorldToCamera(const std::string& file)
     : Error(ErrorKind::input,
             file +

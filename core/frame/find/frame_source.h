@@ -116,6 +116,9 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
 /// Other channels of the depth's file that are depth by their names, over the same pixels. Options name none of them.
 std::vector<std::string> other_depths(const FrameSource& source);
 
+/// Whether the renderer's normals are in world space, and no option says otherwise: a camera must turn them.
+bool expects_world_normals(const FrameSource& source, const InputSettings& settings);
+
 /// ErrorKind::input: the normals of this file are in world space, and the camera has no world_to_camera.
 struct NoWorldToCamera : Error {
   explicit NoWorldToCamera(const std::string& file);

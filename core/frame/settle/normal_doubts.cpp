@@ -92,14 +92,14 @@ class NormalDoubts : private NormalSettlement {
     const NormalScore& best = scores[0];
     refuse_turned_camera(chosen, best.close);
     const std::string read =
-        fmt::format("{}: its normals, read as {}, are not those of this depth and this camera", path_, text_of(chosen));
+        fmt::format("{}: its normals are not those of this depth and this camera (as {})", path_, text_of(chosen));
     if (best.clearly_beats(chosen))
-      fail(ErrorKind::input, "{}: as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
+      fail(ErrorKind::input, "{}; but as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
     if (chosen.explained() >= kUsable || has_coarse_depth(reading_)) return;
     const bool is_tangent = are_alike(raw_, depth_map_of(reading_));
     if (chosen.explained() >= kRefuted && is_listed(NoteCode::normals_disagree, settings_.allow)) return;
-    fail(ErrorKind::input, "{}, nor in any other space{}: {}; {}{}", read,
+    fail(ErrorKind::input, "{}; no other space fits{}: {}; {}{}", read,
          is_tangent ? ", but all look the same way, as those of tangent space" : "", kCheck, kWithout,
          chosen.explained() >= kRefuted ? "; --set allow=normals-disagree takes them as they are" : "");
   }
