@@ -25,6 +25,7 @@
 #include "kernels/base/noise.glsl"
 #include "kernels/base/clearance.glsl"
 #include "kernels/estimate/slice.glsl"
+#include "kernels/estimate/solids.glsl"
 #include "kernels/estimate/backs.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -157,6 +158,19 @@ bool are_one(Receiver r, float z, float last_z) {
   return both(abs(z - last_z) < kRunSlope * pixel, z < kSkyDepth);
 }
 
+ivec2 pixel_of_step(Receiver r, Ray ray, int k) { return r.pixel + ivec2(round(ray.step_px * float(k))); }
+
+/// Whether two neighbouring pixels of any slope show one plane.
+bool are_coplanar(Receiver r, Ray ray, int k, float z) {
+  const View view = params.view;
+  const ivec2 pixel = pixel_of_step(r, ray, k), last = pixel_of_step(r, ray, k - 1);
+  const int index = index_of(view, pixel), last_index = index_of(view, last);
+  const float last_z = occluder_depth[last_index];
+  const Facet here = Facet(position_of(view, vec2(pixel) + 0.5, z), unpack_normal(normal[index]), z);
+  const Facet there = Facet(position_of(view, vec2(last) + 0.5, last_z), unpack_normal(normal[last_index]), last_z);
+  return are_coplanar(view, there, here, kPlaneDot, kPlaneOff);
+}
+
 /// 4. How thick a run is, in scene units along the eye's ray.
 float thickness_of(Receiver r, Last run, vec3 end, float z, float per_width) {
   if (kThickness == kThicknessLength) return params.thickness;
@@ -170,8 +184,6 @@ float surface_at(int index, int i) {
   return kSurfaces == 1 || i == 0 ? occluder_depth[index]
                                   : hidden[index + (i - 1) * params.view.size.x * params.view.size.y];
 }
-
-ivec2 pixel_of_step(Receiver r, Ray ray, int k) { return r.pixel + ivec2(round(ray.step_px * float(k))); }
 
 /// Whether a surface is before the ray, and clear of the receiver's tangent plane.
 bool is_clear_before(Receiver r, Ray ray, Reach reach, vec2 beside, float z, int k) {
@@ -220,7 +232,8 @@ bool take_step(Receiver r, Ray ray, Reach reach, uint outline, int k, inout Last
     Last from = last[0];
     for (int j = 1; j < kSurfaces; j++)
       if (abs(last[j].z - z) < abs(from.z - z)) from = last[j];
-    const bool goes_on = are_one(r, z, from.z);
+    bool goes_on = are_one(r, z, from.z);
+    if (i == 0 && !goes_on && k > 1 && before != last[0].before) goes_on = are_coplanar(r, ray, k, z);
     blocked = both(goes_on, before != from.before) ? true : blocked;  // 3.
     // 4.
     const float next = i + 1 < kSurfaces ? surface_at(index, i + 1) : kSkyDepth;
