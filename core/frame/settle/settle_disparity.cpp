@@ -16,8 +16,7 @@ namespace alcove {
 namespace {
 
 constexpr const char* kOptions =
-    "--set disparity-shift B, the value of what is infinitely far, or --near N --far F, the distances of the values 1 "
-    "and 0";
+    "--set disparity-shift B, the value at infinity, or --near N --far F, the distances of the values 1 and 0";
 // Parts of the median value above the shift.
 constexpr double kMostUncertain = 0.12, kProven = 0.02;  // of the shift's error
 constexpr double kSame = 0.02;                           // of the difference of shifts that are one
