@@ -40,7 +40,7 @@ CommandOf<CompareArguments> compare_syntax() {
       .is_required = true;
   pictures
       .text("REFERENCE", &S::reference, "",
-            "what it should be; a pattern too, one picture for all frames, or a list of frames in TOML")
+            "the reference; a pattern too, one picture for all frames, or a list of frames in TOML")
       .names(FileRole::input)
       .is_required = true;
   OptionGroup options(command.rows, "Options", Effect::none, &CompareArguments::settings);

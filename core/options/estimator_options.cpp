@@ -276,11 +276,10 @@ constexpr int kMostAccumulated = 16;
 
 bool read_accumulate(const std::string& text, int& frames) {
   if (lower_case(text) == "all")
-    fail(
-        ErrorKind::usage,
-        "all would be a mean of the whole shot: every frame would wait for all others, and far ones show little of it: "
-        "give a number of frames to each side, up to {}",
-        kMostAccumulated);
+    fail(ErrorKind::usage,
+         "all would be a mean of the whole shot, and every frame would wait for all others: give a number of frames to "
+         "each side, up to {}",
+         kMostAccumulated);
   const auto number = whole_number_of(text);
   if (!number || *number < 0 || *number > kMostAccumulated) return false;
   frames = *number;

@@ -166,16 +166,16 @@ const SettingRow& row_of_key(const std::string& key) {
   }
   if (key == "preset")
     fail(ErrorKind::usage,
-         "preset is an option of the command line only: give both presets there, the one that wins last (--preset A "
-         "--preset B)");
+         "preset is an option of the command line only: give both presets there (--preset A --preset B; the last one "
+         "wins)");
   if (!row->is_key()) fail(ErrorKind::usage, "{} is an option of the command line only", key);
   return *row;
 }
 
 const std::vector<Rivals>& rivals() {
-  static const char* const kCamera = "each of them says what the camera sees";
+  static const char* const kCamera = "each sets the lens";
   static const std::vector<Rivals> kRivals{
-      {{"depth"}, {"position"}, "both say how far away surfaces are"},
+      {{"depth"}, {"position"}, "both give the distance of surfaces"},
       {{"depth-channel"}, {"position", "position-channels"}, "depth is read from one of them"},
       {{"camera"}, {"fov", "vertical-fov", "focal-px", "focal", "aperture", "ortho-width"}, kCamera},
       {{"fov"}, {"vertical-fov", "focal-px", "focal", "aperture", "ortho-width"}, kCamera},
@@ -183,12 +183,10 @@ const std::vector<Rivals>& rivals() {
       {{"focal-px"}, {"focal", "aperture", "ortho-width"}, kCamera},
       {{"focal", "aperture"}, {"ortho-width"}, kCamera},
       {{"occluders"}, {"ignore"}, "each says what blocks"},
-      {{"occluders", "ignore"},
-       {"around", "other-views"},
-       "what other frames and views show behind an object may be the object itself"},
-      {{"tolerance"}, {"resolution"}, "the error is that of every pixel at --resolution full"},
-      {{"tolerance"}, {"accumulate"}, "each says how exact the AO gets"},
-      {{"denoise-kernel"}, {"denoise-radius"}, "as many weights as there are make the radius"},
+      {{"occluders", "ignore"}, {"around", "other-views"}, "other frames and views may show the object itself"},
+      {{"tolerance"}, {"resolution"}, "the error is per pixel at --resolution full"},
+      {{"tolerance"}, {"accumulate"}, "each sets the AO's accuracy"},
+      {{"denoise-kernel"}, {"denoise-radius"}, "the number of weights sets the radius"},
       {{"quiet"}, {"verbose"}, "one asks for lines, the other for none"}};
   return kRivals;
 }

@@ -320,8 +320,8 @@ TEST_F(CommandLine, presets_are_listed_with_what_each_is_for_ours_first_and_inpu
   };
   EXPECT_LT(place("\n  draft "), place("\n  standard "));
   EXPECT_LT(place("\n  production "), place("\n  reference "));
-  EXPECT_LT(place("\n  reference "), place("to match a frame of theirs"));
-  EXPECT_LT(place("to match a frame of theirs"), place("\n  source/fp-asm "));
+  EXPECT_LT(place("\n  reference "), place("to match their frames"));
+  EXPECT_LT(place("to match their frames"), place("\n  source/fp-asm "));
   EXPECT_LT(place("\n  source/taos-quality "), place("\n  input/3delight "));
   for (const auto& preset : json::parse(run_program({"presets", "--json"}).out)) {
     EXPECT_NE(preset["sentence"], "") << preset["name"];
