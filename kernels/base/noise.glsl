@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Slices turn by a lattice over the image: a number that grows by the same fraction of a turn from pixel to pixel. On a
-// plain surface the error of an estimate is then a sum of waves: harmonic (k, l) of the two numbers is a wave of k times
-// the first number's frequency plus l times the second one's, modulo 1. The fractions (kNoiseXByX ... of shared.h) make
-// the heaviest harmonics so short on every lattice of tiles.glsl that the filters remove them. Measured weights: on plain
-// surfaces of rendered scenes the first harmonic of the slices' direction has seven tenths of the variance, and the steps
-// have hardly any. See docs/lab.md.
+// plain surface the error of an estimate is then a sum of waves: harmonic (k, l) of the two numbers is a wave of k
+// times the first number's frequency plus l times the second one's, modulo 1. The fractions (kNoiseXByX ... of
+// shared.h) make the heaviest harmonics so short on every lattice of tiles.glsl that the filters remove them. Measured
+// weights: on plain surfaces of rendered scenes the first harmonic of the slices' direction has seven tenths of the
+// variance, and the steps have hardly any. See docs/lab.md.
 
 const float kGolden = 0.61803398874989485;  // (sqrt(5) - 1) / 2
 
