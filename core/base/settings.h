@@ -14,9 +14,9 @@
 
 namespace alcove {
 
-/// The frames to compute, and the treatment of those that cannot or need not be computed.
+/// The frames to compute, and the treatment of frames that cannot or need not be computed.
 struct FrameSettings {
-  // a list for core/formats/sequence.h; empty: those of the first input with a pattern that lie on the disk
+  // a list for core/formats/sequence.h; empty: the files on the disk of the first input with a pattern
   std::string frames;
   int output_offset = 0;  // frames from an input's number to its outputs'
   // compute only the chunk-th of as many parts of the frames, 1 <= chunk <= chunks; all of nearly equal length

@@ -45,8 +45,8 @@ struct ExrPart {
   bool dwa = false;  // compressed by DWAA or DWAB, which are lossy for channels whose name ends in R, G, B, Y, RY or BY
 };
 
-/// The attributes of one part's header, of every type, with those that only the first part has. They are carried into
-/// outputs.
+/// The attributes of one part's header, of every type, with the attributes that only the first part has. Outputs get
+/// them.
 class ExrAttributes;
 class PictureReader;
 
@@ -96,9 +96,9 @@ class ExrFile {
   /// Frees the memory of reading. Afterwards only parts, windows and bytes_beside_pixels() are available.
   void close();
 
-  /// Makes surfaces of deep samples: those of these parts and of `others`, all together. From then on they are the
-  /// channels deep_channel() of the first part, over the pixels of `data`, which becomes the data window of that part.
-  /// A part may lack some of these pixels. Fails if a part has no Z, and if chunks claim more than their file can hold.
+  /// Makes surfaces from the deep samples of these parts and of `others`, all together. Then they are the channels
+  /// deep_channel() of the first part, over the pixels of `data`, which becomes this part's data window. A part may
+  /// lack some of these pixels. Fails if a part has no Z, and if chunks claim more than their file can hold.
   void take_deep(const std::vector<int>& parts, const DeepRules& rules, const Window& data,
                  std::span<const DeepElement> others = {});
   /// Makes surfaces of deep samples over the window of the first part.

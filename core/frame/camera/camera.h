@@ -71,7 +71,7 @@ Camera camera_of(const std::string& text, const std::string& name, const Window&
 bool lists_frames(const std::string& path);
 
 /// Fails with ErrorKind::input if a camera file lists `frames` and none of them has this number. Does not check the
-/// entry: its fields may be those of views.
+/// entry, since its fields may be per view.
 void require_listed(const std::string& path, int frame);
 
 /// Whether the settings give a camera, or at least try to.

@@ -1,5 +1,5 @@
-// Numbers of one row or column of a picture: what its pixels show of the way in which it was made.
-// SPDX-License-Identifier: BSD-3-Clause
+// Numbers of one row or column of a picture, as traces of the way in which it was made. SPDX-License-Identifier:
+// BSD-3-Clause
 #pragma once
 
 #include <cstddef>
@@ -47,7 +47,7 @@ struct HoleCounts {
 };
 HoleCounts count_holes(const Line& line, Holes& holes);
 
-/// Adds some of the line's second differences; counts neighbours and those with opposite signs.
+/// Adds some of the line's second differences; counts neighbours, and neighbours with opposite signs.
 struct BendSample {
   std::vector<double> sizes;
   std::size_t neighbours = 0, opposite = 0;

@@ -43,12 +43,12 @@ inline constexpr double kLeastStraight = 0.02;
 inline constexpr double kSurelyStraight = 0.1;
 /// If this part of the pixels is exactly 1, that is a background.
 inline constexpr double kPlateau = 0.001;
-/// What helps where the depth is that of an orthographic camera and another is given. Its planes are affine in the
-/// picture, as those of a perspective camera are in 1/z.
+/// The remedy if an orthographic camera made the depth and another camera is given. In such depth planes are affine in
+/// the picture; with a perspective camera they are so in 1/z.
 inline constexpr const char* kOrthographicHint =
     "distances of an orthographic camera would look the same: for one, give --ortho-width, or a --camera file with "
     "\"projection\": \"orthographic\"";
-/// What helps where the depth may be that of a network.
+/// The remedy if the depth may be a network's.
 inline constexpr const char* kDisparityHint = "; if a network estimated it, as a / z + b, --depth-kind disparity";
 /// A range of 0 to 1 may exceed 1 by so much because it was computed.
 inline constexpr double kRounded = 1e-3;
@@ -56,7 +56,7 @@ inline constexpr double kRounded = 1e-3;
 /// bring them, these are errors.
 inline constexpr double kFewErrors = 0.005;
 
-/// What is known of a depth beside its planes.
+/// Facts about a depth besides its planes.
 struct DepthFacts {
   Program program;
   bool is_kind_open = false;

@@ -1,5 +1,4 @@
-// A frame whose normals are being settled: what the steps share.
-// SPDX-License-Identifier: BSD-3-Clause
+// A frame during the settling of its normals: the state that the steps share. SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>

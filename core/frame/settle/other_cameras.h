@@ -11,7 +11,7 @@ namespace alcove {
 
 /// A camera that was tried, its score, and the fault of the given camera if this one is right.
 struct OtherCamera {
-  std::string what;  // a sentence that says what to do, without a full stop
+  std::string what;  // the sentence with the remedy, without a full stop
   NormalScore score;
 };
 

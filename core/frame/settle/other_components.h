@@ -32,7 +32,7 @@ struct ConstantComponent {
 };
 std::optional<ConstantComponent> constant_component(const RawPart& raw, const DepthMap& map);
 
-/// Whether nearly all normals look the same way, as those of tangent space do.
+/// Whether nearly all normals look the same way, as in tangent space.
 bool are_alike(const RawPart& raw, const DepthMap& map);
 
 }  // namespace alcove

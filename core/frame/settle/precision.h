@@ -1,4 +1,4 @@
-// What the pixels of planes, from files or from memory, show: how depth was rounded, and what detectors look at.
+// Measures the pixels of planes, from files or from memory: the rounding of depth, and the detectors' findings.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -22,8 +22,8 @@ Grain measure_rounding(Reading& reading, const Window& window, std::span<const f
 /// Takes down the step of depth between planes that was stored as integers. The kind of the depth must be settled.
 void measure_levels(Reading& reading, std::span<const float> depth);
 
-/// What a walk over the pixels shows, for the detectors. The depth, called `name`, is settled; `has_read_normals` says
-/// that the normals are.
+/// The findings of a walk over the pixels, for the detectors. The depth, called `name`, is settled; `has_read_normals`
+/// says that the normals are.
 Findings findings_of(const Reading& reading, const RawPart& raw, const Evidence& seen, const std::string& name,
                      bool has_read_normals);
 
