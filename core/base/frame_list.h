@@ -1,5 +1,5 @@
-// A list of frames with a camera and radius each, in TOML, for `run`, `compare` and `bench`. SPDX-License-Identifier:
-// BSD-3-Clause
+// A list of frames with a camera and radius each, in TOML, for `run`, `compare` and `bench`.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>

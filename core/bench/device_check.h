@@ -1,4 +1,5 @@
-// Checks a device: a small frame through presets, against stored values. SPDX-License-Identifier: BSD-3-Clause
+// Checks a device: a small frame through presets, against stored values.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <chrono>

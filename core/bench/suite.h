@@ -1,5 +1,5 @@
-// The suite of `alcove bench`: frames with their truth, and candidates, from a TOML file. SPDX-License-Identifier:
-// BSD-3-Clause
+// The suite of `alcove bench`: frames with their truth, and candidates, from a TOML file.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <string>

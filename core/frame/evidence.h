@@ -1,4 +1,5 @@
-// Evidence in the pixels of a frame, and the choices made by it. SPDX-License-Identifier: BSD-3-Clause
+// Evidence in the pixels of a frame, and the choices made by it.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <optional>

@@ -1,5 +1,6 @@
 // ONE table of the files of options: the rows of option tables that have a role. It gives the inputs of frames, their
-// digests for --resume, the outputs, and the refusal to overwrite inputs. SPDX-License-Identifier: BSD-3-Clause
+// digests for --resume, the outputs, and the refusal to overwrite inputs.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Filters the pixels of a G-buffer to a smaller picture, as renderers filter their samples. SPDX-License-Identifier:
-// BSD-3-Clause
+// Filters the pixels of a G-buffer to a smaller picture, as renderers filter their samples.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <vector>

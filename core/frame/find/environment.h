@@ -1,5 +1,5 @@
-// Distant surroundings as nine colours, for surfaces with nine coefficients of openness. SPDX-License-Identifier:
-// BSD-3-Clause
+// Distant surroundings as nine colours, for surfaces with nine coefficients of openness.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>

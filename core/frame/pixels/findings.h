@@ -1,5 +1,5 @@
-// The findings of one walk over the pixels of a frame, as plain numbers. Detectors judge them. SPDX-License-Identifier:
-// BSD-3-Clause
+// The findings of one walk over the pixels of a frame, as plain numbers. Detectors judge them.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>

@@ -14,9 +14,9 @@
 
 namespace alcove {
 
-/// Measures how the depth of a window was rounded, and takes it down in `reading`: it changes how the values are
-/// judged, and how near occluders may be. Positions are not measured. Fails with ErrorKind::input, calling the depth
-/// `name`, if it holds 256 values at most, as a grey picture does.
+/// Measures the rounding of a window's depth and stores it in `reading`: it affects the judgement of values, and the
+/// nearest occluders. Positions are not measured. Fails with ErrorKind::input, with `name` for the depth, if it holds
+/// 256 values at most, as a grey picture does.
 Grain measure_rounding(Reading& reading, const Window& window, std::span<const float> depth, const std::string& name);
 
 /// Takes down the step of depth between planes that was stored as integers. The kind of the depth must be settled.

@@ -1,5 +1,5 @@
-// A frame during settling, from files or from memory: the state that the steps share. SPDX-License-Identifier:
-// BSD-3-Clause
+// A frame during settling, from files or from memory: the state that the steps share.
+// SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <string>
