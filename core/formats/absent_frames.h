@@ -1,4 +1,4 @@
-// Says why a name with a place for a frame number may fit no file.
+// Explains why a name with a place for a frame number fits no file.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -130,8 +130,8 @@ ExrFile open_image(const std::string& path, const char* option, Formats formats)
 /// The text "OpenEXR, DDS, PNG, NumPy, TIFF, TGA, BMP or Radiance HDR".
 const char* frame_formats();
 
-/// The name of a plane of depth made of deep samples: that of all pixels' first surfaces (`surface` 0), second surfaces
-/// ..., by their fronts or, with `back`, by the ends of the bodies behind them. `surface` is below kMostDeepSurfaces.
+/// The name of a plane of depth made of deep samples: all pixels' first surfaces (`surface` 0), second surfaces ..., by
+/// their fronts or, with `back`, by the ends of the bodies behind them. `surface` is below kMostDeepSurfaces.
 std::string deep_channel(std::size_t surface, bool back);
 
 /// Fails with ErrorKind::input if planes of that window need too much host memory. Call it before making them, since a
@@ -182,8 +182,8 @@ void write_exr(const std::string& path, const ExrOutput& output);
 /// Fails with ErrorKind::input.
 Image read_exr_image(const std::string& path, const std::vector<std::string>& channels = {});
 
-/// Gives a text attribute of the first part of a file whose chunks all lie within the file: nothing else reveals a file
-/// that was cut short. Gives nothing if the file is cut, is not an EXR, or lacks the attribute.
+/// Gives a text attribute of the first part; nothing if the file is not an EXR, lacks the attribute, or was cut short:
+/// some chunk then lies beyond its end.
 std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name);
 
 /// Sets the number of threads that codecs may use in the whole process. 0: only the caller's.

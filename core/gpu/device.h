@@ -1,4 +1,4 @@
-// Vulkan devices: which there are, the choice of one, and that one in use with its queue, its memory and its kernels.
+// Vulkan devices: the list, the choice, and the chosen device with its queue, its memory and its kernels.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
