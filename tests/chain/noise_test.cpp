@@ -23,8 +23,8 @@ struct Lattice {
 
 constexpr Lattice kDirections{kNoiseXByX, kNoiseXByY}, kSteps{kNoiseYByX, kNoiseYByY};
 
-/// The largest remaining part of a lattice's harmonic after a filter by parabolas along rows and columns, over the sites
-/// of a spacing.
+/// The largest remaining part of a lattice's harmonic after a filter by parabolas along rows and columns, over the
+/// sites of a spacing.
 double left_of(const Lattice& lattice, int harmonic, int spacing, int radius) {
   const auto window = [&](int away) { return 1 - std::pow(away / (radius + 1.0), 2); };
   double most = 0;
