@@ -202,7 +202,7 @@ TEST_F(HiddenRun, layers_without_use_are_noted) {
   half.planes["Z"] = std::vector<float>(kWallWindow.pixels(), 9);
   half.halves = {"Z"};
   half.write(folder / "half.exr");
-  const std::string nothing_new = "wall.exr: Z shows nothing new: the planes given before it";
+  const std::string nothing_new = "wall.exr: Z shows nothing new: earlier planes";
   const std::tuple<const char*, const char*, Options> rows[] = {
       {"copy", "", {"[nothing-hidden]", folder / "copy.exr", "--set behind-channel", "or give another file"}},
       {"empty", "", {"[empty-layer]"}},
