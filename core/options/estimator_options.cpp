@@ -177,7 +177,7 @@ void add_filter_rows(std::vector<SettingRow>& rows) {
   using S = EstimatorSettings;
   OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
   pixels.choice("--resolution", &S::resolution,
-                "of the estimate; half, quarter: by the nearest surface of 2 x 2, 4 x 4 pixels");
+                "resolution of the estimate; half, quarter: by the nearest surface of 2 x 2, 4 x 4 pixels");
   pixels
       .choice("density", &S::density,
               "estimates per pixel; uniform: one in every stride pixels; adaptive: more on small surfaces; edges: also "

@@ -59,8 +59,8 @@ std::string text_of_memory(std::uint64_t bytes) {
 void add_frame_rows(std::vector<SettingRow>& rows) {
   using S = FrameSettings;
   OptionGroup frames(rows, "Frames", Effect::none, &Settings::frames);
-  frames.text("--frames", &S::frames, "LIST", "such as 1001-1100x2,1200; else those of INPUT on the disk").is_common =
-      true;
+  frames.text("--frames", &S::frames, "LIST", "frames such as 1001-1100x2,1200; else the files of INPUT on the disk")
+      .is_common = true;
   frames.number("output-offset", &S::output_offset, "frames", between(-1e9, 1e9), "output number less input number");
   frames.own(
       {"--chunk", "I/N", "", "I from 1 to N", "compute only this part of the frames"},
