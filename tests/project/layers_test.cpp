@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <regex>
 
+#include "core/base/text.h"
 #include "tests/support/program.h"
 
 namespace alcove::layers_test {
@@ -82,10 +83,9 @@ TEST(Layers, only_the_command_line_prints_and_reads_arguments) {
 std::map<std::string, Names> rooms() {
   std::map<std::string, Names> rooms;
   const std::string page = read_bytes(kProject + "docs/internals.md");
-  const std::string table =
-      page.substr(page.find("<!-- rooms -->"), page.find("<!-- /rooms -->") - page.find("<!-- rooms -->"));
+  const std::size_t begin = page.find("<!-- rooms -->");
   const std::regex row(R"(^\| `([^`]+)` \|.*\| ([^|]+) \|$)");
-  for (const auto& line : lines_of(table)) {
+  for (const auto& line : lines_of(page.substr(begin, page.find("<!-- /rooms -->") - begin))) {
     std::smatch found;
     if (!std::regex_match(line, found, row)) continue;
     Names& allowed = rooms[found.str(1)];
