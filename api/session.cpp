@@ -136,7 +136,7 @@ const Session::Given& Session::depth() const {
   const Planes& planes = given(has_position() ? "position" : "depth");
   if (planes.empty()) fail(ErrorKind::usage, "there is no plane depth, and no position");
   if (has_position() && !given("depth").empty())
-    fail(ErrorKind::usage, "there are depth and position: both say how far away surfaces are");
+    fail(ErrorKind::usage, "there are depth and position: both give the distance of surfaces");
   return planes.front();
 }
 

@@ -40,8 +40,8 @@ CommandOf<BenchArguments> bench_syntax() {
   };
   options.text("--data", &S::data, "FOLDER", "the folder of the suite's frames; else the suite's own");
   options.flag("--stability", &S::stability,
-               "instead: measure where each estimator's numbers fail, along depth, radius, field of view, tilt, bits "
-               "and world offset; no suite");
+               "without a suite: find where each estimator fails numerically, along depth, radius, field of view, "
+               "tilt, bits and world offset");
   count("--repeats", &S::repeats, between(1, 1000), "timed runs, instead of the suite's");
   count("--reference-slices", &S::reference_slices, between(0, 1024),
         "of the CPU reference, instead of the suite's; 0: none");
@@ -51,7 +51,7 @@ CommandOf<BenchArguments> bench_syntax() {
   file("--csv", &S::csv, "FILE.csv", "write a line for every candidate and frame", FileRole::report);
   file("--report", &S::report, "FILE.html", "write a self-contained page with chart, table and pictures",
        FileRole::report);
-  file("--limits", &S::limits, "FILE.toml", "a TOML file of largest errors; one that is exceeded ends with exit code 6",
+  file("--limits", &S::limits, "FILE.toml", "a TOML file of largest errors; a larger error ends with exit code 6",
        FileRole::input);
   file("--yardstick", &S::yardstick, "PROGRAM",
        "a program that times a unit of work, run between the candidates as PROGRAM FRAME CAMERA RADIUS RUNS; it prints "

@@ -1,4 +1,4 @@
-// The subcommands: what each is for, what it takes, and what it does; and messages to the standard error.
+// The subcommands: purpose, options and work of each; and messages to the standard error.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace alcove {
 
-/// Ignores what becomes of the message, since a log on a full disk should end no run.
+/// Ignores failures, since a log on a full disk should end no run.
 template <class... Args>
 void print_error(fmt::format_string<Args...> format, Args&&... args) {
   (void)std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), stderr);
@@ -32,7 +32,7 @@ nlohmann::ordered_json json_of(const gpu::DeviceInfo& device);
 struct Subcommand {
   std::string name, sentence;
   int (*run)(const std::vector<std::string>& arguments);  // without program and subcommand; gives the exit code
-  Command (*describe)();                                  // what help, man pages and completions show
+  Command (*describe)();                                  // for help, man pages and completions
 };
 
 /// All of them, in the order of the help.

@@ -40,7 +40,7 @@ CommandOf<CompareArguments> compare_syntax() {
       .is_required = true;
   pictures
       .text("REFERENCE", &S::reference, "",
-            "what it should be; a pattern too, one picture for all frames, or a list of frames in TOML")
+            "the reference; a pattern too, one picture for all frames, or a list of frames in TOML")
       .names(FileRole::input)
       .is_required = true;
   OptionGroup options(command.rows, "Options", Effect::none, &CompareArguments::settings);
@@ -63,7 +63,7 @@ CommandOf<CompareArguments> compare_syntax() {
   file("--depth", &S::depth, "FILE.exr", "leave out the sky, and measure depth edges and grain too");
   options.text("--depth-channel", &S::depth_channel, "NAME", "the depth channel; else found by its usual names");
   options.number("--sky", &S::sky, "", above(0), "depth at or beyond it is sky, as are 0, infinity and NaN");
-  options.text("--frames", &S::frames, "LIST", "frames such as 1001-1100x2,1200; else those of RESULT on the disk");
+  options.text("--frames", &S::frames, "LIST", "frames such as 1001-1100x2,1200; else the files of RESULT on the disk");
   file("--motion", &S::motion, "FILE",
        "motion for the flicker of a sequence: place in the previous frame minus place here, in pixels, y up");
   options.text("--motion-channels", &S::motion_channels, "X,Y", "the motion's channels; else Vector.X,Vector.Y");

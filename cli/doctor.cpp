@@ -188,8 +188,8 @@ struct DoctorArguments {
 CommandOf<DoctorArguments> doctor_syntax() {
   CommandOf<DoctorArguments> command{
       "alcove doctor",
-      "Says what a report of a bug needs: version, libraries, devices and drivers, memory and its limits, "
-      "folders; and what is amiss, where nothing can be computed. Nothing is sent anywhere.\n"};
+      "Prints the facts for a bug report: version, libraries, devices and drivers, memory and its limits, folders; and "
+      "why nothing can be computed. It sends nothing anywhere.\n"};
   OptionGroup options(command.rows, "Options", Effect::none);
   options.flag("--check-device", &DoctorArguments::check_device,
                "compute a small frame with four presets on every device; one with wrong values is a problem");

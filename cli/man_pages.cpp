@@ -128,8 +128,8 @@ std::string man_page() {
       ".SH SYNOPSIS\n\\fBalcove\\fR \\fICOMMAND\\fR [\\fIoptions\\fR]\n.br\n\\fBalcove\\fR \\fIFILE.exr\\fR "
       "[\\fIoptions\\fR]\n.SH DESCRIPTION\n";
   out += filled(
-      "Computes ambient occlusion offline, from the depth and normals that a renderer or a game has already written, "
-      "and writes it, and composites with it, as EXR files. An input without a command is run.");
+      "Computes ambient occlusion offline, from the depth and normals of a renderer or a game, and writes AO and "
+      "composites as EXR files. An input without a command is run.");
   out += ".SH COMMANDS\n";
   for (const auto& [name, sentence, run, describe] : subcommands())
     out += fmt::format(".TP\n\\fB{}\\fR\n{}See \\fBalcove\\-{}\\fR(1).\n", name,

@@ -1,4 +1,4 @@
-// The options of `alcove run`, from presets and arguments; where presets lie and what they say.
+// The options of `alcove run`, from presets and arguments; places and contents of presets.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace alcove {
 
-/// What the command line of `alcove run` says.
+/// The command line of `alcove run`.
 struct RunOptions {
   Settings settings;
   std::vector<OptionValue> values;  // of presets and of the command line, which make the settings
@@ -27,13 +27,13 @@ bool parse_run_options(const std::vector<std::string>& arguments, RunOptions& op
 /// The options of `alcove run`: INPUT first, and then the table.
 Command run_syntax();
 
-/// Refuses a key that is typed as an option, and says what to type. Fails with ErrorKind::usage.
+/// Refuses a key that is typed as an option, and names the right spelling. Fails with ErrorKind::usage.
 void refuse_keys(const std::vector<std::string>& arguments);
 
 /// The usual name of an output, by the name of its input: ao.####.exr for shot.####.exr.
 std::string usual_output(const std::string& input, const std::string& stem, const std::string& ending);
 
-/// What the command line of `alcove inspect` says.
+/// The command line of `alcove inspect`.
 struct InspectOptions {
   RunOptions run;
   bool json = false;
@@ -56,7 +56,7 @@ std::string preset_file(const std::string& name);
 std::vector<std::string> presets_of(const std::vector<std::string>& words);
 /// Gives the alcove.toml beside a file or in the nearest folder above it. Fails with ErrorKind::usage.
 std::string project_file(const std::string& input);
-/// What a preset says, behind what those say that it builds on, and the files in the same order.
+/// The values of a preset, after the values of the presets that it builds on, and the files in the same order.
 struct PresetChain {
   std::vector<std::string> files;
   std::vector<OptionValue> values;  // files that they name are found: they lie beside the preset
@@ -69,7 +69,7 @@ PresetChain read_chain(const std::string& name);
 /// name of the folder that it lies in.
 void refuse_token_of_folder(const SettingRow& row, const std::string& word, const std::string& folder);
 
-/// Gives what a preset is for: the first sentence of the comment that its file begins with, "" without one.
+/// The purpose of a preset: the first sentence of the comment at the beginning of its file; "" without one.
 std::string preset_sentence(const std::string& text);
 
 }  // namespace alcove

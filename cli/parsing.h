@@ -41,8 +41,8 @@ struct CommandOf {
   std::vector<RowOf<Arguments>> rows = {};
 
   Command shown() const { return {name, description, {rows.begin(), rows.end()}}; }
-  /// Gives what was typed; nothing where help was asked for and printed. Fails with ErrorKind::usage, also on values
-  /// that the rows refuse.
+  /// Gives the typed words; nothing if help was asked for and printed. Fails with ErrorKind::usage, also on values that
+  /// the rows refuse.
   std::optional<Arguments> parse(const std::vector<std::string>& arguments) const {
     const Command command = shown();
     const auto typed = typed_options(command, arguments);

@@ -234,12 +234,9 @@ struct Group {
 /// Ours come first, then other folders of the user's, then the systems whose look may be wanted, then the programs.
 std::vector<Group> groups_of(const std::vector<Listed>& presets) {
   std::vector<Group> groups{{"", "Quality, from fast to exact (alcove run --preset NAME)"}};
-  const Group sources{"source",
-                      "The look of the systems that Alcove grew out of, by their own parameters: to match a frame of "
-                      "theirs, or to compare with them"};
-  const Group inputs{"input",
-                     "The programs that frames come from, found by themselves: to say which where that goes wrong, as "
-                     "--source does"};
+  const Group sources{
+      "source", "The look of the systems behind Alcove, by their own parameters: to match their frames, or to compare"};
+  const Group inputs{"input", "The programs of frames, found automatically; name one if that fails, as --source does"};
   for (const auto& preset : presets) {
     const bool is_known = preset.group == sources.name || preset.group == inputs.name ||
                           std::ranges::find(groups, preset.group, &Group::name) != groups.end();

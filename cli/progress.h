@@ -26,7 +26,7 @@ class Progress {
   Progress(const ProgressSettings& options, const std::string& log_json, bool tells_presets = true);
 
   void begin(const RunReport& report, int frames);
-  /// Says what is new in RunReport::notes.
+  /// Prints the new notes of RunReport::notes.
   void note(const RunReport& report);
   void frame(const FrameReport& frame);
   /// Tells how far the frames in flight are, once one of them takes long.
@@ -68,7 +68,7 @@ class Progress {
   bool is_line_shown_ = false;       // of a bar, or of a frame in work: the next line takes its place
   double next_told_s_ = kFirstTold;  // from when on plain lines tell of a frame again
   double percent_ = 0;               // of the run, in tenths, the most that was told: it never falls
-  Notes of_all_;                     // what was said of the whole run
+  Notes of_all_;                     // the notes of the whole run
   std::map<NoteCode, int> further_;  // of a sequence: codes that were said of a frame, and the further frames with them
 };
 

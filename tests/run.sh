@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs every test, in the forms that run with each change: tests/long.sh has the long ones, docs/testing.md says which.
-#   tests/run.sh --hosts              also those in a browser, Blender and Slurm, and against stubs of other programs
+# Sets up, builds, and runs every test but the labels long and hosts of ctest, in their short forms: see docs/testing.md.
+#   tests/run.sh --hosts              also the label hosts: a browser, Blender, Slurm, and stubs of other programs
 #   tests/run.sh --device NAME        on another Vulkan device
 # ALCOVE_STRICT=ON makes warnings in our code errors, as continuous integration does.
 # SPDX-License-Identifier: BSD-3-Clause

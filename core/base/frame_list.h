@@ -1,4 +1,4 @@
-// A list of frames that differ in camera and radius, in TOML: what `run`, `compare` and `bench` take.
+// A list of frames with a camera and radius each, in TOML, for `run`, `compare` and `bench`.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -12,7 +12,7 @@
 namespace alcove {
 
 struct ListedFrame {
-  std::string name;                         // in a list for run and compare one that a file may have
+  std::string name;                         // in a list for run and compare a valid file name
   std::string input, camera = {};           // files; camera: empty where the input tells it
   std::optional<double> radius = {};        // scene units, > 0
   std::vector<std::string> truth = {};      // ray-traced AO: none, one picture, or two with independent noise

@@ -18,7 +18,7 @@ constexpr NoteFacts kTable[] = {
     {assumed_reading, "assumed-reading", false,
      "neither the pixels nor the program show how the frame is read, so the usual reading is taken"},
     {proven_reading, "proven-reading", false, "the pixels prove another reading than the usual one"},
-    {said_otherwise, "said-otherwise", true, "the pixels speak against what an option or file says"},
+    {said_otherwise, "said-otherwise", true, "the pixels contradict an option or file"},
     {near_plane, "near-plane", true, "two sources give different near planes"},
     {negative_depth, "negative-depth", false, "all depth is below 0 and is read as a distance"},
     {depth_below_1, "depth-below-1", true, "all depth lies within 0 to 1 and may be normalized"},

@@ -14,9 +14,9 @@
 
 namespace alcove {
 
-/// The frames to compute, and the treatment of those that cannot or need not be computed.
+/// The frames to compute, and the treatment of frames that cannot or need not be computed.
 struct FrameSettings {
-  // a list for core/formats/sequence.h; empty: those of the first input with a pattern that lie on the disk
+  // a list for core/formats/sequence.h; empty: the files on the disk of the first input with a pattern
   std::string frames;
   int output_offset = 0;  // frames from an input's number to its outputs'
   // compute only the chunk-th of as many parts of the frames, 1 <= chunk <= chunks; all of nearly equal length
@@ -162,11 +162,11 @@ struct EstimatorSettings {
   double denoise_depth_sigma = 0;
   double intensity = 1;                // factor on the occlusion, 0 to 100
   double power = 1;                    // exponent of the visibility, above 0 to 100
-  std::optional<double> shadow_reach;  // scene units, > 0: how far what blocks a light is at most; none: anywhere
+  std::optional<double> shadow_reach;  // scene units, > 0: the farthest blocker of a light; none: anywhere
   double least = 0;                    // the lowest AO after all shaping, 0 to 1; a matte's outside may be lower
   // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other
   std::optional<double> fade_start, fade_end;
-  // roughness of all surfaces for specular occlusion, 0 to 1; perceptual, half way by default, as engines' own default
+  // perceptual roughness of all surfaces for specular occlusion, 0 to 1; by default half way, as in engines' default
   // materials
   double roughness = 0.5;
   std::uint32_t seed = 0;  // shifts the noise pattern
@@ -207,12 +207,12 @@ struct OutputSettings {
   std::string aovs = "ao";
   std::string environment;  // a lat-long picture of the light for the AOVs relight and relight-open
   std::string lights;       // a file of suns and lamps, for the AOV shadow, which it asks for
-  std::shared_ptr<const LightsFile> read_lights;  // what it lists; null before RunPreview::prepare()
+  std::shared_ptr<const LightsFile> read_lights;  // its content; null before RunPreview::prepare()
   // mono: Y; rgb: R, G, B, as compositors expect, and coloured with multi_bounce
   AoChannels ao_channels = AoChannels::mono;
   // space of directions; automatic: world if the camera has world_to_camera, else view
   NormalSpace aov_space = NormalSpace::automatic;
-  // light thrown back by the occluders brightens the rgb AO, and the composite's ambient light
+  // light reflected by occluders brightens the rgb AO, and the composite's ambient light
   bool multi_bounce = false;
   PixelFilter filter;  // with InputSettings::supersampling
   CompositeLook look;
@@ -220,7 +220,7 @@ struct OutputSettings {
   std::string composite_layers = "all";
   // compression of the beauty in the composite, as in ExrOutput; keep: as the file has it, or zip if that loses bits
   std::string composite_compression = "keep";
-  std::string append_ao;  // a channel of the composite that the AO becomes, or its layer; empty: none
+  std::string append_ao;  // the composite's channel, or layer, for the AO; empty: none
   // name of the AO in `output`: of its channel, or with rgb of its layer; empty: Y, or R, G, B
   std::string ao_name;
   // debug views, names of core/chain/results/debug.h with commas: a picture of each beside `output`

@@ -67,8 +67,8 @@ constexpr std::uint64_t kMebibyte = 1 << 20;  // bytes
 constexpr std::uint64_t kNoMemoryLimit = std::numeric_limits<std::uint64_t>::max();
 
 /// The bytes that the control groups of this process leave it: the least of its own group and of all groups above it.
-/// kNoMemoryLimit without a limit, or without one that can be read. Both versions of control groups are read. `root` is
-/// a folder that stands for the whole file system.
+/// kNoMemoryLimit without a readable limit. Both versions of control groups are read. `root` is a folder that stands
+/// for the whole file system.
 std::uint64_t memory_left_in_groups(const std::string& root = "/");
 
 /// The bytes that the machine can still give away, by Linux's own estimate (MemAvailable of /proc/meminfo).
@@ -97,8 +97,8 @@ std::error_code may_read(const std::string& path);
 /// Empty if the process may make files in the folder, else the reason why not.
 std::error_code may_make_files_in(const std::string& folder);
 
-/// Gives a file a name beside its own in one step, so that the file that had it stays until then. Waits a second for
-/// those who have it open where that matters, on Windows.
+/// Gives a file a name beside its own in one step, so that the file that had it stays until then. On Windows it waits
+/// up to a second for other programs that have the file open.
 std::error_code rename_over(const std::string& from, const std::string& to);
 
 /// Puts a folder's names on the disk, so that they outlive a loss of power. It does nothing on file systems that cannot

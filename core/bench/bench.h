@@ -79,8 +79,8 @@ std::string bench_csv(const BenchReport& report);
 /// The page of core/measure/report.h, with pictures.
 std::string bench_page(const BenchReport& report);
 
-/// What is above its limit, a sentence each. A limit for a row that was not measured is an Error of kind usage, one for
-/// the grain of a frame where no pixel is plain, or for the mottle of one without half shadow, of kind input.
+/// A sentence for each value above its limit. Fails with ErrorKind::usage if a limited row was not measured, and with
+/// ErrorKind::input if a frame with a limit has no plain pixel (grain) or no half shadow (mottle).
 std::vector<std::string> broken_limits(const BenchReport& report, const std::vector<Limit>& limits);
 
 /// Everything that a reference of a frame depends on besides the frame; a kept reference has it as the attribute

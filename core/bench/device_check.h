@@ -1,4 +1,4 @@
-// Whether a device computes what it must: a small frame through presets, against stored values.
+// Checks a device: a small frame through presets, against stored values.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -27,11 +27,11 @@ std::vector<double> check_values(gpu::Recorder& gpu, const EstimatorSettings& se
 /// Values as the stored ones are written, four hexadecimal digits each.
 std::string stored_text(const std::vector<double>& values);
 
-/// The RMS of values less those that are stored for one of kCheckedPresets.
+/// The RMS of the differences from the stored values of one of kCheckedPresets.
 double deviation(const std::string& preset, const std::vector<double>& values);
 
-/// What `work` returns; nothing if it takes longer. Then it goes on by itself, for no driver can be stopped while it
-/// compiles, and the process must end by std::_Exit().
+/// The result of `work`; nothing if it takes longer. Then `work` goes on, since a compiling driver cannot be stopped,
+/// and the process must end by std::_Exit().
 std::optional<std::vector<double>> values_within(std::chrono::milliseconds time,
                                                  std::function<std::vector<double>()> work);
 

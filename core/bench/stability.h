@@ -16,12 +16,13 @@ namespace gpu {
 class Device;
 }
 
-/// An estimator breaks down where its RMSE is this much above that of the plain room, which is what its samples leave.
+/// An estimator breaks down where its RMSE is this much above its RMSE in the plain room, the error of its samples
+/// alone.
 constexpr double kBreakdown = 0.05;
 
 struct StabilityPoint {
   double at = 0;
-  Notes notes = {};  // what `alcove run` says of this frame and radius
+  Notes notes = {};  // by `alcove run`, for this frame and radius
 };
 
 /// An estimator along an axis.

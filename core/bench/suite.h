@@ -1,4 +1,4 @@
-// What `alcove bench` measures: frames with their truth, and candidates, from a TOML file.
+// The suite of `alcove bench`: frames with their truth, and candidates, from a TOML file.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -42,19 +42,19 @@ struct Suite {
 ///   [[candidate]]  name = "draft"     preset = "draft"  power = 1.2             # any long option of alcove run
 ///   [[sweep]]      slices = [1, 2, 4] steps = [4, 8]    preset = "draft"        # a candidate for every combination
 ///
-/// A candidate that does not name a radius has that of each frame's truth, whatever its preset says. Paths are below
-/// `data`, or where that is empty below the suite's folder. Fails with ErrorKind::input, naming file and key.
+/// A candidate without a radius of its own takes the radius of each frame's truth, not its preset's. Paths are below
+/// `data`, or below the suite's folder if `data` is empty. Fails with ErrorKind::input, naming file and key.
 Suite read_suite(const std::string& path, const std::string& data);
 
-/// The most that an error may be for a candidate on a frame.
+/// The largest allowed error of a candidate on a frame.
 struct Limit {
   std::string frame, candidate;
   std::string measure;  // rmse, mae, p99, bias (its size), grain, mottle or estimator-rmse
   double most = 0;
 };
 
-/// Fails with ErrorKind::input where a limit is for a frame or a candidate that the suite has not, with
-/// ErrorKind::usage where it is for what is not measured. `path` is for the message.
+/// Fails with ErrorKind::input if the suite lacks a limit's frame or candidate, and with ErrorKind::usage if its
+/// measure is not measured. `path` is for the message.
 void require_known(const std::vector<Limit>& limits, const Suite& suite, const std::string& path);
 
 /// Reads limits: a list of tables [[limit]] with frame, candidate and one or more measures. Fails with

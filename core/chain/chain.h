@@ -34,8 +34,8 @@ struct Seen {
 /// Records the passes up to the visibility. settings.radius must be set where it is needed.
 Seen see(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings, const Wanted& wanted);
 
-/// Records the remaining passes, in the same recording or in later ones. The settings may differ from those of see() in
-/// the shaping and the composite's look alone. Repairs count each time.
+/// Records the remaining passes, in the same recording or in later ones. Only shaping and the composite's look may
+/// differ from the settings of see(). Repairs count each time.
 FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen,
                         const EstimatorSettings& settings, const Wanted& wanted);
 

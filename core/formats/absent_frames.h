@@ -1,4 +1,4 @@
-// Says why a name with a place for a frame number may fit no file.
+// Explains why a name with a place for a frame number fits no file.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -8,12 +8,11 @@
 
 namespace alcove {
 
-/// Gives what is wrong with a name that no file has: a token of another program or a range in it. "" if it has
-/// none of these.
+/// Explains a name without a file: it holds another program's token, or a range. "" if it holds neither.
 std::string foreign_pattern_in(const std::string& name);
 
-/// Gives the same of a pattern that fits no file, or else which files there are: with another number of digits, or with
-/// another ending or separator. Begins with ": "; "" if nothing tells.
+/// Explains a pattern without a file in the same way, or names the files that differ in digits, ending or separator.
+/// Begins with ": "; "" if there is no explanation.
 std::string why_no_frames(const FramePattern& pattern);
 
 }  // namespace alcove

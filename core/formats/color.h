@@ -15,9 +15,9 @@ inline std::string display_config_file(const std::string& config) {
   return variable ? variable : config;
 }
 
-/// A view of a display, by a configuration: `config` (a file), else that of the OCIO variable, else a small built-in
-/// one (linear Rec.709 to sRGB). Empty names stand for the defaults. Fails with ErrorKind::input if the configuration
-/// cannot be used, or lacks the display or view, listing those that it has.
+/// A view of a display, by a configuration: the file `config`, else the file of the OCIO variable, else a small
+/// built-in one (linear Rec.709 to sRGB). Empty names stand for the defaults. Fails with ErrorKind::input if the
+/// configuration cannot be used, or lacks the display or view, listing its own.
 class DisplayTransform {
  public:
   explicit DisplayTransform(const std::string& config, const std::string& display = "", const std::string& view = "");

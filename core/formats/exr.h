@@ -45,8 +45,8 @@ struct ExrPart {
   bool dwa = false;  // compressed by DWAA or DWAB, which are lossy for channels whose name ends in R, G, B, Y, RY or BY
 };
 
-/// The attributes of one part's header, of every type, with those that only the first part has. They are carried into
-/// outputs.
+/// The attributes of one part's header, of every type, with the attributes that only the first part has. Outputs get
+/// them.
 class ExrAttributes;
 class PictureReader;
 
@@ -96,9 +96,9 @@ class ExrFile {
   /// Frees the memory of reading. Afterwards only parts, windows and bytes_beside_pixels() are available.
   void close();
 
-  /// Makes surfaces of deep samples: those of these parts and of `others`, all together. From then on they are the
-  /// channels deep_channel() of the first part, over the pixels of `data`, which becomes the data window of that part.
-  /// A part may lack some of these pixels. Fails if a part has no Z, and if chunks claim more than their file can hold.
+  /// Makes surfaces from the deep samples of these parts and of `others`, all together. Then they are the channels
+  /// deep_channel() of the first part, over the pixels of `data`, which becomes this part's data window. A part may
+  /// lack some of these pixels. Fails if a part has no Z, and if chunks claim more than their file can hold.
   void take_deep(const std::vector<int>& parts, const DeepRules& rules, const Window& data,
                  std::span<const DeepElement> others = {});
   /// Makes surfaces of deep samples over the window of the first part.
@@ -130,8 +130,8 @@ ExrFile open_image(const std::string& path, const char* option, Formats formats)
 /// The text "OpenEXR, DDS, PNG, NumPy, TIFF, TGA, BMP or Radiance HDR".
 const char* frame_formats();
 
-/// The name of a plane of depth made of deep samples: that of all pixels' first surfaces (`surface` 0), second surfaces
-/// ..., by their fronts or, with `back`, by the ends of the bodies behind them. `surface` is below kMostDeepSurfaces.
+/// The name of a plane of depth made of deep samples: all pixels' first surfaces (`surface` 0), second surfaces ..., by
+/// their fronts or, with `back`, by the ends of the bodies behind them. `surface` is below kMostDeepSurfaces.
 std::string deep_channel(std::size_t surface, bool back);
 
 /// Fails with ErrorKind::input if planes of that window need too much host memory. Call it before making them, since a
@@ -182,8 +182,8 @@ void write_exr(const std::string& path, const ExrOutput& output);
 /// Fails with ErrorKind::input.
 Image read_exr_image(const std::string& path, const std::vector<std::string>& channels = {});
 
-/// Gives a text attribute of the first part of a file whose chunks all lie within the file: nothing else reveals a file
-/// that was cut short. Gives nothing if the file is cut, is not an EXR, or lacks the attribute.
+/// Gives a text attribute of the first part; nothing if the file is not an EXR, lacks the attribute, or was cut short:
+/// some chunk then lies beyond its end.
 std::optional<std::string> attribute_of_whole_exr(const std::string& path, const std::string& name);
 
 /// Sets the number of threads that codecs may use in the whole process. 0: only the caller's.

@@ -59,11 +59,11 @@ struct ChannelMatch {
 };
 
 /// Pairs the channels of two pictures. `chosen` is a list with commas of names, or of RESULT=REFERENCE if the names
-/// differ. Without it, the first of these rules that finds pairs is used: the only channel of each, whatever their
-/// names; channels with the same full name; the only AO layer of one, named AO or Ambient Occlusion, and that of the
-/// other or its Y; channels with the same last part of the name. The last rule leaves out a channel that belongs to a
-/// vector in one picture alone. Case is ignored. Fails with ErrorKind::input, listing the layers of both, if there are
-/// no pairs or if a last part stands for several channels.
+/// differ. Without it, the first rule with pairs decides: the only channel of each picture, of any name; channels with
+/// the same full name; the only layer AO or Ambient Occlusion of one picture, and the other's such layer or its Y;
+/// channels with the same last part of the name. The last rule leaves out a channel that belongs to a vector in one
+/// picture alone. Case is ignored. Fails with ErrorKind::input, listing the layers of both, if there are no pairs or if
+/// a last part stands for several channels.
 ChannelMatch match_channels(const Picture& result, const Picture& reference, const std::string& chosen);
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// Pictures whose pixels stand one behind the other in a file, all of as many bytes.
+// Pictures with pixels one behind the other in a file, all of the same size.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -18,8 +18,8 @@ T number_at(const void* bytes) {
   return number;
 }
 
-// OpenEXR's document "File Layout" says how bytes of ZIP chunks are packed: bytes at even places stand before those at
-// odd ones, and each is stored as its difference from the one before it, plus 128.
+// ZIP chunks are packed as in OpenEXR's document "File Layout": bytes at even places before bytes at odd places, each
+// stored as its difference from the one before it, plus 128.
 
 /// Turns differences into bytes. `before` is the byte before the first. Gives the last byte, or `before` if there is
 /// none.

@@ -1,4 +1,4 @@
-// What the pixels of a frame show, and the choices that were made by it.
+// Evidence in the pixels of a frame, and the choices made by it.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,13 +10,13 @@
 
 namespace alcove {
 
-/// The coarseness of stored values, whatever their sample type.
+/// The coarseness of stored values, of any sample type.
 struct Grain {
   double median = 0;  // of the values' distances from 0; where there is a step, each of them counts once
   double step = 0;    // from one value to the next at the median; 0: as fine as floats are, or too few values to tell
   bool is_coarse = false;  // the step is more than a 2^14th of the median
   bool is_fixed = false;   // the step is the same for small and large values
-  bool is_half = false;    // the steps are those of half floats, or of half floats times a scale
+  bool is_half = false;    // the steps are a half float's, or a scaled half float's
 };
 /// A way to read depth and how well the frame's flat surfaces agree with it.
 struct DepthScore {
@@ -24,9 +24,9 @@ struct DepthScore {
   // The share of the smooth blocks that are flat by this kind and by no other.
   double straight = 0;
 };
-/// The curve by which depth values belong to places in the picture, as planes that are seen at an angle show it,
-/// whatever the curve is. With L affine over a plane's picture and v = f(L) the value, v'' / v'^2 is a function of v
-/// alone, the same for all planes: 2 / (v + c) of planar depth that counts from a plane at distance c.
+/// The curve from places in the picture to depth values, as measured on planes at an angle. If L is affine over a
+/// plane's picture and v = f(L) is the value, then v'' / v'^2 is a function of v alone, the same for all planes: 2 / (v
+/// + c) for planar depth that counts from a plane at distance c.
 struct Curve {
   std::size_t planes = 0;  // blocks of the picture that show one
   // v'^2 / v'' = slope v + offset: 1/2 and 0 of distances, 0 of logarithms, p / (1 + p) of distances to the power of p

@@ -89,8 +89,7 @@ void set_log(DepthMap& map, const DepthRange& range, double scale) {
 /// Sets the map of disparity whose scale and shift are settled.
 void set_disparity(DepthMap& map, const DepthRange& range, double scale) {
   const Disparity disparity = disparity_of(range);
-  if (!disparity.shift)
-    fail(ErrorKind::usage, "disparity needs b, the value of what is infinitely far: give --set disparity-shift");
+  if (!disparity.shift) fail(ErrorKind::usage, "disparity needs b, the value at infinity: give --set disparity-shift");
   map.form = kDepthReciprocal;
   map.origin = *disparity.shift;
   map.slope = 1 / (disparity.scale.value_or(1) * scale);
@@ -128,7 +127,7 @@ Disparity disparity_of(const DepthRange& range) {
   if (range.near && !range.far && scale) shift = 1 - *scale * of_near;
   if (scale && !(*scale > 0 && std::isfinite(*scale)))
     fail(ErrorKind::usage,
-         "disparity {} is 1 at --near and 0 at --far, and no scale above 0 is so: give other distances",
+         "disparity {} is 1 at --near and 0 at --far, and no scale above 0 fits: give other distances",
          shift ? fmt::format("with the shift {:.4g}", *shift) : "");
   return found;
 }
@@ -214,8 +213,8 @@ std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind 
 void refuse_range_options(const std::string& depth, std::span<const std::string> options, DepthKind kind) {
   const bool is_one = options.size() == 1;
   fail(ErrorKind::usage,
-       "{}: {} {} no effect, since the depth is read as {}: leave {} out, or say with --depth-kind what it is", depth,
-       fmt::join(options, ", "), is_one ? "has" : "have", word_of(kind), is_one ? "it" : "them");
+       "{}: {} {} no effect, since the depth is read as {}: leave {} out, or give the depth's kind with --depth-kind",
+       depth, fmt::join(options, ", "), is_one ? "has" : "have", word_of(kind), is_one ? "it" : "them");
 }
 
 bool is_all_sky(const DepthMap& map, std::span<const float> raw) {

@@ -17,7 +17,7 @@
 
 namespace alcove {
 
-/// Raw value -> planar depth in scene units. The forms are those of kernels/geometry/geometry.h.
+/// Raw value -> planar depth in scene units, in the forms of kernels/geometry/geometry.h.
 struct DepthMap {
   uint form = 0;
   bool along_ray = false;  // the form gives the distance to the eye
@@ -52,11 +52,11 @@ DepthMap depth_map(DepthKind kind, const DepthRange& range, PositionSpace space,
 struct Disparity {
   std::optional<double> scale, shift;
 };
-/// Gives them by those of a range, of which two are enough: d is 1 at its near plane and 0 at its far plane. Fails with
-/// ErrorKind::usage where the scale would not be above 0.
+/// Gives scale and shift by near and far plane, if two of the four numbers are given: d is 1 at the near plane and 0 at
+/// the far plane. Fails with ErrorKind::usage where the scale would not be above 0.
 Disparity disparity_of(const DepthRange& range);
 
-/// Whether the values are those of surfaces between a near and a far plane, which may be stored as integers.
+/// Whether values lie between a near and a far plane, and may be stored as integers.
 bool is_between_planes(DepthKind kind);
 /// Whether the values are distances: planar, or along the ray.
 bool is_distance(DepthKind kind);
@@ -84,7 +84,7 @@ constexpr double kFloatPrecision = 0x1p-24, kHalfPrecision = 0x1p-11;
 double step_of(std::span<const float> raw);
 
 /// The precision of the planar depth from raw values that are known to this part of themselves, and rounded to
-/// multiples of `step`. It is never less than 2^-16 of the depth, twice what renderers' own arithmetic loses where
+/// multiples of `step`. It is never less than 2^-16 of the depth, twice the loss by renderers' own arithmetic where
 /// surfaces 1000 units across are seen from a few units away (measured: 8e-6).
 DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double step = 0);
 
@@ -146,7 +146,7 @@ struct MatteReading {
 /// The reading of a light of the planes of RawPlane::indirect: see composite.comp.
 struct AmbientReading {
   double weight = 1;
-  int color = -1;  // of those in RawPlane::diffuse_color, which multiplies it; below 0: none
+  int color = -1;  // index into RawPlane::diffuse_color of its factor; below 0: none
   bool operator==(const AmbientReading&) const = default;
 };
 
@@ -191,7 +191,7 @@ DepthMap depth_map_of(const Reading& reading);
 /// positions. Fails as depth_map() does.
 DepthMap behind_map_of(const Reading& reading, const BehindPlane& plane);
 
-/// The largest error of any depth, of the first surface and of those behind it.
+/// The largest error of any depth, of the first surface and of surfaces behind it.
 DepthPrecision hidden_precision_of(const Reading& reading);
 
 /// Whether depth values are too coarse for the normals of depth to be exact.

@@ -70,7 +70,7 @@ class Buffer {
   VkBuffer handle() const { return device_side_.buffer; }
   /// The part that kernels get: the bytes, and the guard behind them, so that a read beyond the end gives NaN.
   VkDescriptorBufferInfo bound() const { return {handle(), guard_, bytes_ + guard_}; }
-  /// The same part as texels, one per word, or per four of them. What the device allows no texel of is left out.
+  /// The same part as texels, one per word, or per four words, up to the device's limit of texels.
   VkBufferView texels(const Device& device, VkFormat format) const;
   /// False if something was written beside its bytes. Always true without guards: see DeviceOptions.
   bool guards_hold() const;

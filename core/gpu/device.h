@@ -1,4 +1,4 @@
-// Vulkan devices: which there are, the choice of one, and that one in use with its queue, its memory and its kernels.
+// Vulkan devices: the list, the choice, and the chosen device with its queue, its memory and its kernels.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -142,7 +142,7 @@ class Device {
   /// Waits for a submission of this expected time. If a GPU finishes nothing, whoever submitted it, for as long as
   /// DeviceOptions::lost_ms says, it is lost; it may hang for ever, so nothing waits for it any more.
   void wait_for(VkFence done, double expected_ms);
-  /// Whether it was lost so. What it may still use must never be given back.
+  /// Whether it was lost so. Memory that it may still use must never be freed.
   bool hangs() const { return hangs_; }
   std::uint32_t queue_family() const { return queue_family_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }

@@ -43,15 +43,14 @@ Reflection reflect(std::span<const std::uint32_t> code);
 /// SPIR-V 1.4 or later with one entry point, and the device must have shaderSignedZeroInfNanPreserveFloat32.
 std::vector<std::uint32_t> with_preserved_nan(std::span<const std::uint32_t> code);
 
-/// The code with buffers of texels in the place of those storage buffers whose blocks have a format of texels: kernels
-/// are written for storage buffers alone. It gives the same bits. Old versions of lavapipe gather texels at once, but
-/// read storage buffers in a loop over the lanes, which takes up to ten times as long, depending on the CPU.
+/// The code with buffers of texels in place of the storage buffers with a texel format: kernels are written for storage
+/// buffers alone. It gives the same bits. Old versions of lavapipe gather texels at once, but read storage buffers in a
+/// loop over the lanes, which takes up to ten times as long, depending on the CPU.
 std::vector<std::uint32_t> with_texels(std::span<const std::uint32_t> code, std::span<const Block> blocks);
 
 /// The SPIR-V of kernels/FOLDER/STEM.comp, embedded at build time; empty if no kernel has that stem. STEM_usual is its
-/// twin, where it has one: the same source, in which some specialization constants are fixed at the values that they
-/// have where none is given. A Kernel takes it by itself where these are its values. It saves time, since drivers leave
-/// out what constants rule out only once they have read all of it.
+/// twin, if it has one: the same source with some specialization constants fixed at their defaults. A Kernel with these
+/// values takes it by itself. It saves time, since drivers remove dead code only after they have read all of it.
 std::span<const std::uint32_t> kernel_code(std::string_view stem);
 
 /// The code that a pipeline with these constants is made of: that of the kernel's twin, if they are its own. `all`: the

@@ -86,8 +86,8 @@ class Recorder {
     static_assert(sizeof(T) % 4 == 0, "Vulkan updates whole words");
     write_bytes(buffer, std::as_bytes(std::span(&value, 1)));
   }
-  /// Copies the host's bytes of a buffer that kernels wrote first to their memory. What the host writes first, with
-  /// Use::upload, is copied before the first pass of the recording that takes it. Does nothing for mapped buffers.
+  /// Copies the host's bytes of a buffer that kernels wrote first to their memory. The recording copies buffers that
+  /// the host writes first (Use::upload) by itself, before their first pass. Does nothing for mapped buffers.
   void upload(const Buffer& buffer);
   /// Copies the kernels' bytes to host() after run(); does nothing for mapped buffers.
   void download(const Buffer& buffer);

@@ -32,7 +32,7 @@ struct InspectedDeep {
   DeepCounts counts;       // over the whole file
   // "planar" or "along the ray", by the flat depth beside it; "the depth of the frame"; empty: unknown
   std::string depth;
-  std::vector<std::string> channels;  // of the surfaces made of its samples, those that any pixel has
+  std::vector<std::string> channels;  // the surfaces of its samples that any pixel has
 
   double samples_per_pixel() const { return double(counts.samples) / double(counts.pixels); }
   /// The share of samples that lie behind an opaque one.

@@ -22,8 +22,8 @@ struct InspectedLight {
 };
 
 /// Adds up the light passes beside the beauty at some rows. `planar` is the depth over the beauty's pixels, infinite
-/// where there is no surface: what a background shows is light of no surface. None where the passes have no names that
-/// are clearly those of a renderer's, or other pixels than the depth.
+/// where there is no surface: a background is light of no surface. None if no renderer is known by the names of the
+/// passes, or if they cover other pixels than the depth.
 std::optional<InspectedLight> light_passes_of(FrameSource& source, std::span<const float> planar);
 
 /// The sentence on passes that do not add up.

@@ -176,7 +176,7 @@ std::size_t mask_channel_of(const Picture& picture, const std::string& chosen) {
     const std::string name = lower_case(picture.channels()[i].name);
     if (name == "a" || name == "alpha" || name.ends_with(".a") || name.ends_with(".alpha")) return i;
   }
-  fail(ErrorKind::input, "{}: which channel is the mask? There is {}; say which with --mask-channel", picture.path(),
+  fail(ErrorKind::input, "{}: its mask channel is not clear: there is {}; choose with --mask-channel", picture.path(),
        list_of(picture.names()));
 }
 
@@ -560,9 +560,9 @@ Notes warnings_on_sky(const CompareReport& report, const CompareSettings& settin
   return {
       {NoteCode::sky_differs,
        fmt::format(
-           "{:.1f} % of the pixels are 0 in {} and 1 in {}, as sky may be; without them rmse is {:.4f}, not {:.4f}: {}",
+           "{:.1f} % of the pixels are 0 in {} and 1 in {}, perhaps sky; without them rmse is {:.4f}, not {:.4f}: {}",
            100 * double(sky.count) / double(frame.count), zero, one, sky.rmse_without, frame.errors.rmse,
-           settings.depth.empty() ? "--depth FRAME.exr leaves the sky out, --mask FILE what you like"
+           settings.depth.empty() ? "--depth FRAME.exr leaves the sky out, --mask FILE any pixels"
                                   : "--sky VALUE says from which depth on pixels are sky")}};
 }
 
@@ -585,8 +585,7 @@ Notes notes_on_frames(const CompareReport& report, const CompareSettings& settin
   if (!report.is_sequence || !settings.frames.empty()) return {};
   const std::vector<int> left_out = frames_left_out(report, settings);
   if (left_out.empty()) return {};
-  return {{NoteCode::sequence_hole, fmt::format("{}: frames are not there, and were not compared: {}; --frames says "
-                                                "which there are",
+  return {{NoteCode::sequence_hole, fmt::format("{}: missing frames were not compared: {}; --frames lists the frames",
                                                 settings.result, frames_text(left_out))}};
 }
 

@@ -28,7 +28,7 @@ struct CompareSettings {
   std::string depth, depth_channel;     // sky is not compared; edges and plain surfaces are found
   double sky = 1e9;                     // depth at or beyond it is sky, as are 0, infinity and NaN; > 0
   std::string motion, motion_channels;  // "X,Y"; empty: Vector.X, Vector.Y. See ErrorFrame for the convention
-  std::string frames;                   // a list; empty: those of the result that are on the disk
+  std::string frames;                   // a list; empty: the files of the result on the disk
   double peak = 1;                      // the largest value, for PSNR and SSIM; > 0
   bool hdr = false;                     // scene-linear values: HDR-FLIP
   CompareLimits limits;
@@ -90,8 +90,8 @@ struct CompareReport {
   std::string result, reference;             // as given
   bool is_sequence = false;                  // frames of one shot
   bool is_list = false;                      // unlike frames, which have names
-  std::vector<FrameComparison> frames = {};  // a single one unless it is one of those
-  std::vector<FailedFrame> failed = {};      // others, for want of a file or of what can be compared
+  std::vector<FrameComparison> frames = {};  // one, unless it failed
+  std::vector<FailedFrame> failed = {};      // frames without a file, or with nothing to compare
 
   bool has_several() const { return is_sequence || is_list; }
   std::optional<double> flicker = {};  // none unless two frames follow each other

@@ -102,10 +102,10 @@ std::string unless_slices_anywhere(const Settings& all) { return asks_for_confid
 void add_radius_rows(std::vector<SettingRow>& rows) {
   using S = EstimatorSettings;
   OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
-  pixels.choice("--estimator", &S::estimator, "gtao, bitmask: horizons, or sectors; hbao, crytek: as older renderers");
+  pixels.choice("--estimator", &S::estimator, "gtao: horizons; bitmask: sectors; hbao, crytek: as in older renderers");
   SettingRow& radius = pixels.add(
       {"--radius", "auto|NUMBER[%][,NUMBER[%]...]", "scene units", reach().text,
-       "how far occluders reach; auto: what inspect proposes; 5%: of the median depth; of several the AO is the mean"},
+       "the reach of occluders; auto: as inspect proposes; 5%: of the median depth; several: the AO is their mean"},
       [](const S& s) { return words_of_radii(s); }, [](S& s, const Words& words) { read_radii(words, s); });
   radius.repeats = radius.is_common = true;
   pixels.choice("--falloff", &S::falloff, "how a hit's weight fades towards the radius").others_idle(unless_fading);
@@ -123,7 +123,7 @@ void add_search_rows(std::vector<SettingRow>& rows) {
   using S = EstimatorSettings;
   OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
   const auto unless_crytek = [](const Settings& all) { return unless_estimator(all, {Estimator::crytek}); };
-  pixels.number("--slices", &S::slices, "per pixel", between(1, 64), "directions that are searched")
+  pixels.number("--slices", &S::slices, "per pixel", between(1, 64), "directions of the search")
       .idle(unless_slices_anywhere)
       .idle(if_by_error_alone);
   pixels.number("--steps", &S::steps, "per side", between(1, 4096), "samples to each side of a slice")
@@ -131,7 +131,7 @@ void add_search_rows(std::vector<SettingRow>& rows) {
       .idle(if_exact_alone);
   pixels
       .choice("--search", &S::search,
-              "along a slice; steps: so many samples; quick: the same by fewer rules; exact: all pixels")
+              "pixels of a slice; steps: --steps samples; quick: the same by fewer rules; exact: all pixels")
       .idle([](const Settings& all) {
         const SliceSearch search = all.estimator.search;
         const std::string why = search == SliceSearch::steps ? "" : unless_estimator(all, {Estimator::gtao});
@@ -146,29 +146,28 @@ void add_search_rows(std::vector<SettingRow>& rows) {
                 "sine of an elevation that blocks nothing, below 1; crytek: scene units of depth");
   pixels
       .number("shadow-reach", &S::shadow_reach, "scene units", above_to(0, 1e15),
-              "how far what blocks a light of --lights is at most; else anywhere in the frame")
+              "the farthest blocker of a light; else anywhere in the frame")
       .idle([](const Settings& all) { return unless_given(asks_for_shadows(all), "--lights"); });
   pixels
       .choice("elevation", &S::elevation,
-              "of a horizon; view: above the plane across the view ray; surface: above the surface")
+              "a horizon's elevation; view: above the plane across the view ray; surface: above the surface")
       .idle([](const Settings& all) { return unless_estimator(all, {Estimator::hbao}); });
   pixels
       .choice("sample-kernel", &S::sample_kernel, "clustered: more samples near the receiver; uniform: even in volume")
       .idle(unless_crytek);
-  pixels
-      .choice("range-check", &S::range_check, "how a hit's weight goes by its depth; docs/settings.md has the formulas")
+  pixels.choice("range-check", &S::range_check, "a hit's weight by its depth; docs/settings.md has the formulas")
       .idle(unless_crytek);
   pixels
       .own(
           {"--thickness", "auto|infinite|NUMBER", "scene units", "",
-           "how far occluders go on behind what is seen of them; auto: as far as they are wide"},
+           "the depth of occluders; auto: by their visible sides, else their width"},
           [](const S& s) { return text_of_thickness(s); },
           [](S& s, const std::string& text) { return read_thickness(text, s); },
           "is neither auto nor infinite nor a length above 0")
       .others_idle(unless_ranges_anywhere);
   pixels
       .choice("complete", &S::complete,
-              "where surfaces go on unseen; border: beyond the picture; all: behind nearer ones too")
+              "guess hidden parts of surfaces; border: beyond the picture; all: behind nearer surfaces too")
       .idle([](const Settings& all) {
         return all.estimator.complete == Completion::none ? "" : unless_ranges_anywhere(all);
       });
@@ -177,17 +176,19 @@ void add_search_rows(std::vector<SettingRow>& rows) {
 void add_filter_rows(std::vector<SettingRow>& rows) {
   using S = EstimatorSettings;
   OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
-  pixels.choice("--resolution", &S::resolution, "of the estimate, by the nearest surface of 2 x 2 or 4 x 4 pixels");
+  pixels.choice("--resolution", &S::resolution,
+                "resolution of the estimate; half, quarter: by the nearest surface of 2 x 2, 4 x 4 pixels");
   pixels
       .choice("density", &S::density,
-              "uniform: an estimate for every so many pixels; adaptive: more where a surface shows few pixels; edges: "
-              "more beside edges of depth, too")
+              "estimates per pixel; uniform: one in every stride pixels; adaptive: more on small surfaces; edges: also "
+              "more "
+              "beside edges of depth")
       .idle([](const Settings& all) { return asks_for_confidence(all) ? "" : unless_ranges(all); })
       .idle(if_exact_alone)
       .idle(unless_shared_estimates);
   pixels
       .own(
-          {"stride", "auto|1|2|4|8|16", "", "", "pixels to an estimate; the denoiser gives the others theirs"},
+          {"stride", "auto|1|2|4|8|16", "", "", "pixels per estimate; the denoiser fills the others"},
           [](const S& s) { return s.stride == 0 ? std::string("auto") : fmt::format("{}", s.stride); },
           [](S& s, const std::string& text) {
             const std::vector<std::string> strides = {"1", "2", "4", "8", "16"};
@@ -212,12 +213,12 @@ void add_denoise_rows(std::vector<SettingRow>& rows) {
   };
   pixels
       .choice("--denoise", &S::denoise,
-              "smooths each surface; bilateral: by distance, plane and normal; box: evenly, 4 x 4")
+              "smooth each surface; bilateral: by distance, plane and normal; box: evenly, 4 x 4")
       .idle([](const Settings& all) { return all.estimator.denoise == Denoise::none ? "" : if_undenoised(all); });
   pixels
       .own(
           {"denoise-radius", "auto|NUMBER", "pixels of the estimate", "1 to 8",
-           "how far the bilateral denoiser reaches to each side"},
+           "the bilateral denoiser's reach to each side"},
           [](const S& s) { return s.denoise_radius == 0 ? std::string("auto") : fmt::format("{}", s.denoise_radius); },
           [](S& s, const std::string& text) {
             const bool is_digit = text.size() == 1 && text >= "1" && text <= "8";
@@ -230,7 +231,7 @@ void add_denoise_rows(std::vector<SettingRow>& rows) {
   pixels
       .add(
           {"denoise-kernel", "W0,W1,...", "", "2 to 9 weights",
-           "from the centre outwards, of any sum; they set the denoiser's radius"},
+           "the denoiser's weights from the centre outwards, of any sum; their number sets its radius"},
           [](const S& s) {
             return s.denoise_kernel.empty() ? Words{} : Words{fmt::format("{}", fmt::join(s.denoise_kernel, ","))};
           },
@@ -238,7 +239,7 @@ void add_denoise_rows(std::vector<SettingRow>& rows) {
       .idle(unless_bilateral);
   pixels
       .number("denoise-depth-sigma", &S::denoise_depth_sigma, "of the depth", between(0, 100),
-              "depths that far apart weigh 1/e; 0: weighs by planes and normals")
+              "the difference of depth that weighs 1/e; 0: weigh by planes and normals")
       .others_idle([](const Settings& all) {
         return unless_denoised(all, {Denoise::bilateral, Denoise::box});
       })
@@ -250,15 +251,15 @@ void add_shape_rows(std::vector<SettingRow>& rows) {
   OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
   pixels.number("--intensity", &S::intensity, "", between(0, 100), "factor on the occlusion");
   pixels.number("power", &S::power, "", above_to(0, 100), "exponent of the visibility");
-  pixels.number("least", &S::least, "", between(0, 1), "the darkest that AO gets, in composites too");
+  pixels.number("least", &S::least, "", between(0, 1), "the least AO, in composites too");
   pixels.number("fade-start", &S::fade_start, "scene units", between(0, 1e30), "depth where the AO begins to fade to 1")
       .idle([](const Settings& all) { return unless_given(all.estimator.fade_end.has_value(), "--set fade-end"); });
   pixels.number("fade-end", &S::fade_end, "scene units", above_to(0, 1e30), "depth from which the AO is 1")
       .idle([](const Settings& all) { return unless_given(all.estimator.fade_start.has_value(), "--set fade-start"); });
-  pixels.number("--roughness", &S::roughness, "", between(0, 1), "of all surfaces").idle([](const Settings& all) {
-    return unless_aov(all, {"specular-occlusion"});
-  });
-  pixels.choice("--noise", &S::noise, "fixed: every frame has the same pattern of samples; animated: each its own")
+  pixels.number("--roughness", &S::roughness, "", between(0, 1), "roughness of all surfaces")
+      .idle([](const Settings& all) { return unless_aov(all, {"specular-occlusion"}); });
+  pixels
+      .choice("--noise", &S::noise, "the pattern of samples; fixed: the same in every frame; animated: another in each")
       .idle([](const Settings& all) {
         const bool is_fixed = all.estimator.noise == Noise::fixed;
         return is_fixed ? if_given(all.input.accumulate > 0, "--accumulate", "it animates the noise")
@@ -267,7 +268,7 @@ void add_shape_rows(std::vector<SettingRow>& rows) {
   pixels.number("--seed", &S::seed, "", between(0, 4294967295.0), "shifts the pattern of samples")
       .others_idle(if_unsampled);
   OptionGroup(rows, "Estimator", Effect::none, &Settings::estimator, true)
-      .flag("--no-skip", &S::no_skip, "estimate sky too, and what is as in the frame before; slower, the same bits");
+      .flag("--no-skip", &S::no_skip, "compute sky and unchanged tiles too; slower, the same bits");
 }
 
 /// Of frames to each side: more are too far away to show the same.
@@ -275,11 +276,10 @@ constexpr int kMostAccumulated = 16;
 
 bool read_accumulate(const std::string& text, int& frames) {
   if (lower_case(text) == "all")
-    fail(
-        ErrorKind::usage,
-        "all would be a mean of the whole shot: every frame would wait for all others, and far ones show little of it: "
-        "give a number of frames to each side, up to {}",
-        kMostAccumulated);
+    fail(ErrorKind::usage,
+         "all would be a mean of the whole shot, and every frame would wait for all others: give a number of frames to "
+         "each side, up to {}",
+         kMostAccumulated);
   const auto number = whole_number_of(text);
   if (!number || *number < 0 || *number > kMostAccumulated) return false;
   frames = *number;
@@ -290,7 +290,7 @@ void add_time_rows(std::vector<SettingRow>& rows) {
   OptionGroup(rows, "Estimator", Effect::pixels, &Settings::input)
       .own(
           {"--accumulate", "NUMBER", "frames to each side", fmt::format("0 to {}", kMostAccumulated),
-           "the AO is the mean over these frames, of what stands still; needs each camera"},
+           "the AO of static surfaces is the mean over these frames; needs each frame's camera"},
           [](const InputSettings& s) { return fmt::format("{}", s.accumulate); },
           [](InputSettings& s, const std::string& text) { return read_accumulate(text, s.accumulate); },
           fmt::format("is no whole number from 0 to {}", kMostAccumulated));

@@ -1,5 +1,5 @@
-// ONE table of the files of options: the rows of option tables that have a role. From it follow the inputs of frames,
-// what --resume knows them by, the outputs, and the refusal to write over what is read.
+// ONE table of the files of options: the rows of option tables that have a role. It gives the inputs of frames, their
+// digests for --resume, the outputs, and the refusal to overwrite inputs.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

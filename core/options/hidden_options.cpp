@@ -98,14 +98,15 @@ void add_behind_rows(InputGroup& pixels) {
   behind.names(FileRole::input);
   behind.idle(unless_ranges);
   SettingRow& channels = pixels.add(
-      {"behind-channel", "NAME[,NAME...]", "", "", "the depth channel of --behind, once or for each"},
+      {"behind-channel", "NAME[,NAME...]", "", "",
+       "the depth channel of the --behind files: one for all, or one for each"},
       [](const S& s) { return s.behind_channels; },
       [](S& s, const Words& words) { s.behind_channels = split_all(words); });
   channels.repeats = true;
   channels.idle([](const Settings& all) { return unless_for_each_file(all.input, all.input.behind_channels.size()); });
   SettingRow& kinds = pixels.add(
       {"--behind-kind", "surfaces|fronts|backs|thickness[,...]", "", "",
-       "of --behind, once or for each; backs: back faces; thickness: how deep things go on"},
+       "the kind of the --behind files: one for all, or one for each; backs: back faces; thickness: of solids"},
       [](const S& s) { return words_of(s.behind_kinds); },
       [](S& s, const Words& words) { read_kinds(words, s.behind_kinds); });
   kinds.repeats = kinds.in_library = true;
@@ -117,38 +118,38 @@ void add_deep_rows(InputGroup& pixels) {
   using S = InputSettings;
   pixels
       .add(
-          {"--deep", "FILE", "", "up to 8 times", "a deep EXR, for what its samples show behind the first surface"},
+          {"--deep", "FILE", "", "up to 8 times", "a deep EXR, for hidden surfaces"},
           [](const S& s) { return words_of(s.deep); }, [](S& s, const Words& words) { read_files(words, s.deep); })
       .names(FileRole::input)
       .repeats = true;
-  pixels.number("deep-opacity", &S::deep_opacity, "", between(0, 1), "of a deep sample, from which it is a surface")
+  pixels.number("deep-opacity", &S::deep_opacity, "", between(0, 1), "the least opacity of a deep surface")
       .idle([](const Settings& all) { return unless_given(has_deep(all.input), "--deep"); });
 }
 
 void add_view_rows(InputGroup& pixels) {
   using S = InputSettings;
-  pixels.flag("other-views", &S::other_views, "of a stereo file: what its other views see of the same instant")
+  pixels.flag("other-views", &S::other_views, "add hidden surfaces from a stereo file's other views")
       .idle(unless_ranges);
   pixels
       .own(
           {"--around", "NUMBER|all", "frames to each side", fmt::format("0 to {}", kMostAround),
-           "what other frames see of what stands still; needs the camera of each"},
+           "add static hidden surfaces from other frames; needs each frame's camera"},
           [](const S& s) { return s.around_all ? std::string("all") : fmt::format("{}", s.around); },
           [](S& s, const std::string& text) { return read_around(text, s); },
           fmt::format("is neither all nor a whole number from 0 to {}", kMostAround))
       .others_idle(unless_ranges);
-  pixels.text("--motion", &S::motion, "FILE", "a picture of motion vectors, in pixels, which tell what moves")
+  pixels.text("--motion", &S::motion, "FILE", "motion vectors, in pixels, to find moving surfaces")
       .names(FileRole::input)
       .idle([](const Settings& all) {
         const InputSettings& input = all.input;
         const bool takes_frames = input.around > 0 || input.around_all || input.accumulate > 0;
         return unless_given(takes_frames, "--around and no --accumulate");
       });
-  pixels.text("motion-channels", &S::motion_channels, "LAYER|X,Y", "of the motion vectors; else by their usual names")
-      .idle(unless_motion);
   pixels
-      .choice("motion-kind", &S::motion_kind,
-              "where vectors point: into the previous frame or the next; auto: as most pixels move by the cameras")
+      .text("motion-channels", &S::motion_channels, "LAYER|X,Y",
+            "the vectors' layer or channels; else found by their usual names")
+      .idle(unless_motion);
+  pixels.choice("motion-kind", &S::motion_kind, "the frame that vectors point to; auto: by the cameras")
       .others_idle(unless_motion);
 }
 
@@ -161,7 +162,7 @@ void add_hidden_rows(std::vector<SettingRow>& rows) {
   add_view_rows(pixels);
   OptionGroup kept(rows, "Hidden surfaces", Effect::pixels, &Settings::estimator, true);
   kept.number("hidden", &EstimatorSettings::hidden, "surfaces of a pixel", between(0, kMostKept),
-              "kept behind the first, the nearest ones; 0: none")
+              "hidden surfaces kept behind the first one, nearest first; 0: none")
       .idle([](const Settings& all) { return all.estimator.hidden == 0 ? "" : unless_hidden_sources(all); });
   kept.own(
           {"separation", "auto|NUMBER", "scene units", "0 or more",

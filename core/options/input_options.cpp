@@ -119,13 +119,13 @@ void add_occluder_rows(std::vector<SettingRow>& rows) {
   file_or_objects(rows, "occluders", &S::occluders, &S::occluder_objects,
                   "only these block: a picture of coverage, or objects as in --matte-object");
   file_or_objects(rows, "ignore", &S::ignore, &S::ignored_objects,
-                  "these do not block, but what --behind or --deep show behind them; as occluders");
+                  "these do not block; surfaces of --behind or --deep behind them do; values as for occluders");
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
-      .text("objects", &S::objects, "FILE", "a picture that tells the objects of occluders and ignore; else INPUT")
+      .text("objects", &S::objects, "FILE", "the file of the objects of occluders and ignore; else INPUT")
       .names(FileRole::input)
       .idle(unless_objects);
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
-      .text("object-channel", &S::object_channel, "NAME", "the channel of their numbers, or the layer of a Cryptomatte")
+      .text("object-channel", &S::object_channel, "NAME", "their channel of numbers, or the Cryptomatte's layer")
       .idle(unless_objects);
 }
 
@@ -135,18 +135,18 @@ void add_file_rows(std::vector<SettingRow>& rows) {
   const auto file = [&](const char* name, std::string S::*path, const char* sentence) -> SettingRow& {
     return inputs.text(name, path, "FILE", sentence).names(FileRole::input);
   };
-  file("--depth", &S::depth, "of the depth alone: EXR, DDS, NumPy, PNG of 16 bits, TIFF").is_common = true;
-  file("--position", &S::position, "a picture of the positions, instead of a depth");
+  file("--depth", &S::depth, "depth in a file of its own: EXR, DDS, NumPy, PNG of 16 bits, TIFF").is_common = true;
+  file("--position", &S::position, "positions, instead of depth");
   inputs
       .text("--normal", &S::normal, "FILE|none",
-            "of the normals alone: EXR, DDS, NumPy, TIFF or PNG; none: made from depth")
+            "normals in a file of their own: EXR, DDS, NumPy, TIFF or PNG; none: from depth")
       .names(FileRole::input, [](const std::string& text) { return lower_case(text) != "none"; })
       .is_common = true;
-  SettingRow& beauty = file("--beauty", &S::beauty, "a picture of the beauty, and of its parts of light");
+  SettingRow& beauty = file("--beauty", &S::beauty, "the beauty and its light passes");
   beauty.is_common = true;
   beauty.idle(unless_beauty_serves);
-  file("material-ao", &S::material_ao, "a picture of the materials' own AO, multiplied in");
-  file("--matte", &S::matte, "where AO is wanted, as coverage from 0 to 1");
+  file("material-ao", &S::material_ao, "the materials' own AO; multiplies the result");
+  file("--matte", &S::matte, "the pixels that get AO, as coverage from 0 to 1");
   add_occluder_rows(rows);
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input, true)
       .own(
@@ -167,30 +167,34 @@ std::string unless_plane_of_depth(const Settings& all) {
 void add_channel_rows(std::vector<SettingRow>& rows) {
   using S = InputSettings;
   OptionGroup pixels(rows, "Input", Effect::pixels, &Settings::input);
-  pixels.text("--depth-channel", &S::depth_channel, "NAME", "of the depth; else found by its usual names")
+  pixels.text("--depth-channel", &S::depth_channel, "NAME", "the depth's channel; else found by its usual names")
       .idle(unless_plane_of_depth);
-  pixels.text("--normal-channels", &S::normal_channels, "LAYER|X,Y[,Z]", "of the normals; of two, z is rebuilt")
+  pixels
+      .text("--normal-channels", &S::normal_channels, "LAYER|X,Y[,Z]",
+            "the normals' layer or channels; with two, z is computed")
       .idle(if_without_normals);
-  pixels.text("position-channels", &S::position_channels, "LAYER|X,Y,Z", "of the positions, instead of a depth");
+  pixels.text("position-channels", &S::position_channels, "LAYER|X,Y,Z",
+              "the positions' layer or channels; positions instead of depth");
   pixels.text("beauty-channels", &S::beauty_channels, "LAYER|R,G,B[,A]", "the beauty's layer, or its channels")
       .idle(unless_composite);
   pixels
       .text("ambient", &S::ambient, "LIGHT[*LAYER][*NUMBER],...",
-            "layers of the beauty's file which alone AO dims, each by that much; beauty: all of it")
+            "the layers of the beauty's file that AO dims, with weights; beauty: all of it")
       .idle(unless_composite);
-  pixels.text("material-ao-channel", &S::material_ao_channel, "NAME", "of the materials' AO, in its file or INPUT");
+  pixels.text("material-ao-channel", &S::material_ao_channel, "NAME",
+              "the material AO's channel, in its file or INPUT");
   pixels.text("albedo-channels", &S::albedo_channels, "LAYER|R,G,B", "the diffuse colour's layer, or its channels")
       .idle(unless_multi_bounce)
       .idle([](const Settings& all) { return all.input.albedo_value ? "albedo is a number" : ""; });
   pixels.text("matte-channel", &S::matte_channel, "NAME",
-              "of the matte, in its file or INPUT; or a Cryptomatte's layer");
+              "the matte's channel, in its file or INPUT, or a Cryptomatte's layer");
   pixels.text("--matte-object", &S::matte_object, "NAME[,NAME...]",
-              "the matte is these objects of a Cryptomatte or of numbers; * and ? stand for others");
+              "objects of the matte, by Cryptomatte or number; * and ? stand for other characters");
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input, true)
       .number("--matte-outside", &S::matte_outside, "", between(0, 1), "the AO where the matte is 0")
       .idle([](const Settings& all) { return unless_given(wants_matte(all.input), "--matte and no --matte-object"); });
-  pixels.text("--layer", &S::layer, "NAME", "look only at this layer or part");
-  pixels.text("--view", &S::view, "NAME", "of a stereo file; else its default view");
+  pixels.text("--layer", &S::layer, "NAME", "read only this layer or part");
+  pixels.text("--view", &S::view, "NAME", "the view of a stereo file; else its default view");
   const auto say_roi = [](const S& s) {
     const auto& roi = s.roi;
     return roi ? fmt::format("{},{},{},{}", roi->x, roi->y, roi->width, roi->height) : std::string();
@@ -199,7 +203,7 @@ void add_channel_rows(std::vector<SettingRow>& rows) {
       {"--roi", "X,Y,WIDTH,HEIGHT", "px of the display window", "", "compute and write only this region"}, say_roi,
       [](S& s, const std::string& text) { return read_roi(text, s.roi); }, "is not X,Y,WIDTH,HEIGHT in whole pixels");
   pixels.word("supersampling", &S::supersampling, {"auto", "1", "2", "3", "4"},
-              "pixels of depth for one that is written, in x and in y; auto: 1");
+              "pixels of depth per output pixel, in x and in y; auto: 1");
   pixels.word("--source", &S::source, source_names(), "the program that wrote the frame; auto: by header and channels");
 }
 
@@ -238,7 +242,7 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
       .idle(unless_between_planes);
   pixels
       .choice("device-range", within(&S::depth_range, &DepthRange::device),
-              "of the depth between the planes; -1..1: as OpenGL has it; auto: 0..1")
+              "device depth at the near and far planes; -1..1: OpenGL's; auto: 0..1")
       .idle([](const Settings& all) { return unless_depth(all, {DepthKind::device}); });
   pixels
       .number("log-constant", within(&S::depth_range, &DepthRange::log_constant), "1 / file units", above(0),
@@ -247,30 +251,30 @@ void add_depth_rows(std::vector<SettingRow>& rows) {
   const auto unless_disparity = [](const Settings& all) { return unless_depth(all, {DepthKind::disparity}); };
   pixels
       .number("disparity-scale", within(&S::depth_range, &DepthRange::disparity_scale), "", above(0),
-              "a of disparity = a / z + b; else there are no scene units, and --radius is in percent")
+              "a of disparity = a / z + b; without it there are no scene units, and --radius is in percent")
       .idle(unless_disparity);
   pixels
       .number("disparity-shift", within(&S::depth_range, &DepthRange::disparity_shift), "", between(-1e18, 1e18),
-              "b of disparity = a / z + b, the value of what is infinitely far; else found by the normals")
+              "b of disparity = a / z + b, the value at infinity; else found by the normals")
       .idle(unless_disparity);
   pixels.number("--depth-scale", &S::depth_scale, "", above(0), "scene units per unit of the depth channel");
   pixels
       .word("ramps", &S::ramps, {"cut", "keep"},
-            "of depth that was blurred across outlines; cut: their pixels go to the surfaces on both sides")
+            "depth blurred across outlines; cut: assign the blurred pixels to the surfaces on both sides")
       .others_idle(unless_plane_of_depth);
-  pixels.number("--sky", &S::sky, "file units", above(0), "from this depth on it is sky, as are 0, infinity and NaN");
+  pixels.number("--sky", &S::sky, "file units", above(0), "the least depth of sky; 0, infinity and NaN are sky too");
 }
 
 void add_direction_rows(std::vector<SettingRow>& rows) {
   using S = InputSettings;
   OptionGroup pixels(rows, "Input", Effect::pixels, &Settings::input, true);
-  pixels.choice("--normal-space", &S::normal_space, "auto: as the camera file says, or what fits the frame")
+  pixels.choice("--normal-space", &S::normal_space, "auto: by the camera file, else by the pixels")
       .others_idle(if_without_normals);
   pixels.choice("--normal-encoding", &S::normal_encoding, "unorm: 0.5 + 0.5 n; auto: by the values")
       .others_idle(if_without_normals);
   pixels
       .own(
-          {"--flip-normal", "xyz", "", "", "axes of the normals that point the other way, in their own space"},
+          {"--flip-normal", "xyz", "", "", "axes of the normals to negate, in their own space"},
           [](const S& s) { return text_of(s.flip_normal); },
           [](S& s, const std::string& text) { return read_flips(text, s.flip_normal); },
           "is none of x, y, z, xy, xz, yz, xyz")
@@ -285,7 +289,7 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
       .flag("--strict", &S::strict, "guesses and warnings are errors");
   OptionGroup(rows, "Input", Effect::none, &Settings::input)
       .own(
-          {"allow", "CODE,...", "", "", "warnings that --strict takes; normals-disagree: most of them may disagree"},
+          {"allow", "CODE,...", "", "", "warnings that --strict accepts; normals-disagree: most normals may disagree"},
           [](const S& s) { return s.allow; }, read_allowed);
   OptionGroup(rows, "Input", Effect::pixels, &Settings::input)
       .text("--camera", &S::camera, "FILE.json|.chan", "the camera; see docs/inputs.md")
@@ -299,9 +303,9 @@ void add_camera_rows(std::vector<SettingRow>& rows) {
   OptionGroup pixels(rows, "Input", Effect::pixels, &Settings::input, true);
   pixels.number("--fov", &S::fov, "degrees", strictly_between(0, 180), "field of view over the width").is_common = true;
   pixels.number("--vertical-fov", &S::vertical_fov, "degrees", strictly_between(0, 180),
-                "over the height, as Unity, Godot and glTF have it");
+                "field of view over the height, as in Unity, Godot and glTF");
   pixels.number("--focal-px", &S::focal_px, "px", above(0),
-                "focal length in pixels of the display window, as networks say it");
+                "focal length in pixels of the display window, as networks give it");
   pixels.number("--focal", &S::focal, "mm", above(0), "focal length").idle([](const Settings& all) {
     return unless_given(all.input.aperture.has_value(), "--aperture: add it, the film back's width in mm");
   });

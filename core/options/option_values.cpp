@@ -247,11 +247,10 @@ void check_curvature(const Settings& settings) {
   const bool has_all = (input.occluders + input.occluder_objects + input.ignore + input.ignored_objects).empty();
   for (const Aov& aov : aovs_of(settings.output))
     if (is_of_curvature(aov) && !has_all)
-      fail(
-          ErrorKind::usage,
-          "--aov {}: it is the shape of all surfaces, and with --set occluders or --set ignore some are left out: make "
-          "it in a run without",
-          aov.name);
+      fail(ErrorKind::usage,
+           "--aov {}: it is the shape of all surfaces, and --set occluders and --set ignore leave some out: make it in "
+           "a run of its own",
+           aov.name);
 }
 
 /// A view of completed surfaces needs some.
@@ -259,11 +258,10 @@ void check_completion(const Settings& settings) {
   const auto& e = settings.estimator;
   if (!shows(settings.output, DebugSource::completed)) return;
   if (e.search == SliceSearch::quick)
-    fail(ErrorKind::usage, "--set debug=completed: a quick search does not tell them; --search steps does");
+    fail(ErrorKind::usage, "--set debug=completed: a quick search completes no surfaces; --search steps does");
   if (completes_anywhere(e)) return;
   if (e.complete == Completion::none)
-    fail(ErrorKind::usage,
-         "--set debug=completed: with --set complete=none nothing is; border and all complete surfaces");
+    fail(ErrorKind::usage, "--set debug=completed: --set complete=none completes no surfaces; border and all do");
   fail(ErrorKind::usage, "--set debug=completed: --estimator {} completes no surfaces; gtao and bitmask do",
        e.estimator == Estimator::hbao ? "hbao" : "crytek");
 }
@@ -278,7 +276,7 @@ bool is_of_estimate(DebugSource source) {
 void check_accumulation(const Settings& settings) {
   const bool is_mean = settings.input.accumulate > 0;
   if (!is_mean && shows(settings.output, DebugSource::count))
-    fail(ErrorKind::usage, "--set debug=count: a frame is its own estimate; --accumulate takes those of others");
+    fail(ErrorKind::usage, "--set debug=count: each frame has one estimate; only --accumulate has more");
   for (const auto* view : debug_views_of(settings.output))
     if (is_mean && is_of_estimate(view->source))
       fail(ErrorKind::usage,
@@ -294,8 +292,8 @@ void check_hidden(const Settings& settings) {
   const char* const option = is_aov ? "--aov " : "--set debug=";
   if (settings.estimator.hidden == 0) fail(ErrorKind::usage, "{}hidden: with --set hidden=0 nothing is kept", option);
   if (!has_hidden_sources(settings.input))
-    fail(ErrorKind::usage, "{}hidden: nothing says what is hidden: --behind, --deep, --around and --set other-views do",
-         option);
+    fail(ErrorKind::usage,
+         "{}hidden: there are no hidden surfaces: give --behind, --deep, --around or --set other-views", option);
 }
 
 /// Several radii make sense once each; bent normals and transfer need an estimator that finds open directions.
@@ -308,9 +306,9 @@ void check_scales(const Settings& settings) {
            e.estimator == Estimator::hbao ? "hbao" : "crytek");
   for (const char* name : {"relight", "relight-open"})
     if (settings.output.environment.empty() && std::ranges::count(split(settings.output.aovs), name) > 0)
-      fail(ErrorKind::usage, "--aov {}: it is the light of a sky, which --environment gives", name);
+      fail(ErrorKind::usage, "--aov {}: it is the light of a sky: give --environment", name);
   if (settings.output.lights.empty() && wants(settings.output, &FrameOutputs::shadow))
-    fail(ErrorKind::usage, "--aov shadow needs lights: --lights FILE.json");
+    fail(ErrorKind::usage, "--aov shadow needs lights: give --lights FILE.json");
   require_distinct_channels(settings);
   if (e.further_radii.empty()) return;
   const auto radii = radii_of(e);
@@ -325,7 +323,7 @@ void check_numbers(const EstimatorSettings& e) {
   if (e.fade_start && e.fade_end && *e.fade_end <= *e.fade_start)
     fail(ErrorKind::usage, "--set fade-end={} is not beyond --set fade-start={}", *e.fade_end, *e.fade_start);
   if (e.estimator != Estimator::crytek && e.bias >= 1)
-    fail(ErrorKind::usage, "--set bias={}: of every estimator but crytek it is the sine of an elevation, below 1",
+    fail(ErrorKind::usage, "--set bias={}: for all estimators but crytek it is the sine of an elevation, below 1",
          e.bias);
   if (e.falloff_end <= e.falloff_start)
     fail(ErrorKind::usage, "--set falloff-end={} is not above --set falloff-start={}", e.falloff_end, e.falloff_start);
@@ -340,8 +338,8 @@ void check_disparity(const Settings& settings) {
           int(range.disparity_shift.has_value()) >
       2)
     fail(ErrorKind::usage,
-         "--near, --far, --set disparity-scale and --set disparity-shift: two of them say how disparity becomes depth; "
-         "leave the others out");
+         "--near, --far, --set disparity-scale and --set disparity-shift: two of them turn disparity into depth; leave "
+         "the others out");
   const Disparity said = disparity_of(range);
   if ((input.around > 0 || input.around_all || input.accumulate > 0) && !(said.scale && said.shift))
     fail(ErrorKind::usage,
@@ -352,11 +350,10 @@ void check_disparity(const Settings& settings) {
   for (const auto& row : option_table()) {
     const bool is_length = row.unit.ends_with("scene units") || row.key() == "sky" || row.key() == "depth-scale";
     if (!is_length || !row.is_key() || !row.is_given(settings) || !number_of(row.words(settings).front())) continue;
-    fail(
-        ErrorKind::usage,
-        "{}: this disparity has no scene units, since nothing tells its scale: give {}--set disparity-scale, or --near "
-        "or --far, the distance of the value 1 or 0",
-        row.long_name(), row.key() == "radius" ? "--radius in percent of the median depth, as 5%, or " : "");
+    fail(ErrorKind::usage,
+         "{}: this disparity has no scene units, since its scale is unknown: give {}--set disparity-scale, or --near "
+         "or --far, the distance of the value 1 or 0",
+         row.long_name(), row.key() == "radius" ? "--radius in percent of the median depth, as 5%, or " : "");
   }
 }
 
@@ -367,7 +364,7 @@ void check_settings(const Settings& settings) {
   if (main_input(settings.input).empty())
     fail(ErrorKind::usage, "no input: name an EXR file, or one with --depth or --position");
   if (!settings.estimator.radius && !settings.estimator.radius_auto && needs_radius(settings.output))
-    fail(ErrorKind::usage, "no radius: say with --radius how far occluders reach, in scene units");
+    fail(ErrorKind::usage, "no radius: give --radius, the reach of occluders in scene units");
   require_effects(settings);
   check_search(settings);
   check_curvature(settings);

@@ -59,20 +59,18 @@ std::string text_of_memory(std::uint64_t bytes) {
 void add_frame_rows(std::vector<SettingRow>& rows) {
   using S = FrameSettings;
   OptionGroup frames(rows, "Frames", Effect::none, &Settings::frames);
-  frames.text("--frames", &S::frames, "LIST", "such as 1001-1100x2,1200; else those of INPUT on the disk").is_common =
-      true;
-  frames.number("output-offset", &S::output_offset, "frames", between(-1e9, 1e9),
-                "from the numbers of the inputs to those of the outputs");
+  frames.text("--frames", &S::frames, "LIST", "frames such as 1001-1100x2,1200; else the files of INPUT on the disk")
+      .is_common = true;
+  frames.number("output-offset", &S::output_offset, "frames", between(-1e9, 1e9), "output number less input number");
   frames.own(
       {"--chunk", "I/N", "", "I from 1 to N", "compute only this part of the frames"},
       [](const S& s) { return s.chunks > 1 ? fmt::format("{}/{}", s.chunk, s.chunks) : std::string(); },
       [](S& s, const std::string& text) { return read_chunk(text, s); }, "is not I/N, with I from 1 to N");
-  frames.choice("missing", &S::missing, "what a frame without its input is: an error before any work, or left out");
-  frames.flag("--keep-going", &S::keep_going, "a frame that fails does not end the run");
+  frames.choice("missing", &S::missing, "frames without their input; error: before any work; skip: left out");
+  frames.flag("--keep-going", &S::keep_going, "go on after a failed frame");
   frames.flag("warnings-as-errors", &S::warnings_as_errors,
-              "a frame with a warning fails, and nothing of it is written");
-  frames.flag("--resume", &S::resume, "compute only frames whose outputs are missing, broken or out of date")
-      .is_common = true;
+              "fail frames with a warning before their outputs are written");
+  frames.flag("--resume", &S::resume, "compute only frames with missing, broken or old outputs").is_common = true;
   frames.flag("overwrite", &S::overwrite, "compute all frames, whatever --resume says");
   frames.show({"--dry-run", "", "", "", "print frames, files and memory, and stop"});
 }
@@ -87,10 +85,11 @@ void add_device_rows(std::vector<SettingRow>& rows) {
   device.flag("--validate", &S::validate, "load the Vulkan validation layer; any message is an error");
   device.flag("no-pipeline-cache", &S::no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
   process.own(
-      {"--memory", "SIZE", "bytes, or with K, M, G", "", "of the whole process; else half of what is free"},
+      {"--memory", "SIZE", "bytes, or with K, M, G", "", "memory of the whole process; else half of the free memory"},
       [](const S& s) { return text_of_memory(s.memory); },
       [](S& s, const std::string& text) { return read_memory(text, s.memory); }, "is no size such as 512M or 4G");
-  process.number("--threads", &S::threads, "", between(0, 1024), "of the CPU device and of codecs; 0: one per core");
+  process.number("--threads", &S::threads, "", between(0, 1024),
+                 "threads of the CPU device and of codecs; 0: one per core");
 }
 
 void add_report_rows(std::vector<SettingRow>& rows) {
@@ -104,17 +103,17 @@ void add_report_rows(std::vector<SettingRow>& rows) {
       .names(FileRole::report);
   progress
       .word("--progress", &ProgressSettings::kind, {"auto", "bar", "plain", "percent", "openjd", "none"},
-            "plain: one line per frame; percent, openjd: on standard output, as farms read it")
+            "plain: one line per frame; percent, openjd: on standard output, for farms")
       .idle([=](const Settings& all) { return if_given(shows_lines(all) && all.progress.quiet, "--quiet", kWhy); });
   files.text("--log-json", &OutputSettings::log_json, "FILE|-", "one JSON object per line for every event")
       .names(FileRole::report, [](const std::string& text) { return text != "-"; });
-  progress.flag("-v,--verbose", &ProgressSettings::verbose, "say more: the time of every pass");
-  progress.flag("-q,--quiet", &ProgressSettings::quiet, "say nothing but errors").idle([=](const Settings& all) {
+  progress.flag("-v,--verbose", &ProgressSettings::verbose, "print more: the time of every pass");
+  progress.flag("-q,--quiet", &ProgressSettings::quiet, "print nothing but errors").idle([=](const Settings& all) {
     return if_given(shows_lines(all), "--progress", kWhy);
   });
   progress.show({"--print-config", "", "", "", "print the settings as a preset and stop"});
   progress.show({"--shareable", "", "", "",
-                 "of --print-config: what differs from the defaults, without files, frames, camera and device"});
+                 "with --print-config: changed settings alone, without files, frames, camera and device"});
 }
 
 bool is_control(char c) { return (unsigned char)c < 0x20 || c == 0x7f; }
@@ -167,16 +166,16 @@ const SettingRow& row_of_key(const std::string& key) {
   }
   if (key == "preset")
     fail(ErrorKind::usage,
-         "preset is an option of the command line only: give both presets there, the one that wins last (--preset A "
-         "--preset B)");
+         "preset is an option of the command line only: give both presets there (--preset A --preset B; the last one "
+         "wins)");
   if (!row->is_key()) fail(ErrorKind::usage, "{} is an option of the command line only", key);
   return *row;
 }
 
 const std::vector<Rivals>& rivals() {
-  static const char* const kCamera = "each of them says what the camera sees";
+  static const char* const kCamera = "each sets the lens";
   static const std::vector<Rivals> kRivals{
-      {{"depth"}, {"position"}, "both say how far away surfaces are"},
+      {{"depth"}, {"position"}, "both give the distance of surfaces"},
       {{"depth-channel"}, {"position", "position-channels"}, "depth is read from one of them"},
       {{"camera"}, {"fov", "vertical-fov", "focal-px", "focal", "aperture", "ortho-width"}, kCamera},
       {{"fov"}, {"vertical-fov", "focal-px", "focal", "aperture", "ortho-width"}, kCamera},
@@ -184,12 +183,10 @@ const std::vector<Rivals>& rivals() {
       {{"focal-px"}, {"focal", "aperture", "ortho-width"}, kCamera},
       {{"focal", "aperture"}, {"ortho-width"}, kCamera},
       {{"occluders"}, {"ignore"}, "each says what blocks"},
-      {{"occluders", "ignore"},
-       {"around", "other-views"},
-       "what other frames and views show behind an object may be the object itself"},
-      {{"tolerance"}, {"resolution"}, "the error is that of every pixel at --resolution full"},
-      {{"tolerance"}, {"accumulate"}, "each says how exact the AO gets"},
-      {{"denoise-kernel"}, {"denoise-radius"}, "as many weights as there are make the radius"},
+      {{"occluders", "ignore"}, {"around", "other-views"}, "other frames and views may show the object itself"},
+      {{"tolerance"}, {"resolution"}, "the error is per pixel at --resolution full"},
+      {{"tolerance"}, {"accumulate"}, "each sets the AO's accuracy"},
+      {{"denoise-kernel"}, {"denoise-radius"}, "the number of weights sets the radius"},
       {{"quiet"}, {"verbose"}, "one asks for lines, the other for none"}};
   return kRivals;
 }

@@ -18,15 +18,15 @@ const std::vector<SettingRow>& option_table();
 /// Gives the row of a key of presets. Fails with ErrorKind::usage, naming the nearest, where there is none.
 const SettingRow& row_of_key(const std::string& key);
 
-/// Settings of which each of `one` and each of `other` take each other's effect, by their keys.
+/// Keys of settings: each of `one` and each of `other` cancel each other's effect.
 struct Rivals {
   Words one, other;
   const char* why;
 };
 const std::vector<Rivals>& rivals();
 
-/// Names the option and says why its value, where it is set at all, has no effect beside the others; "" where it has
-/// one.
+/// Explains, with the option's name, why its value has no effect beside the others; "" if it has an effect, or is not
+/// set.
 std::string objection(const SettingRow& row, const Settings& settings);
 
 /// Gives unit and range of a number, as help shows them; "" where there is neither.
@@ -38,7 +38,7 @@ std::string option_table_markdown();
 /// Gives the settings as a preset in TOML, one line for each that has an effect or is no default; files have whole
 /// paths.
 std::string preset_text(const Settings& settings);
-/// Gives those that are no defaults, without files, frames, camera and device.
+/// Gives the changed settings alone, without files, frames, camera and device.
 std::string shareable_text(const Settings& settings);
 
 // The groups of the table, each in its own file.
@@ -62,19 +62,17 @@ struct OptionValue {
 /// The command that options are read for. `alcove inspect` writes no outputs: there, no setting lacks one.
 enum class Reader { run, inspect };
 
-/// Gives the settings with these values, those of presets in their order and then those that were typed; later ones
-/// win. Values without effect beside the rest are left out of presets, the earliest first. Fails with ErrorKind::usage
-/// on a text that is no value, on a typed value without effect, and on values of one preset that take each other's
-/// effect.
+/// Gives the settings with these values: presets in their order, then typed values; later ones win. A preset's values
+/// without effect beside the rest are left out, the earliest first. Fails with ErrorKind::usage on a text that is no
+/// value, on a typed value without effect, and on values of one preset that cancel each other's effect.
 Settings with_values(const Settings& settings, std::vector<OptionValue> values, Reader reader = Reader::run);
 
-/// Gives the settings with the values of presets too that have no effect beside the others, so that one preset says all
-/// that the values say: a factor of the composite stays where there is none. Left out are values that take the effect
-/// of others.
+/// Gives the settings with all values of presets, also without effect, so that one preset holds them all: a composite's
+/// factor stays without a composite. Only values that cancel others are left out.
 Settings with_idle_values(const Settings& settings, const std::vector<OptionValue>& values);
 
 /// Gives the values in the text of a preset, in its order; `preset` is for messages. Fails with ErrorKind::usage,
-/// naming preset and key, on keys that are no options. The key `preset` is one of those unless others are built on.
+/// naming preset and key, on keys that are no options. The key `preset` counts as no option unless `builds_on_others`.
 std::vector<OptionValue> preset_values(const std::string& preset, const std::string& text,
                                        bool builds_on_others = false);
 

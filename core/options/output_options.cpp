@@ -54,7 +54,7 @@ void add_composite_rows(std::vector<SettingRow>& rows) {
   OptionGroup pixels(rows, "Output", Effect::pixels, &Settings::output);
   pixels
       .number("fog-density", within(&S::look, &CompositeLook::fog_density), "1 / scene units", between(0, 1e30),
-              "of exponential fog in the beauty, which hides the AO behind it")
+              "density of exponential fog in the beauty, which hides AO")
       .others_idle(unless_composite);
   pixels
       .number("gain", within(&S::look, &CompositeLook::gain), "", between(0, 100),
@@ -62,7 +62,7 @@ void add_composite_rows(std::vector<SettingRow>& rows) {
       .others_idle(unless_composite);
   pixels
       .own(
-          {"tint", "R,G,B", "", "0 to 1", "what occlusion makes of white light in the composite"},
+          {"tint", "R,G,B", "", "0 to 1", "the colour of fully occluded white light in the composite"},
           [](const S& s) {
             const auto& tint = s.look.tint;
             return tint == std::array<double, 3>{} ? "" : fmt::format("{}", fmt::join(tint, ","));
@@ -71,8 +71,7 @@ void add_composite_rows(std::vector<SettingRow>& rows) {
           "is not three numbers from 0 to 1")
       .others_idle(unless_composite);
   pixels
-      .number("mix", within(&S::look, &CompositeLook::mix), "", between(0, 1),
-              "of the composite and the beauty; 0: the beauty")
+      .number("mix", within(&S::look, &CompositeLook::mix), "", between(0, 1), "share of the composite; 0: the beauty")
       .others_idle(unless_composite);
   pixels
       .word("composite-layers", &S::composite_layers, {"all", "rgba"},
@@ -81,9 +80,9 @@ void add_composite_rows(std::vector<SettingRow>& rows) {
   pixels
       .word("composite-compression", &S::composite_compression,
             {"keep", "none", "rle", "zips", "zip", "piz", "dwaa", "dwab"},
-            "of the beauty's part in the composite; keep: the file's, or zip where that loses bits again")
+            "compression of the beauty's part in the composite; keep: the file's, but zip for a lossy one")
       .others_idle(unless_composite);
-  pixels.text("append-ao", &S::append_ao, "LAYER[.CHANNEL]", "the AO as one more channel of the composite: AO is AO.Y")
+  pixels.text("append-ao", &S::append_ao, "LAYER[.CHANNEL]", "add the AO to the composite as this channel: AO is AO.Y")
       .idle(unless_composite);
 }
 
@@ -97,13 +96,13 @@ void add_preview_rows(std::vector<SettingRow>& rows) {
   OptionGroup pixels(rows, "Output", Effect::pixels, &Settings::output);
   // What it says is known by its bytes, whether the variable names it or the option.
   OptionGroup files(rows, "Output", Effect::none, &Settings::output);
-  SettingRow& ocio =
-      files.text("ocio", &S::ocio, "FILE", "OpenColorIO configuration for the preview; else that of OCIO, else sRGB");
+  SettingRow& ocio = files.text("ocio", &S::ocio, "FILE",
+                                "OpenColorIO configuration of the preview; else of the variable OCIO, else sRGB");
   ocio.names(FileRole::input).idle(unless_shown_composite);
   ocio.is_of_frame = false;
-  pixels.text("display", &S::display, "NAME", "of the OpenColorIO configuration; else its default one")
+  pixels.text("display", &S::display, "NAME", "the display of the OpenColorIO configuration; else its default")
       .idle(unless_shown_composite);
-  pixels.text("view-transform", &S::view_transform, "NAME", "the view of the display; else its default one")
+  pixels.text("view-transform", &S::view_transform, "NAME", "the view of the display; else its default")
       .idle(unless_shown_composite);
   pixels
       .word("preview-style", &S::preview_style, {"auto", "ao", "composite", "split"},
@@ -122,14 +121,12 @@ void add_output_rows(std::vector<SettingRow>& rows) {
       results(rows, "Output", Effect::pixels, &Settings::output, true);
   OptionGroup files(rows, "Output", Effect::none,
                     &Settings::output);  // Whether a file is there is looked at when a run is resumed.
-  files.text("-o,--output", &S::output, "FILE.exr", "the AO, 1 = open, and what else --aov names")
+  files.text("-o,--output", &S::output, "FILE.exr", "the AO, 1 = open, and the AOVs of --aov")
       .names(FileRole::output)
       .is_common = true;
-  word_list(results, "--aov", &S::aovs, fmt::format("what OUTPUT holds: {}", fmt::join(aov_names(), ", "))).is_common =
+  word_list(results, "--aov", &S::aovs, fmt::format("results in OUTPUT: {}", fmt::join(aov_names(), ", "))).is_common =
       true;
-  pixels
-      .text("--environment", &S::environment, "SKY.exr|.hdr",
-            "lat-long light: OUTPUT holds relight, what white surfaces reflect of it with occlusion")
+  pixels.text("--environment", &S::environment, "SKY.exr|.hdr", "lat-long light for the AOVs relight and relight-open")
       .names(FileRole::input);
   pixels
       .text("--lights", &S::lights, "FILE.json",
@@ -139,18 +136,18 @@ void add_output_rows(std::vector<SettingRow>& rows) {
   results.choice("ao-channels", &S::ao_channels, "mono: Y; rgb: R, G, B").others_idle([](const Settings& all) {
     return unless_aov(all, {"ao"});
   });
-  pixels.text("ao-name", &S::ao_name, "NAME", "of the AO's channel instead of Y; with rgb of its layer: NAME.R ...")
+  pixels.text("ao-name", &S::ao_name, "NAME", "the AO's channel instead of Y; with rgb its layer: NAME.R ...")
       .idle([](const Settings& all) { return unless_aov(all, {"ao"}); });
   pixels
       .choice("filter", within(&S::filter, &PixelFilter::kind),
-              "how pixels of depth make one that is written; blackman-harris: as Blender")
+              "the filter of supersampling; blackman-harris: Blender's")
       .others_idle(unless_supersampled);
   pixels
-      .number("filter-width", within(&S::filter, &PixelFilter::width), "px of what is written", between(1, 16),
-              "from one end to the other")
+      .number("filter-width", within(&S::filter, &PixelFilter::width), "output pixels", between(1, 16),
+              "full width of the filter")
       .idle(unless_supersampled);
   results
-      .choice("aov-space", &S::aov_space, "of the normals in OUTPUT; auto: world where the camera tells it, else view")
+      .choice("aov-space", &S::aov_space, "space of the normals in OUTPUT; auto: world if the camera has it, else view")
       .others_idle([](const Settings& all) {
         return unless_aov(all, {"normal", "bent-normal", "transfer"});
       });
@@ -167,14 +164,14 @@ void add_output_rows(std::vector<SettingRow>& rows) {
   add_composite_rows(rows);
   files
       .text("--preview", &S::preview, "FILE.png",
-            "of the composite, or of the AO; of all frames in one where the name has no number")
+            "picture of the composite, else of the AO; a name without a number: one sheet of all frames")
       .names(FileRole::output)
       .is_common = true;
   word_list(files, "debug", &S::debug,
             fmt::format("pictures beside OUTPUT, ao.VIEW.png: {}", fmt::join(debug_view_names(), ", ")))
       .implies(FileRole::output, debug_files);
   pixels.choice("--type", &S::type, "sample type of OUTPUT; depth is always float");
-  files.word("compression", &S::compression, {"none", "rle", "zips", "zip", "piz"}, "of OUTPUT");
+  files.word("compression", &S::compression, {"none", "rle", "zips", "zip", "piz"}, "compression of OUTPUT");
   files.flag("no-mkdir", &S::no_mkdir, "a missing folder of an output is an error; else it is made");
   add_preview_rows(rows);
 }

@@ -1,4 +1,4 @@
-// Why a setting has no effect beside others: sentences that rows of the table give. Each is "" where it has its effect.
+// Why a setting has no effect beside others: sentences for rows of the table. Each is "" if the setting has its effect.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -21,20 +21,21 @@ std::string unless_ranges(const Settings& settings);
 std::string if_exact(const Settings& settings);
 /// An estimate by its error takes as many directions as that needs, and no denoiser.
 std::string if_by_error(const Settings& settings);
-/// --aov confidence makes estimates by slices and steps of its own, whatever estimates the AO: it needs their settings.
+/// --aov confidence makes its own estimates by slices and steps, beside any estimator of the AO: it needs their
+/// settings.
 bool asks_for_confidence(const Settings& settings);
-/// Shadows of lights have thickness, noise and denoiser by the settings of these, whatever estimates the AO.
+/// Shadows of lights use the settings of thickness, noise and denoiser, beside any estimator of the AO.
 bool asks_for_shadows(const Settings& settings);
 std::string unless_denoised(const Settings& settings, std::initializer_list<Denoise> kinds);
 /// Some pixels take the estimates of others, be it at another density.
 std::string unless_shared_estimates(const Settings& settings);
 
-/// The setting is of depth of these kinds. Where nothing says the kind, the frame may turn out to have it.
+/// The setting is for depth of these kinds. A frame of unknown kind may have one of them.
 std::string unless_depth(const Settings& settings, std::initializer_list<DepthKind> kinds);
 
 std::string unless_aov(const Settings& settings, std::initializer_list<const char*> names);
 std::string unless_composite(const Settings& settings);
-/// `is_given` tells whether there is what the setting belongs to.
+/// "there is no OPTION" unless `is_given`: the setting belongs to that option.
 std::string unless_given(bool is_given, const std::string& option);
 /// Another option says the same.
 std::string if_given(bool is_given, const std::string& option, const std::string& why);

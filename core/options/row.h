@@ -1,5 +1,4 @@
-// Rows of the tables of options: what help and docs/options.md show of an option, and how its value is read and
-// written.
+// Rows of the tables of options: an option's text in help and docs/options.md, and how its value is read and written.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -20,13 +19,13 @@
 
 namespace alcove {
 
-/// What an option has to do with the pixels of an output: by this, --resume knows which files were made otherwise.
+/// The effect of an option on the pixels of an output: --resume decides by it whether a file is still valid.
 enum class Effect {
   none,    // The pixels come out the same: a device, threads, a report, the name or compression of an output.
   pixels,  // Its value counts. Of an input, only its being given does, since it is known by its bytes (alcove/inputs).
 };
 
-/// What a command does with the files that an option names: it reads them, writes one for each frame, or writes one.
+/// The use of an option's files: input, one output for each frame, or one report for the run.
 enum class FileRole { none, input, output, report };
 
 using Words = std::vector<std::string>;
@@ -36,18 +35,18 @@ struct OptionRow {
   std::string group = {};
   // As typed, "--radius" or "-o,--output"; "filter-width" of a key, which is no option but set by --set and presets.
   std::string name;
-  std::string value = {};     // what stands behind it in help: FILE, NUMBER, the words to choose from; "" for a flag
-  std::string unit = {};      // of a number; "" where there is none
-  std::string range = {};     // the same
-  std::string sentence = {};  // ends without a full stop
+  std::string value = {};         // its value in help: FILE, NUMBER, the words to choose from; "" for a flag
+  std::string unit = {};          // of a number; "" where there is none
+  std::string range = {};         // the same
+  std::string sentence = {};      // ends without a full stop
   std::string default_text = {};  // "" where there is none
   Effect effect = Effect::none;
-  bool repeats = false;      // each value is one more
-  bool is_required = false;  // of arguments without a name
-  bool is_common = false;    // among the few that --help shows; --help-all shows all
-  bool in_library = false;   // libalcove takes it: not what names files, frames or reports, or how files are written
-  FileRole role = FileRole::none;                             // of its files
-  bool is_of_frame = false;                                   // they may have a place for the frame number
+  bool repeats = false;            // each value is one more
+  bool is_required = false;        // of arguments without a name
+  bool is_common = false;          // among the few that --help shows; --help-all shows all
+  bool in_library = false;         // libalcove takes it: it names no file, frame, report or file format
+  FileRole role = FileRole::none;  // of its files
+  bool is_of_frame = false;        // they may have a place for the frame number
   std::function<bool(const std::string&)> is_file = nullptr;  // which of its values name one; null: all
 
   /// Whether it is set by --set and presets alone.
@@ -68,13 +67,13 @@ struct RowOf : OptionRow {
   // Takes a value. Fails with ErrorKind::usage, naming the option, its mistake, and the nearest words. Null: the
   // option is of the command line alone, and no part of `Options`.
   std::function<void(Options&, const Words&)> read = nullptr;
-  // Each tells why the value has no effect beside the others, in a sentence; "" where it has one, or asks for nothing.
-  // A value without effect that is typed is refused; of a preset it is left out.
+  // Each gives the reason why the value has no effect beside the others, in a sentence; "" if it has an effect, or asks
+  // for nothing. A typed value without effect is refused; a preset's is left out.
   std::vector<std::function<std::string(const Options&)>> idle_reasons = {};
-  // Gives the files of an option whose words are not their names; null: those of its words that are.
+  // Gives the option's files if its words do not name them; null: the words that are file names.
   std::function<Words(const Options&)> derived_files = nullptr;
   Words usual = {};                 // the words of the default
-  bool usual_asks_nothing = false;  // the default is no mistake, whatever is beside it
+  bool usual_asks_nothing = false;  // the default is never refused, beside any other value
 
   /// Adds a reason by which a value may have no effect. Reads as "idle unless denoised".
   RowOf& idle(std::function<std::string(const Options&)> why) {
@@ -232,7 +231,7 @@ class OptionGroup {
         });
   }
 
-  /// What help shows of an option of its own kind.
+  /// The help of an option of its own kind.
   struct Shown {
     std::string name, value, unit, range, sentence;
   };

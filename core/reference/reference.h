@@ -77,8 +77,8 @@ std::vector<float> reference_shadow(const HostFrame& frame, const ReferenceSetti
 inline constexpr std::size_t kTransferPlanes = 9;
 std::vector<float> reference_transfer(const HostFrame& frame, const ReferenceSettings& settings);
 
-/// Gives a plane of what the receiver's own surface blocks of the hemisphere below each pixel's tangent plane, and one
-/// of what it blocks above, in [0, 1]; 0 on sky and at pixels that were not asked for. See own_surface.glsl.
+/// Gives two planes: the parts, in [0, 1], of the hemispheres below and above each pixel's tangent plane that the
+/// receiver's own surface blocks; 0 on sky and at other pixels than `pixels`. See own_surface.glsl.
 std::vector<float> reference_curvature(const HostFrame& frame, const ReferenceSettings& settings);
 
 /// Gives the visibility in [0, 1] of each pixel by the settings' estimator (gtao, hbao, crytek) with its radius, bias,

@@ -57,7 +57,7 @@ struct ReferenceLine {
   const ReferenceSample& at(int step, int surface) const { return (*this)[step * surfaces + surface]; }
 };
 
-/// Whether surfaces go on behind nearer ones. Behind endless occluders they do not: those block everything there
+/// Whether surfaces go on behind nearer ones. Behind endless occluders they do not: these block everything there
 /// anyway.
 bool completes_behind(const ReferenceSettings& settings);
 

@@ -9,7 +9,7 @@
 
 namespace alcove {
 
-/// The rules at one side of a slice. What it takes must outlive it.
+/// The rules at one side of a slice. Its arguments must outlive it.
 class ReferenceSolids {
  public:
   ReferenceSolids(const ReferenceScene& scene, const ReferenceReceiver& receiver, const ReferenceSide& side,

@@ -422,7 +422,7 @@ void require_picture(const FrameSource& source, const Window& window, std::span<
        "{}: the beauty {} has one colour in all pixels{}: give the picture with --beauty, or name it with "
        "--set beauty-channels",
        source.files[red.file].path(), red.channel,
-       colors[0] == 0 ? ", black, as renderers write a layer that they did not render" : "");
+       colors[0] == 0 ? ", black, as in a layer that was not rendered" : "");
 }
 
 /// Fails with ErrorKind::usage where deep samples beside a flat depth are of no use to the estimator. Only now it is
@@ -449,10 +449,10 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
          file);
   if (settings.multi_bounce && !source.channels[RawPlane::beauty].empty() &&
       source.channels[RawPlane::indirect].empty())
-    fail(ErrorKind::input,
-         "{}: --set multi-bounce is for indirect light, and the frame has no indirect diffuse part for the --composite "
-         "(--beauty)",
-         file);
+    fail(
+        ErrorKind::input,
+        "{}: --set multi-bounce brightens indirect diffuse light in the --composite, and the frame has none (--beauty)",
+        file);
   require_place_for_ao(source, settings);
   for (const auto* view : debug_views_of(settings)) {
     if (view->source == DebugSource::raw_depth && source.channels[RawPlane::depth].size() > 1)
@@ -488,12 +488,11 @@ void read_sky(FrameSource& source, const std::string& path) {
   if (path.empty()) return;
   source.environment = sky_of(path);
   if (source.environment->missed > kMostMissed)
-    source.notes.push_back(
-        {NoteCode::sun_in_sky,
-         fmt::format("nine colours do not hold it: {:.0f} % of its light comes from elsewhere than they "
-                     "say; a sun needs a light of its own (--environment)",
-                     100 * source.environment->missed),
-         path});
+    source.notes.push_back({NoteCode::sun_in_sky,
+                            fmt::format("nine colours do not hold it: they miss {:.0f} % of its light; a sun needs a "
+                                        "light of its own (--environment)",
+                                        100 * source.environment->missed),
+                            path});
 }
 
 /// Whether planes are all that the frame needs.

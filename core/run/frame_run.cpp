@@ -190,17 +190,16 @@ void FrameTally::note_repairs(const FrameSource& source) {
          source.note_file(RawPlane::depth)});
   if (counts_.repaired_normals)
     notes.push_back({NoteCode::repaired_normals,
-                     fmt::format("{} pixels had no usable normal{}; it was reconstructed from depth: give all "
-                                 "surfaces normals (--normal), or if these are the sky, its depth (--sky)",
+                     fmt::format("{} pixels had no usable normal{}, and got one from depth: give all surfaces normals "
+                                 "(--normal), or if these pixels are sky, its depth (--sky)",
                                  counts_.repaired_normals, window_of_normals(source)),
                      source.note_file(RawPlane::normal)});
   if (counts_.turned_normals)
-    notes.push_back(
-        {NoteCode::turned_normals,
-         fmt::format("the normals of {} pixels faced away from the eye, as on mirrored things and the backs of cards; "
-                     "they were turned round",
-                     counts_.turned_normals),
-         source.note_file(RawPlane::normal)});
+    notes.push_back({NoteCode::turned_normals,
+                     fmt::format("the normals of {} pixels faced away from the eye, as on mirrored things and the "
+                                 "backs of cards, and were turned round",
+                                 counts_.turned_normals),
+                     source.note_file(RawPlane::normal)});
   if (counts_.repaired_material)
     notes.push_back(
         {NoteCode::repaired_material_ao,
@@ -213,8 +212,8 @@ void FrameTally::note_repairs(const FrameSource& source) {
                      source.note_file(RawPlane::beauty)});
   if (has_alpha_ && !has_coverage_ && counts_.sky < report_.pixels)
     notes.push_back({NoteCode::transparent_beauty,
-                     "the beauty's alpha is 0 in all pixels, so no pixel is covered by a surface, and the composite is "
-                     "the beauty as it was: give --beauty a picture without alpha, or with that of the surfaces",
+                     "the beauty's alpha is 0 in all pixels, so the composite is the unchanged beauty: give --beauty a "
+                     "picture without alpha, or with the surfaces' alpha",
                      source.note_file(RawPlane::beauty)});
 }
 

@@ -281,8 +281,8 @@ void require_buffers_for_estimates(std::uint64_t most_bytes, const FrameSource& 
   const std::uint64_t bytes = sizeof(float) * planes * frame.reading.data.pixels();
   if (bytes <= most_bytes) return;
   fail(ErrorKind::device,
-       "{}: --accumulate takes the estimates of frames whole, in a buffer of {} MiB, where the device has {} MiB at "
-       "most: leave it out, {}or use another --device",
+       "{}: --accumulate keeps a frame's estimates in one buffer of {} MiB, and the device has {} MiB at most: leave "
+       "it out, {}or use another --device",
        frame.depth_path(), bytes / kMebibyte, most_bytes / kMebibyte,
        values > 1 ? "ask for one --radius and no directions, " : "");
 }
@@ -367,9 +367,9 @@ void require_room_for_others(const RunMemory& memory, const FramePlan& plan, con
   const std::string mend = input.accumulate > 0 ? fmt::format("a smaller --accumulate than {}", input.accumulate)
                                                 : fmt::format("--around {}", fewer.input.around);
   fail(memory.is_chosen ? ErrorKind::usage : ErrorKind::device,
-       "{}: {} leaves {} MiB for frames, too few for those around each: give {}, or --memory {}M", frame.depth_path(),
-       memory.is_chosen ? "--memory" : "half of the free memory", memory.host_bytes / kMebibyte, mend,
-       (memory.program_bytes + bytes_of_one(plan, frame, settings, frames, true)) / kMebibyte + 1);
+       "{}: {} leaves {} MiB for frames, too few for each frame's neighbours: give {}, or --memory {}M",
+       frame.depth_path(), memory.is_chosen ? "--memory" : "half of the free memory", memory.host_bytes / kMebibyte,
+       mend, (memory.program_bytes + bytes_of_one(plan, frame, settings, frames, true)) / kMebibyte + 1);
 }
 
 void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const Settings& all) {
@@ -383,7 +383,7 @@ void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& fra
   if (std::max(of_depth, of_normals) <= most_bytes) return;
   const char* const option = settings.other_views ? "--set other-views" : "--around";
   fail(ErrorKind::device,
-       "{}: {} takes frames whole, and {} take a buffer of {} MiB, where the device has {} MiB at most: {}leave {} "
+       "{}: {} keeps frames whole, and {} take a buffer of {} MiB, while the device has {} MiB at most: {}leave {} "
        "out, or use another --device",
        frame.depth_path(), option, of_depth > most_bytes ? "their depth" : "their normals",
        std::max(of_depth, of_normals) / kMebibyte, most_bytes / kMebibyte,

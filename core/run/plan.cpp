@@ -125,7 +125,7 @@ std::vector<int> FramePlan::all_frames() const {
   const auto number = frame_number_in(input).number;
   if (!number && !patterns_.empty())
     fail(ErrorKind::usage,
-         "{} {}: its name has a place for a frame number, and {} has no clear one: give --frames NUMBER",
+         "{} {}: its name has a place for a frame number, and {} has no clear number: give --frames NUMBER",
          patterns_.front().option(), patterns_.front().text, input);
   return {number.value_or(0)};
 }
@@ -186,7 +186,7 @@ void FramePlan::find_inputs(const std::vector<int>& own) {
                     absent.size() == chunk.size() ? why_no_frames(pattern.name) : "");
   }
   if (!complaint.empty() && settings_.frames.missing == Missing::error)
-    fail(ErrorKind::input, "{}; --set missing=skip leaves them out, --frames says which to compute", complaint);
+    fail(ErrorKind::input, "{}; --set missing=skip leaves them out, --frames chooses frames", complaint);
   for (const int frame : chunk) (has_inputs(frame) ? frames_ : missing_).push_back(frame);
   if (!chunk.empty() && frames_.empty()) fail(ErrorKind::input, "{}; there is nothing to compute", complaint);
 }
@@ -198,16 +198,16 @@ void FramePlan::find_shot() {
   if (!input) {
     const std::string &file = main_input(settings_.input), pattern = pattern_for(file);
     fail(ErrorKind::usage,
-         "{}: {} takes other frames of a sequence, and this names one file: give a pattern such as {}, with "
-         "--frames for this frame alone, or leave {} out",
+         "{}: {} takes other frames of a sequence, and this is one file: give a pattern such as {}, with --frames for "
+         "this frame alone, or leave {} out",
          file, option, pattern.empty() ? "shot.####.exr" : pattern, option);
   }
   const std::string& motion = settings_.input.motion;
   const auto is_motion = [](const Pattern& pattern) { return pattern.row->key() == "motion"; };
   if (!motion.empty() && std::ranges::none_of(patterns_, is_motion)) {
     const std::string pattern = pattern_for(motion);
-    fail(ErrorKind::usage, "--motion {}: one frame's vectors say nothing of the others: give a pattern such as {}",
-         motion, pattern.empty() ? "motion.####.exr" : pattern);
+    fail(ErrorKind::usage, "--motion {}: these are the vectors of one frame: give a pattern such as {}", motion,
+         pattern.empty() ? "motion.####.exr" : pattern);
   }
   shot_ = frames_on_disk(input->name, input->option().c_str());
   const std::vector<int> holes = holes_in(shot_);
@@ -319,7 +319,7 @@ void refuse_warnings(const Notes& notes, const Settings& settings, const std::st
   if (warnings.empty() || !fails_on_warnings(settings)) return;
   std::string text;
   for (const auto& note : warnings) text += (text.empty() ? "" : "; ") + line_of(note, text.empty() ? file : "");
-  fail(ErrorKind::input, "{}: an error by {}; --set allow=CODE,... takes what is in brackets", text,
+  fail(ErrorKind::input, "{}: an error by {}; --set allow=CODE,... accepts the code in brackets", text,
        settings.frames.warnings_as_errors ? "--set warnings-as-errors" : "--strict");
 }
 

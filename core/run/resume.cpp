@@ -139,7 +139,7 @@ std::optional<std::string> reason_to_make(const NamedFile& output, const Setting
   const bool is_picture = output.path != frame.output.output && output.path != frame.output.composite;
   if (is_picture) {
     if (is_whole_png(output.path, made_by(options_digest, inputs))) return std::nullopt;
-    return fmt::format("{} is cut short, or was made otherwise", output.option);
+    return fmt::format("{} is cut short, or made with other settings", output.option);
   }
   const auto attribute = [&](const char* name) { return attribute_of_whole_exr(output.path, name); };
   const auto version = attribute("alcove/version");
@@ -148,11 +148,11 @@ std::optional<std::string> reason_to_make(const NamedFile& output, const Setting
   if (attribute("alcove/options") != options_digest) {
     const std::string before = attribute("alcove/radius").value_or(""), now = radius_text(frame.estimator);
     return "other settings made them" +
-           (before.empty() || before == now ? "" : fmt::format(", with the radius {} and not {}", before, now));
+           (before.empty() || before == now ? "" : fmt::format(", with the radius {}, not {}", before, now));
   }
   if (attribute("alcove/inputs") != inputs) return "an input has changed";
   if (fails_on_warnings(frame) && !are_allowed(attribute(kNotesAttribute).value_or(""), frame.input.allow))
-    return "warnings count as errors, and they have some";
+    return "warnings count as errors, and these frames have some";
   return std::nullopt;
 }
 

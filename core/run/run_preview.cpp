@@ -30,11 +30,12 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 /// The note on the numbers between the frames on the disk that have no file.
 Notes notes_on_holes(const FramePlan& plan) {
   if (plan.holes().empty() || plan.settings().frames.missing == Missing::skip) return {};
-  return {{NoteCode::sequence_hole,
-           fmt::format("{} between the frames on the disk: {} missing; --frames says which frames there are, --set "
-                       "missing=skip that some may be missing",
-                       plan.holes().size() == 1 ? "there is a hole" : "there are holes",
-                       frames_text(plan.holes()) + (plan.holes().size() == 1 ? " is" : " are"))}};
+  return {
+      {NoteCode::sequence_hole,
+       fmt::format(
+           "{} between the frames on the disk: {} missing; --frames lists the frames, --set missing=skip accepts gaps",
+           plan.holes().size() == 1 ? "there is a hole" : "there are holes",
+           frames_text(plan.holes()) + (plan.holes().size() == 1 ? " is" : " are"))}};
 }
 
 /// The note on frames that others do without.
@@ -42,10 +43,9 @@ Notes notes_on_missing_around(const FramePlan& plan) {
   const std::vector<int> missing = plan.missing_around();
   if (missing.empty()) return {};
   return {{NoteCode::sequence_hole,
-           fmt::format("{} of the shot {} missing: {}; those around do without, and their headers say so "
-                       "(--set missing=skip)",
-                       missing.size() == 1 ? "a frame" : "frames", missing.size() == 1 ? "is" : "are",
-                       frames_text(missing))}};
+           fmt::format(
+               "{} of the shot {} missing: {}; their neighbours do without, as their headers say (--set missing=skip)",
+               missing.size() == 1 ? "a frame" : "frames", missing.size() == 1 ? "is" : "are", frames_text(missing))}};
 }
 
 /// The note on files of one frame whose names have another frame's number. Peels and cameras are counted otherwise.
@@ -59,9 +59,9 @@ Notes notes_on_other_frames(const FramePlan& plan) {
     if (!is_picture || !row.is_of_frame || row.key() == "camera") continue;
     for (const auto& [option, path] : row.files(plan.at(*number), FileRole::input))
       if (const FrameNumber other = frame_number_in(path); other.number && other.number != number)
-        notes.push_back({NoteCode::other_frame, fmt::format("{} {}: by the digits {} of its name it is of frame {}, "
-                                                            "and the frame is {}",
-                                                            option, path, other.digits, *other.number, *number)});
+        notes.push_back({NoteCode::other_frame,
+                         fmt::format("{} {}: by the digits {} of its name it belongs to frame {}, and the frame is {}",
+                                     option, path, other.digits, *other.number, *number)});
   }
   return notes;
 }
@@ -89,9 +89,8 @@ Notes notes_on_number(const FramePlan& plan) {
   const FrameNumber found = frame_number_in(input);
   if (!found.number)
     fail(ErrorKind::usage,
-         "{}: it lists cameras by frame, and {} has no clear frame number{}: say which frame it is with --frames "
-         "NUMBER",
-         camera, file_name(input), found.doubt.empty() ? "" : fmt::format(" ({})", found.doubt));
+         "{}: it lists cameras by frame, and {} has no clear frame number{}: give it with --frames NUMBER", camera,
+         file_name(input), found.doubt.empty() ? "" : fmt::format(" ({})", found.doubt));
   try {
     require_listed(camera, *found.number);
   } catch (const Error& error) {
@@ -240,8 +239,8 @@ std::vector<std::string> MissingOptions::sentences() const {
   if (camera) sentences.push_back("a camera: " + why + (turns_normals ? kWorldCameraOptions : kCameraOptions));
   if (lacks_matrix)
     sentences.emplace_back(
-        "world_to_camera, since the normals are in world space: --camera FILE.json with it, or --normal none, which "
-        "reconstructs them from depth");
+        "world_to_camera, for normals in world space: --camera FILE.json with it, or --normal none to reconstruct "
+        "normals from depth");
   if (no_channels) sentences.emplace_back(no_channels->what());
   if (radius) sentences.emplace_back("--radius NUMBER, how far occluders reach in scene units, or --radius auto");
   const bool is_said = unreadable && no_channels && std::string(unreadable->what()) == no_channels->what();
@@ -343,7 +342,7 @@ WindowLimits limits_of(const Settings& settings, const RunMemory& memory, const 
 std::string tiles_text(FrameSource& source, const Settings& settings, const WindowLimits& limits) {
   try {
     const MemoryNeeds cut = tiles_within(source, settings, limits);
-    return fmt::format("in tiles: {} of them compute the pixels of {:.2g} frames for each", cut.parts, cut.factor);
+    return fmt::format("in {} tiles per frame, with the pixels of {:.2g} frames", cut.parts, cut.factor);
   } catch (const Error&) {
     return "in tiles";  // the frame fails by itself, and others of a sequence may not
   }

@@ -133,11 +133,9 @@ bool is_same_place(const Camera& a, const Camera& b) {
 
 void require_place(const FrameSource& source, int frame, const char* option) {
   if (!source.reading.camera.view_from_world)
-    fail(
-        ErrorKind::input,
-        "{}: {} needs to know where the camera of frame {} stands, and it has no world_to_camera: give a --camera file "
-        "with it",
-        source.depth_path(), option, frame);
+    fail(ErrorKind::input,
+         "{}: {} needs the place of frame {}'s camera, which has no world_to_camera: give a --camera file with it",
+         source.depth_path(), option, frame);
 }
 
 bool takes_frames(const InputSettings& settings) {
@@ -273,10 +271,10 @@ std::vector<SharedFrames::ViewWithMovement> SharedFrames::frames_around(gpu::Rec
     const auto projection = [](const Camera& camera) { return camera.orthographic ? "orthographic" : "perspective"; };
     const char *here = projection(target.reading.camera), *there = projection(found.back().seen->camera);
     if (std::string_view(here) != there)
-      fail(
-          ErrorKind::input,
-          "{}: frame {} is {}, and frame {} is {}: --around takes frames of one projection: give another --camera file",
-          target.depth_path(), frame, here, around.there[i], there);
+      fail(ErrorKind::input,
+           "{}: frame {} is {}, and frame {} is {}: --around needs one projection in all frames: give another --camera "
+           "file",
+           target.depth_path(), frame, here, around.there[i], there);
   }
   return found;
 }
@@ -293,7 +291,7 @@ std::vector<SharedFrames::ViewWithMovement> SharedFrames::other_views(gpu::Recor
     const auto other = std::make_shared<const NeighbourView>(prepare(gpu, input, frame, "--set other-views", cost));
     if (is_same_place(other->camera, target.reading.camera))
       fail(ErrorKind::input,
-           "{}: its views have one camera, and --set other-views needs that of each: give a --camera file with "
+           "{}: its views have one camera, and --set other-views needs one for each: give a --camera file with "
            "\"views\"",
            target.depth_path());
     found.push_back({other, std::make_shared<const Movement>(movement(judged(gpu, *other, {}, cost)))});

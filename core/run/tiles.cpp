@@ -438,8 +438,7 @@ TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowL
                   const FrameSource& source) {
   if (auto cut = Cutter(surroundings, limits).cut(whole); !cut.rows.empty()) return std::move(cut.rows);
   const std::string what = fmt::format(
-      "{}: within --radius or --set shadow-reach a tile of the frame depends on too many pixels to compute at once: "
-      "use smaller ones",
+      "{}: a tile depends on too many pixels to compute at once: give a smaller --radius or --set shadow-reach",
       source.depth_path());
   const MemoryNeeds needs = memory_needs(source, surroundings, limits);
   if (needs.least > limits.budget.bytes) limits.refuse(what, needs);

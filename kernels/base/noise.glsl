@@ -1,18 +1,14 @@
 // Low-discrepancy sample noise. Pure: no bindings.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Slices turn by a lattice over the image: a number that grows by the same fraction of a turn from pixel to pixel. What
-// an estimate errs by is then, on a plain surface, a sum of waves: harmonic (k, l) of the two numbers is a wave of k
-// times the first one's frequency and l times the second one's, less whole ones. The fractions are chosen so that on
-// every lattice of tiles.glsl the harmonics that weigh most are waves so short that the filters take them away. The
-// weights were measured: on plain surfaces of rendered scenes seven tenths of the variance is the first harmonic of the
-// slices' direction, and hardly any is the steps'. See docs/lab.md.
+// Slices turn by a lattice over the image: a number that grows by the same fraction of a turn from pixel to pixel. On a
+// plain surface the error of an estimate is then a sum of waves: harmonic (k, l) of the two numbers is a wave of k
+// times the first number's frequency plus l times the second one's, modulo 1. The fractions (kNoiseXByX ... of
+// shared.h) make the heaviest harmonics so short on every lattice of tiles.glsl that the filters remove them. Measured
+// weights: on plain surfaces of rendered scenes the first harmonic of the slices' direction has seven tenths of the
+// variance, and the steps have hardly any. See docs/lab.md.
 
 const float kGolden = 0.61803398874989485;  // (sqrt(5) - 1) / 2
-
-// Fractions of a turn, times 2^32.
-const uint kNoiseXByX = 850015508u, kNoiseXByY = 2573490380u;  // 0.1979097, 0.5991874
-const uint kNoiseYByX = 518391397u, kNoiseYByY = 584904276u;   // 0.1206974, 0.1361836
 
 /// Position along the Hilbert curve that fills a 64 x 64 tile.
 uint hilbert_index(uvec2 p) {

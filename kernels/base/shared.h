@@ -35,18 +35,17 @@ struct ivec2 {
 #extension GL_EXT_scalar_block_layout : require
 // The compiler numbers bindings: the host finds a buffer by the name of its block. See core/gpu/recorder.h.
 layout(scalar) buffer;
-// What lavapipe (Mesa 22 to 25) makes of branches and loops: it goes through both sides of an `if` with its lanes
-// switched off, and looks only at the end of a loop's body whether any lane goes on. A loop that asks before its body,
-// as `for` does, goes through it once more than it has rounds. So loops whose bodies are long ask behind them. Values
-// that are the same for all invocations are loaded outside of conditions and loops: there lavapipe loads them once,
-// else for one lane after the other.
+// Branches and loops on lavapipe (Mesa 22 to 25): it runs both sides of an `if` with lanes switched off, and tests only
+// at the end of a loop's body whether any lane goes on. A loop with its test first, such as `for`, runs its body once
+// more than it has rounds. So loops with long bodies test last. Load uniform values outside of conditions and loops:
+// there lavapipe loads them once, else for one lane after the other.
 #define ALCOVE_BEGIN
 #define ALCOVE_END
 #define ALCOVE_CONSTANT const
 #define ALCOVE_NUMBER const float
 
-/// min() and max() in two instructions of lavapipe; GLSL's ask of both for NaN, which takes a third. Where a is NaN, b
-/// is the result, as of those; where b is, so is the result.
+/// min() and max() in two instructions of lavapipe; GLSL's own test both for NaN, which takes a third. If a is NaN, the
+/// result is b, as with GLSL's; if b is NaN, the result is NaN.
 float lesser(float a, float b) { return a < b ? a : b; }
 float greater(float a, float b) { return a > b ? a : b; }
 
@@ -54,27 +53,31 @@ float greater(float a, float b) { return a > b ? a : b; }
 
 ALCOVE_BEGIN
 
-// Pixels of a workgroup in x and y. No kernel may take a row, or anything else but one invocation, to run in lock step:
-// a subgroup has 8 invocations on lavapipe with vectors of 256 bits, 4 with those of 128, and other numbers on GPUs.
-// What invocations share they write with atomics, and they read it after a barrier.
+// Pixels of a workgroup in x and y. No kernel may assume that several invocations run in lock step: a subgroup has 8
+// invocations on lavapipe with vectors of 256 bits, 4 with vectors of 128 bits, and other numbers on GPUs. Invocations
+// write shared values with atomics, and read them after a barrier.
 ALCOVE_CONSTANT uint kGroupX = 8;
 ALCOVE_CONSTANT uint kGroupY = 8;
-// Workgroups in a row of a dispatch over a list: as many as every device takes. Drivers share out whole rows, so the
-// empty workgroups at the end of the last row are few.
+// Workgroups in a row of a dispatch over a list: as many as every device takes, since drivers distribute whole rows and
+// only the last row has empty workgroups.
 ALCOVE_CONSTANT uint kListedRow = 0xffff;
 // What `prepare` writes for sky. Its squared distance overflows to infinity, so no radius reaches it.
 ALCOVE_CONSTANT float kSkyDepth = 1e30;
-// In the exact search a run that the image's border cuts is taken to be at least so thick, in radii, since its width is
-// not known, and what goes on beyond the border at most. Endless it would be as near to ray tracing in one picture, but
-// flicker in a moving one.
+// In the exact search the least thickness, in radii, of a run that the image's border cuts, since its width is unknown;
+// and the most of its continuation beyond the border. Endless runs would be as near to ray tracing in one picture, but
+// would flicker in a moving one.
 ALCOVE_CONSTANT float kCutThickness = 0.5;
 
-// An end of a surface goes on behind something if it is no farther from the receiver than this, in radii: what is
-// farther seldom comes back within reach.
+// An end of a surface goes on behind something if it is no farther from the receiver than this, in radii: a farther one
+// seldom comes back within reach.
 ALCOVE_CONSTANT float kFarEnd = 1.2;
-// Of the thickness that a run has by its width: the most radii that count, which is also what it levels off at. A wall
-// is not as thick as it is long.
+// The most radii that count of a run's thickness by its width; also where the thickness levels off. A wall is not as
+// thick as it is long.
 ALCOVE_CONSTANT float kWidestRun = 2;
+
+// The noise of noise.glsl grows from pixel to pixel by these fractions of a turn, times 2^32.
+ALCOVE_CONSTANT uint kNoiseXByX = 850015508u, kNoiseXByY = 2573490380u;  // 0.1979097, 0.5991874
+ALCOVE_CONSTANT uint kNoiseYByX = 518391397u, kNoiseYByY = 584904276u;   // 0.1206974, 0.1361836
 
 // The R2 sequence (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018) goes on by 1/g and
 // 1/g^2, where g^3 = g + 1.

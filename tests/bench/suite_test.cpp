@@ -220,5 +220,19 @@ TEST_F(SuiteMottle, has_a_limit_that_holds_breaks_or_cannot_be_checked) {
   test::expect_refused(limited("small", 1), 3, {"far on small: mottle", "half shadow", "--limits"});
 }
 
+TEST(Presets, of_quality_have_limits_on_every_frame_of_the_suite) {
+  const std::string root = ALCOVE_SOURCE_DIR "/", suite = read_bytes(root + "examples/bench/suite.toml"),
+                    limits = read_bytes(root + "examples/bench/limits.toml");
+  const auto count = [](const std::string& text, const std::string& line) {
+    return std::ranges::count(lines_of(text), line);
+  };
+  for (const auto& file : names_in(root + "presets")) {
+    if (file.find('/') != file.npos || !file.ends_with(".toml")) continue;
+    const std::string name = fs::path(file).stem().string();
+    EXPECT_THAT(suite, HasSubstr("preset = \"" + name + "\""));
+    EXPECT_EQ(count(limits, "candidate = \"" + name + "\""), count(suite, "[[frame]]")) << name;
+  }
+}
+
 }  // namespace
 }  // namespace alcove::suite_test

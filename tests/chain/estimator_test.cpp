@@ -1,5 +1,5 @@
 // HBAO and Crytek's estimator against expected values of their own, whose derivations stand beside the tests, and
-// against slow versions of themselves. docs/testing.md says which mistake of such designs which test finds.
+// against slow versions of themselves.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/estimate/estimate.h"
 #include "core/reference/reference.h"

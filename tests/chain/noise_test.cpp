@@ -1,10 +1,9 @@
 // The noise of the slices: a lattice that is the same however far away, and whose waves the filter takes away.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <complex>
-#include <regex>
 
+#include "kernels/base/shared.h"
 #include "tests/support/chain.h"
-#include "tests/support/program.h"
 #include "tests/support/site_frames.h"
 
 namespace alcove::noise_test {
@@ -22,18 +21,9 @@ struct Lattice {
   double off_whole(int x, int y) const { return std::abs(turns(x, y) - std::round(turns(x, y))); }
 };
 
-/// A lattice as noise.glsl has it.
-Lattice lattice_of(const std::string& name) {
-  const std::string text = read_bytes(ALCOVE_SOURCE_DIR "/kernels/base/noise.glsl");
-  const auto number = [&](const std::string& constant) {
-    std::smatch match;
-    EXPECT_TRUE(std::regex_search(text, match, std::regex(constant + " = (\\d+)u"))) << constant;
-    return std::uint32_t(std::stoul(match[1]));
-  };
-  return {number("kNoise" + name + "ByX"), number("kNoise" + name + "ByY")};
-}
+constexpr Lattice kDirections{kNoiseXByX, kNoiseXByY}, kSteps{kNoiseYByX, kNoiseYByY};
 
-/// What is left of a harmonic of a lattice, at most, by the parabolas of a filter along rows and columns, over the
+/// The largest remaining part of a lattice's harmonic after a filter by parabolas along rows and columns, over the
 /// sites of a spacing.
 double left_of(const Lattice& lattice, int harmonic, int spacing, int radius) {
   const auto window = [&](int away) { return 1 - std::pow(away / (radius + 1.0), 2); };
@@ -55,11 +45,10 @@ double left_of(const Lattice& lattice, int harmonic, int spacing, int radius) {
 
 // The R2 sequence leaves .11 and .54 of the first and third harmonic at one pixel of 16.
 TEST(Noise, is_taken_away_by_the_filter_at_every_spacing) {
-  const Lattice directions = lattice_of("X"), steps = lattice_of("Y");
   for (const int spacing : {16, 8, 4, 2, 1}) {
     for (const int harmonic : {1, 2, 3})
-      EXPECT_LT(left_of(directions, harmonic, spacing, 8), 0.05) << "spacing " << spacing << ", harmonic " << harmonic;
-    EXPECT_LT(left_of(steps, 1, spacing, 8), 0.05) << "spacing " << spacing;
+      EXPECT_LT(left_of(kDirections, harmonic, spacing, 8), 0.05) << "spacing " << spacing << ", harmonic " << harmonic;
+    EXPECT_LT(left_of(kSteps, 1, spacing, 8), 0.05) << "spacing " << spacing;
   }
   const Lattice r2{3242174889u, 2447445414u};
   EXPECT_GT(left_of(r2, 3, 16, 8), 0.3) << "or else any lattice would do";
@@ -76,14 +65,13 @@ HostFrame step_at(int x, int y) {
 // Where both numbers have gone through whole turns the noise is the same again; in floats it would be off by 1/16 of a
 // turn there, or more.
 TEST(Noise, is_exact_a_million_pixels_away) {
-  const Lattice directions = lattice_of("X"), steps = lattice_of("Y");
   const EstimatorSettings settings = sampled(Estimator::gtao, 0.4, 2, 12);
   const std::vector<float> here = ao_of(step_at(0, 0), settings);
   const auto difference_at = [&](int x, int y) { return difference(ao_of(step_at(x, y), settings), here); };
   int found = 0;
   for (int y = 900001; y < 1000000 && found < 3; y += 997)
     for (int x = 800000; x < 1000000 && found < 3; x++) {
-      if (directions.off_whole(x, y) > 1e-4 || steps.off_whole(x, y) > 1e-3) continue;
+      if (kDirections.off_whole(x, y) > 1e-4 || kSteps.off_whole(x, y) > 1e-3) continue;
       found++;
       EXPECT_LT(difference_at(x, y).mean, 1e-4) << x << " " << y;
       EXPECT_GT(difference_at(x + 1, y).mean, 1e-3) << "or else there is no noise";

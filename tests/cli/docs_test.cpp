@@ -1,8 +1,9 @@
-// What README.md and docs/ say is so: their commands run, and their links lead somewhere.
+// README.md and docs/ are right: their commands run, and their links lead somewhere.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <regex>
 #include <sstream>
 
+#include "cli/options.h"
 #include "tests/support/openexr.h"
 #include "tests/support/picture_file.h"
 #include "tests/support/source_frame.h"
@@ -37,7 +38,7 @@ std::vector<Names> commands_of(const std::string& page) {
   return commands;
 }
 
-/// What readers have whose files are called so.
+/// A folder with the files of the pages' commands.
 class Documents : public Sources {
  protected:
   Documents() {
@@ -101,7 +102,7 @@ class Documents : public Sources {
     write_bytes(folder / "depth.dds", dds(160, 120, 41, bytes_of(device)));
   }
 
-  /// What `compare` is shown with: a result, and a truth that has the same pixels.
+  /// Results for `compare`, and truths with the same pixels.
   void write_compared() const {
     const Finished made = run_here({"run", "frame.exr", "--radius", "0.5", "-o", "ao.exr"});
     ASSERT_EQ(made.code, 0) << made;
@@ -175,6 +176,12 @@ TEST(Pages, links_lead_somewhere) {
     }
   }
   EXPECT_GE(count, 100);
+}
+
+TEST(Pages, the_options_are_the_programs) {
+  const std::string page = read_bytes(kProject + "docs/options.md");
+  EXPECT_THAT(page, HasSubstr("<!-- options -->\n" + option_table_markdown() + "<!-- /options -->"))
+      << "scripts/docs-options.sh writes them";
 }
 
 TEST(Pages, the_first_one_is_short_and_leads_to_all_others) {

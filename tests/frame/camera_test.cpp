@@ -191,7 +191,7 @@ TEST_F(CameraFiles, a_lens_beside_a_matrix_that_shows_none_is_taken) {
     fields.update(lens);
     const Camera camera = read(fields);
     expect_near(camera, 64, 54, 24, 27);
-    EXPECT_EQ(camera.near, matrix == mirrored ? std::optional(0.5) : std::nullopt) << matrix << " tells no depth";
+    EXPECT_EQ(camera.near, matrix == mirrored ? std::optional(0.5) : std::nullopt) << matrix << " gives no depth";
   }
 }
 

@@ -74,7 +74,7 @@ TEST_F(Doubts, a_sky_may_be_blended_with_what_is_before_it_or_filtered_beyond_it
   set_range(DepthKind::normalized, 0, 100);
   write_depth(hundredths, 1, [](int i) { return i % 10 == 0 ? 1 + 1e-3f * float(i % 7 + 1) : NAN; });
   EXPECT_FALSE(settled().reading.depth_range.goes_beyond_far);
-  expect(Reply::noted, {"what lies beyond counts as that, the sky"});
+  expect(Reply::noted, {"all of these count as sky"});
 }
 
 TEST_F(Doubts, a_wall_that_faces_the_camera_far_behind_all_others_is_not_called_the_sky) {
@@ -322,7 +322,7 @@ TEST_F(Doubts, a_camera_that_the_pixels_refute_is_refused_or_noted_with_the_righ
            {"inverted", true, placed(camera_to_world(1)), Reply::refused, inverse},
            {"inverted, and the space is said", true, placed(camera_to_world(1), in_world), Reply::refused, inverse},
            {"of OpenCV", true, placed(of_opencv, in_world), Reply::refused, {"OpenCV"}},
-           {"with another axis up", true, placed(other_up, in_world), Reply::refused, {"another axis up"}},
+           {"with another axis up", true, placed(other_up, in_world), Reply::refused, {"different up axes"}},
        }) {
     SCOPED_TRACE(k.what);
     give(k.camera);

@@ -91,7 +91,7 @@ TEST_F(HeaderCameras, a_matrix_that_does_no_more_than_place_the_camera_is_no_pro
     header.insert("worldToCamera", matrix(scaled_by(view, camera_scale), true));
     header.insert("worldToNDC", matrix(ndc, row_vectors));
     settings.fov.reset();
-    expect_refused(Reply::usage, {"worldToNDC", "nothing about the lens", "--fov"});
+    expect_refused(Reply::usage, {"worldToNDC", "and no lens", "--fov"});
     settings.fov = kFov;
     settings.normal_space = NormalSpace::world;
     expect_same("generic");

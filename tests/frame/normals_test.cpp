@@ -228,7 +228,7 @@ TEST_F(NormalFiles, show_square_pixels_beside_a_stale_pixel_aspect) {
                            [&](const test::Hit& hit) { return rendering.shot.view_from_world(hit.normal); });
   file.pixel_aspect = 2;
   file.write(settings.input);
-  EXPECT_THAT(texts_of(noted()), Contains(HasSubstr("its normals show square pixels")));
+  EXPECT_THAT(texts_of(noted()), Contains(HasSubstr("but with square pixels")));
   EXPECT_THAT(codes_of(noted()), Not(Contains(NoteCode::field_of_view)));
 }
 
@@ -361,7 +361,7 @@ TEST_F(NormalFiles, are_named_where_they_are_files_of_their_own) {
   EXPECT_EQ(noted()[0].file, settings.normal);
   EXPECT_THAT(line_of(noted()[0], settings.depth), StartsWith(settings.normal + ": normal encoding"));
   settings.strict = true;
-  expect(Reply::refused, {settings.normal + ": --strict, and nothing says the normal space"});
+  expect(Reply::refused, {settings.normal + ": --strict, and the normal space is a guess"});
 }
 
 }  // namespace

@@ -320,7 +320,7 @@ TEST(PositionFaults, that_axes_were_stretched_is_told) {
   const auto boxed = changed(seen_by(level), [](Vector3& p) {
     p = {(p[0] + 3.2) / 12.4, (p[1] + 5.5) / 7, (p[2] + 5.1) / 8.2};
   });
-  EXPECT_THAT(stretched_by(boxed), HasSubstr("a bounding box is normalized"));
+  EXPECT_THAT(stretched_by(boxed), HasSubstr("a normalized bounding box"));
   const auto flat = seen_by(made_camera(), 4);
   EXPECT_EQ(stretched_by(flat) + why_bent(flat, kPicture), "") << "one wall is seen alike by many cameras";
   const auto wide = changed(seen_by(level), [](Vector3& p) { p[0] *= 2; });
@@ -404,7 +404,7 @@ TEST_F(PositionPass, refutes_a_lens_by_pixels) {
     EXPECT_EQ(finished.code, 0) << finished;
     return finished.err;
   };
-  const auto refutes = HasSubstr("px from the pixels that hold them");
+  const auto refutes = HasSubstr("px from their pixels");
   EXPECT_THAT(warned({"--fov", fmt::format("{}", degrees)}), Not(refutes));
   EXPECT_THAT(warned({"--fov", fmt::format("{}", degrees + 0.2)}), Not(refutes)) << "it is rounded";
   EXPECT_THAT(warned({"--fov", "90"}),

@@ -267,7 +267,7 @@ TEST_F(Compare, a_mask_from_a_file_from_alpha_and_from_depth) {
     EXPECT_DOUBLE_EQ(j["ssim"], 1);
   }
   expect_error(3, {a, b, "--mask", exr("two.exr", {{"u", ramp}, {"v", ramp}})},
-               {"which channel is the mask", "u, v", "--mask-channel"});
+               {"its mask channel is not clear", "u, v", "--mask-channel"});
 }
 
 TEST_F(Compare, errors_at_depth_edges_and_away_from_them) {

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"
+#include "tests/support/picture_file.h"
 
 namespace alcove::hidden_run_test {
 namespace {
@@ -105,8 +106,16 @@ TEST_F(HiddenRun, counts_what_is_kept_and_what_is_dropped) {
 }
 
 TEST_F(HiddenRun, draws_how_many_there_are) {
-  done(behind("plate wall", "--set debug=hidden"));
-  EXPECT_TRUE(fs::exists(folder / "ao.hidden.png"));
+  const auto greens = [&](const std::string& names) {  // of the plate and of the wall: more is more surfaces
+    done(behind(names, "--set debug=hidden"));
+    const Image shown = whole(*open_picture(folder / "ao.hidden.png", "INPUT"));
+    return std::pair(shown.plane(1)[20 * 64 + 30], shown.plane(1)[4 * 64 + 3]);
+  };
+  const auto [one, same] = greens("wall");
+  EXPECT_EQ(one, same) << "one surface behind both";
+  const auto [two, still_one] = greens("plate wall");
+  EXPECT_EQ(still_one, one);
+  EXPECT_GT(two, one);
 }
 
 TEST_F(HiddenRun, resume_sees_a_layer_that_is_changed_or_added) {
@@ -193,7 +202,7 @@ TEST_F(HiddenRun, layers_without_use_are_noted) {
   half.planes["Z"] = std::vector<float>(kWallWindow.pixels(), 9);
   half.halves = {"Z"};
   half.write(folder / "half.exr");
-  const std::string nothing_new = "wall.exr: Z shows nothing new: the planes given before it";
+  const std::string nothing_new = "wall.exr: Z shows nothing new: earlier planes";
   const std::tuple<const char*, const char*, Options> rows[] = {
       {"copy", "", {"[nothing-hidden]", folder / "copy.exr", "--set behind-channel", "or give another file"}},
       {"empty", "", {"[empty-layer]"}},

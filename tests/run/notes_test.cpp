@@ -108,7 +108,7 @@ TEST_F(Notes, that_are_warnings_stand_in_the_header) {
 TEST_F(Notes, tell_of_frames_whose_making_harms_ao) {
   for (const auto& [write, code, words] :
        {std::tuple(&write_with_averaged_edges, "antialiased-depth", "render it without filtering"),
-        {&write_with_short_normals, "shortened-normals", "were averaged over the pixel"},
+        {&write_with_short_normals, "shortened-normals", "were averaged over pixels"},
         {&write_with_lossy_normals, "lossy-compression", "write data with zip"}}) {
     write(frame);
     const Finished finished = done();

@@ -95,12 +95,14 @@ TEST_F(InputNames, of_another_frame_are_a_warning) {
                                "--camera", camera, "--radius", "1"},
                               more));
   };
-  const std::string said = "--beauty " + input(6) + ": by the digits 0006 of its name it is of frame 6, and the frame ";
+  const std::string said =
+      "--beauty " + input(6) + ": by the digits 0006 of its name it belongs to frame 6, and the frame ";
   EXPECT_THAT(run_with(input(5), input(6)).err, AllOf(HasSubstr(said + "is 5"), HasSubstr("[other-frame]")));
   EXPECT_THAT(run_with(in + "/f.%04d.exr", input(6), {"--frames", "5"}).err, HasSubstr("[other-frame]"));
   EXPECT_THAT(run_with(input(6), input(6)).err, Not(HasSubstr("[other-frame]")));
-  EXPECT_THAT(run_with(input(6), input(5), {"--frames", "5"}).err,
-              HasSubstr("INPUT " + input(6) + ": by the digits 0006 of its name it is of frame 6, and the frame is 5"));
+  EXPECT_THAT(
+      run_with(input(6), input(5), {"--frames", "5"}).err,
+      HasSubstr("INPUT " + input(6) + ": by the digits 0006 of its name it belongs to frame 6, and the frame is 5"));
   test::expect_refused(run_with(input(5), input(6), {"--strict"}), 3, {said, "--strict"});
 }
 

@@ -162,7 +162,7 @@ TEST_F(Refusals, settings_that_contradict_each_other_name_what_mends_them) {
       {"--set stride=4 --denoise none", {"--set stride", "--denoise bilateral", "that is none"}},
       {"--set bias=1", {"--set bias=1", "below 1"}},
       {"--aov bent-normal --estimator crytek", {"--aov bent-normal", "--estimator crytek", "gtao"}},
-      {"--aov ao,cavity --set ignore=hero", {"--aov cavity", "--set ignore", "a run without"}},
+      {"--aov ao,cavity --set ignore=hero", {"--aov cavity", "--set ignore", "a run of its own"}},
       {"--radius 1", {"--radius 1 is there twice"}},
       {"--radius 2,3,4,5,6,7,8,9", {"--radius", "at most 8"}},
       {"--set fade-start=1", {"--set fade-start has no effect", "--set fade-end"}},

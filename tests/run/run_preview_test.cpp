@@ -241,13 +241,12 @@ TEST_F(Missing, is_all_listed_at_once_with_the_command_that_would_do) {
 }
 
 TEST_F(Missing, of_a_camera_for_normals_in_world_space_is_said_and_the_proposal_does_without) {
-  EXPECT_THAT(
-      run_program({"run", frame}).err,
-      AllOf(HasSubstr("a camera: --camera FILE.json with world_to_camera, since the normals are in world space"),
-            HasSubstr("each with --normal none"), HasSubstr(" --camera CAMERA.json")));
+  EXPECT_THAT(run_program({"run", frame}).err,
+              AllOf(HasSubstr("a camera: --camera FILE.json with world_to_camera, for normals in world space"),
+                    HasSubstr("each with --normal none"), HasSubstr(" --camera CAMERA.json")));
   const Finished lens = run_program({"run", frame, "--fov", "60"});
   EXPECT_EQ(lens.code, 2);
-  EXPECT_THAT(lens.err, AllOf(HasSubstr("\n  world_to_camera, since "), Not(HasSubstr("a frame to look at"))));
+  EXPECT_THAT(lens.err, AllOf(HasSubstr("\n  world_to_camera, for normals "), Not(HasSubstr("a frame to look at"))));
   const std::string program = "alcove ", proposed = lines_of(lens.err).back();
   ASSERT_THAT(proposed, StartsWith(program));
   const Options arguments = typed(proposed.substr(program.size()));

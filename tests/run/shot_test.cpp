@@ -86,7 +86,7 @@ TEST_F(Shots, missing_frames_are_an_error_or_left_out) {
   const Finished skipped = done(typed("--around 2 --set missing=skip --aov depth,hidden"));
   EXPECT_EQ(lines_of(skipped.err).front(),
             "alcove: warning: " + in +
-                "/f.%04d.exr: a frame of the shot is missing: 4; those around do without, and their headers say so "
+                "/f.%04d.exr: a frame of the shot is missing: 4; their neighbours do without, as their headers say "
                 "(--set missing=skip) [sequence-hole]");
   EXPECT_EQ(header(3), "frames 1-2, 5; missing 4");
   EXPECT_EQ(header(1), "frames 2-3");

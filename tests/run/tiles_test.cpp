@@ -315,7 +315,7 @@ TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough
               HasSubstr(fmt::format("{}M computes a frame at once, {}M is the least", at_once, least)));
   for (const int memory : {at_once - 1, (at_once + least) / 2})
     EXPECT_THAT(planned({"--memory", fmt::format("{}M", memory)}).out,
-                HasSubstr(fmt::format("in tiles: {} of them", frame_within(memory).parts)));
+                HasSubstr(fmt::format("in {} tiles per frame", frame_within(memory).parts)));
   const Finished refused = planned({"--memory", fmt::format("{}M", least - 1)});
   test::expect_refused(refused, 2, {shot});
   EXPECT_EQ(memory_named_in(refused.err), least) << refused;

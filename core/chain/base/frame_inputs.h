@@ -102,7 +102,7 @@ struct FrameRecipe {
   Margin margin{};                      // around the frame, filled from others: see margin_of()
   MatteReading matte;                   // how its planes are read
   MatteReading occluders;               // the same of RawPlane::occluders
-  std::vector<AmbientReading> ambient;  // how those of RawPlane::indirect are read
+  std::vector<AmbientReading> ambient;  // the reading of RawPlane::indirect
   double albedo_value = 0;              // for multi-bounce without planes of it
   Matrix3 aov_from_view{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rotation to the space of the directions that are written
   std::vector<Light> lights;                                 // in view space

@@ -61,8 +61,8 @@ struct Estimate {
   uint plane = 0;                  // of `ao`: the radius that an estimator writes
   gpu::Buffer* moments = nullptr;  // of the largest radius: see Visibility
   uint order = 0;                  // of the moments
-  // The first of two planes of `moments` for each radius, or of those of the radius that an estimator writes: see
-  // Visibility; none: not asked for, or left to estimate_curvature().
+  // The first of two planes of `moments` for each radius, or for the radius that an estimator writes: see Visibility;
+  // none: not asked for, or left to estimate_curvature().
   std::optional<uint> curvature{};
   TileList listed{};                  // of the largest radius
   const gpu::Buffer* told = nullptr;  // the pixels' thickness, from backs(); null: by the settings
@@ -106,7 +106,7 @@ Reach reach_of(const EstimatorSettings& settings, double radius);
 /// Whether surfaces go on behind nearer ones. Endless occluders block everything behind them anyway.
 bool completes_behind(const Reach& reach);
 
-/// What blocks, as the kernels of the search by samples take it: bits of kThickness*, kCompletes* and kTellsBacks.
+/// The blockers, for the kernels of the search by samples: bits of kThickness*, kCompletes* and kTellsBacks.
 uint solid_of(const Reach& reach, bool tells_backs);
 
 /// The samples' spread over the hemisphere, and over neighbouring pixels.

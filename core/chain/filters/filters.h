@@ -10,7 +10,7 @@
 
 namespace alcove {
 
-/// Takes the mean over the radii, of which `of_radii.ao` has a plane each, and keeps these where `keeps_scales`.
+/// Takes the mean over the radii, each a plane of `of_radii.ao`, and keeps these planes if `keeps_scales`.
 Visibility combine(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& of_radii, bool keeps_scales);
 
 /// The reach of the bilateral denoiser to each side, in pixels of the estimate. The default is 8 if pixels share

@@ -50,7 +50,7 @@ struct GBuffer {
   gpu::Buffer* missing = nullptr;  // the GroupCount of reconstruct
 };
 
-/// The depth of the first surfaces that may block, and the planes of those behind them; null: there are none.
+/// The depth of the first surfaces that may block, and the planes of the surfaces behind them; null: there are none.
 const gpu::Buffer& occluder_depth_of(const GBuffer& gbuffer);
 const gpu::Buffer* occluder_hidden_of(const GBuffer& gbuffer);
 
@@ -70,7 +70,7 @@ GBuffer downsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const BlockGrid& 
 /// frame, which other views usually cover. Thus it does not depend on the cut into parts.
 Margin margin_of(const Window& part, const Window& frame);
 
-/// The frame with its margin; the same one without a margin. Its planes stay those of the frame.
+/// The frame with its margin, or the same frame if it has none. Its planes do not change.
 FrameInputs with_margin(const FrameInputs& frame);
 
 /// The G-buffer with an empty margin, in front of the surfaces that others show there.

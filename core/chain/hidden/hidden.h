@@ -26,7 +26,7 @@ GBuffer layers(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& f
 /// Finds the ends of surfaces along rows and columns: see ends.comp.
 gpu::Buffer& ends(gpu::Recorder& gpu, const GBuffer& layered);
 
-/// Finds the surfaces among those of unknown kind, the bits of `open`, that close a solid, and marks them as in
+/// Of the surfaces of unknown kind (bits of `open`), finds the ones that close a solid, and marks them as in
 /// GBuffer::hidden.
 void pair(gpu::Recorder& gpu, const GBuffer& layered, const gpu::Buffer& open, const gpu::Buffer& ends);
 
@@ -41,9 +41,9 @@ void surfels(gpu::Recorder& gpu, const OtherView& view, std::span<const OtherVie
 /// Adds to `flags`, one uint per pixel of the view, the findings of a witness.
 void still(gpu::Recorder& gpu, const OtherView& view, const OtherView& witness, const gpu::Buffer& flags);
 
-/// Gives the G-buffer the surfaces that others show behind the first: planes of keys, see keys.glsl, nearer first, each
-/// behind the one before by more than the separation. The order of the others changes no bit. The margin is filled with
-/// the nearest of those surfaces. The same G-buffer without others, or if none is to be kept and there is no margin.
+/// Adds the hidden surfaces of other views to the G-buffer: planes of keys (keys.glsl), nearer first, each behind the
+/// one before by more than the separation. The order of the views changes no bit. The nearest of these surfaces fill
+/// the margin. Returns the same G-buffer without other views, or if no surface is to be kept and there is no margin.
 GBuffer warp(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& frame, const Layering& layering);
 
 }  // namespace alcove

@@ -149,7 +149,7 @@ struct Wanted {
   bool completed = false;   // the visibility that completed surfaces block
   bool only_own = false;    // the estimate alone, for other frames
   bool multi_bounce = false;
-  std::vector<Light> lights;  // suns that stand in for those of the AOV shadow where a frame is rehearsed; soft as they
+  std::vector<Light> lights;  // suns in place of the AOV shadow's lights when a frame is rehearsed; soft as they
   PixelFilter filter;
   CompositeLook look;
 };
@@ -159,7 +159,7 @@ bool in_world(const Camera& camera, const OutputSettings& settings);
 
 /// Whether any output is AO or made from it.
 bool needs_ao(const OutputSettings& output);
-/// Whether any output is made with the radius: AO, and shadows, of which it says how thick surfaces may be.
+/// Whether any output depends on the radius: AO, and shadows, since it limits the thickness of surfaces.
 bool needs_radius(const OutputSettings& output);
 
 /// The order of the moments that any output is made from: 1 for bent normals, 2 for transfer; 0: none, or the estimator

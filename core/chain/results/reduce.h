@@ -1,4 +1,4 @@
-// From the pixels of a G-buffer to those of a smaller picture, as renderers filter their samples.
+// Filters the pixels of a G-buffer to a smaller picture, as renderers filter their samples.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace alcove {
 
-/// The weights along an axis of the pixels that count for a block of `factor` pixels, those to its left first, as many
-/// as to its right. They need not add up to 1.
+/// The weights, along an axis, of a block's `factor` pixels and of as many pixels to its left as to its right, from the
+/// left on. They need not add up to 1.
 struct FilterWeights {
   int first = 0;  // px from the block's first pixel, at most 0
   std::vector<float> weights;

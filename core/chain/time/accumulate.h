@@ -13,12 +13,12 @@ struct Accumulation {
   gpu::Buffer* count = nullptr;  // a plane: the number of averaged estimates, or of parts of them; and the sums
 };
 
-/// Finds pixels that frames of the group may see past, and pixels of theirs that the frame may see past: see
-/// suspects.comp. The words are those of one group at a time.
+/// Finds pixels of the frame that frames of the group may see past, and the other way round: see suspects.comp. The
+/// words serve one group at a time.
 const gpu::Buffer& suspects(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& group);
 
-/// Marks the cells of space near movement between the frame and those of the group: see moved.comp.
-/// radius: scene units; place: of the group's first frame among all others.
+/// Marks the cells of space near movement between the frame and the group's frames: see moved.comp. radius: scene
+/// units; place: of the group's first frame among all others.
 void moved(gpu::Recorder& gpu, const EstimateSet& estimates, const SeenGroup& group, const gpu::Buffer& suspects,
            float radius, uint place, const gpu::Buffer& near);
 

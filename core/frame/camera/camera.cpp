@@ -47,7 +47,7 @@ std::vector<double> numbers_in(const std::string& path, const std::string& line,
 
 /// Fails: a camera file does not list a frame.
 [[noreturn]] void refuse_absent(const std::string& path, int frame, const std::vector<int>& listed) {
-  fail(ErrorKind::input, "{}: it has no frame {}, {}: the camera must count as the frames do (--camera)", path, frame,
+  fail(ErrorKind::input, "{}: it has no frame {}, {}: number the camera as the frames (--camera)", path, frame,
        listed.empty() ? "nor any other" : "but " + short_frames_text(listed));
 }
 
@@ -332,14 +332,13 @@ std::string why_no_depth(const Rows4& m) {
     return is_about(m[3][0], 0) && is_about(m[3][1], 0) && is_about(m[3][2], z) && is_about(m[3][3], w);
   };
   if (!ends_in(-1, 0) && !ends_in(1, 0) && !ends_in(0, 1))
-    return "has none of the last rows 0 0 -1 0, 0 0 1 0 and 0 0 0 1 of those for column vectors: transpose one for row "
-           "vectors";
+    return "must end in the row 0 0 -1 0, 0 0 1 0 or 0 0 0 1, for column vectors: transpose a matrix for row vectors";
   const std::size_t zero = is_affine(m) ? 2 : 3;
   const bool has_zeros =
       is_about(m[2][0], 0) && is_about(m[2][1], 0) && is_about(m[0][zero], 0) && is_about(m[1][zero], 0);
   return has_zeros ? ""
-                   : "has numbers where a matrix for column vectors has zeros: transpose one for row vectors; one with "
-                     "an oblique near plane tells no depth";
+                   : "has numbers where a matrix for column vectors has zeros: transpose a matrix for row vectors; an "
+                     "oblique near plane gives no depth";
 }
 
 /// The same of one that also shows the picture as it is.

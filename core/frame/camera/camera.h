@@ -47,7 +47,7 @@ inline constexpr const char* kCameraOptions =
     "--camera FILE.json, or --fov DEGREES (--vertical-fov), or --focal-px PIXELS, or --focal MM with --aperture MM, or "
     "--ortho-width UNITS";
 inline constexpr const char* kWorldCameraOptions =
-    "--camera FILE.json with world_to_camera, since the normals are in world space; or --fov DEGREES (--vertical-fov), "
+    "--camera FILE.json with world_to_camera, for normals in world space; or --fov DEGREES (--vertical-fov), "
     "or --focal-px PIXELS, or --focal MM with --aperture MM, or --ortho-width UNITS, each with --normal none";
 
 /// ErrorKind::usage: nothing gives a camera to the frame of this file. `why` says why the header or the positions do
@@ -74,7 +74,7 @@ Camera camera_of(const std::string& text, const std::string& name, const Window&
 bool lists_frames(const std::string& path);
 
 /// Fails with ErrorKind::input if a camera file lists `frames` and none of them has this number. Does not check the
-/// entry: its fields may be those of views.
+/// entry, since its fields may be per view.
 void require_listed(const std::string& path, int frame);
 
 /// Whether the settings give a camera, or at least try to.

@@ -6,7 +6,7 @@
 
 namespace alcove {
 
-/// Says what a camera file of another program is, and how its camera is given to Alcove. "" for any other text.
+/// Names the program of a foreign camera file, and the way to give its camera to Alcove. "" for any other text.
 std::string why_foreign_camera(const std::string& text);
 
 }  // namespace alcove

@@ -416,12 +416,11 @@ std::string why_no_header_camera(const AttributeTexts& attributes, const std::st
   if (const auto [lenses, of_depth] = unreal_lenses(a, depth_layer); !lenses.empty()) {
     std::vector<std::string> named;
     for (const auto& lens : lenses) named.push_back(fmt::format("{}/fov of {:.5g} degrees", lens.path, lens.fov));
-    return fmt::format("its header has the lenses {}, and nothing tells which is that of the depth {}", list_of(named),
+    return fmt::format("its header has the lenses {}, and does not say which belongs to the depth {}", list_of(named),
                        depth_layer);
   }
   if (placement(a.numbers("worldToCamera", 16), To::camera) && placement(a.numbers("worldToNDC", 16), To::camera))
-    return "the worldToNDC of its header is no projection: like worldToCamera it tells where the camera stands, and "
-           "nothing about the lens";
+    return "the worldToNDC of its header is no projection: like worldToCamera it gives the camera's place, and no lens";
   return "";
 }
 
@@ -445,11 +444,8 @@ void place_by_header(Camera& camera, const AttributeTexts& attributes, const Win
 }
 
 void refuse_panorama(const std::string& path, const std::string& by) {
-  fail(
-      ErrorKind::input,
-      "{}: a panorama ({}): its pixels have no plane of projection, which depth and AO here refer to; render it with a "
-      "perspective camera",
-      path, by);
+  fail(ErrorKind::input, "{}: a panorama ({}) has no plane of projection: render it with a perspective camera", path,
+       by);
 }
 
 void require_no_panorama(const AttributeTexts& attributes, const std::string& path) {

@@ -74,14 +74,14 @@ std::string box_of(std::span<const SeenPoint> points) {
   const bool is_unit = std::ranges::all_of(ranges, [](const Range& range) {
     return range.least >= -kRounded && range.most <= 1 + kRounded && range.size() >= kFilled;
   });
-  if (is_unit) return ", all three of which go from 0 to 1, as where a bounding box is normalized";
+  if (is_unit) return ", all three from 0 to 1, as in a normalized bounding box";
   const bool is_alike = std::ranges::all_of(ranges, [&](const Range& range) {
     return std::max(std::abs(range.least - ranges[0].least), std::abs(range.most - ranges[0].most)) <
            kAlike * ranges[0].size();
   });
   if (!is_alike) return "";
-  return fmt::format(", all three of which go from {:.2g} to {:.2g}, as where a bounding box is normalized",
-                     ranges[0].least, ranges[0].most);
+  return fmt::format(", all three from {:.2g} to {:.2g}, as in a normalized bounding box", ranges[0].least,
+                     ranges[0].most);
 }
 
 // Points along a projection.
@@ -167,11 +167,11 @@ bool are_in_plane(std::span<const SeenPoint> points) {
 std::string why_cut(std::span<const SeenPoint> points, const Window& display) {
   if (points.size() < kLeastPoints) return "";
   if (is_cut_at(points, 0, display))
-    return "they were cut at 0: none is negative, and many components are exactly 0, as a format without sign leaves "
-           "them; write them as float, or map them beforehand";
+    return "they were cut at 0: no component is negative, and many are exactly 0, as in a format without sign; write "
+           "them as float, or map them beforehand";
   if (is_cut_at(points, 1, display))
-    return "they were cut at 1: no component is above, and many are exactly 1, as an integer format leaves them; write "
-           "them as float";
+    return "they were cut at 1: no component is above 1, and many are exactly 1, as in an integer format; write them "
+           "as float";
   return "";
 }
 
@@ -189,8 +189,8 @@ std::string why_stretched(std::span<const SeenPoint> points, const Window& displ
 
 std::string why_bent(std::span<const SeenPoint> points, const Window& display) {
   if (points.size() < kLeastPoints || are_in_plane(points) || share_on(kRound, points, display) < kNearlyAll) return "";
-  return "each lies in the right direction from the picture's middle and at another distance: the lens is distorted, "
-         "or a fish eye; render without its distortion, or give the camera without it (a fish eye cannot be read)";
+  return "each lies in the right direction from the picture's middle, but at another distance: the lens is distorted, "
+         "or a fish eye; render without distortion, or give a camera without it (a fish eye cannot be read)";
 }
 
 }  // namespace alcove

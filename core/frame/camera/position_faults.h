@@ -10,17 +10,18 @@
 
 namespace alcove {
 
-/// Says that components of the points were cut off at 0 or another value, as formats without sign do; "" if not.
+/// Explains that components of the points were cut off at 0 or another value, as in formats without sign; "" if they
+/// were not.
 std::string why_cut(std::span<const SeenPoint> points, const Window& display);
 
-/// Says that each axis was stretched by itself, as where a bounding box is mapped to 0 .. 1; "" if not. `camera`: the
-/// one that sees the points all the same, if any does; its pixels are as wide as its numbers say, and `pixel_aspect` as
-/// the file says.
+/// Explains that each axis was stretched by itself, as when a bounding box is mapped to 0 .. 1; "" if it was not.
+/// `camera`: a camera that fits the points all the same, or null. Its pixels have the aspect of its own numbers, and
+/// `pixel_aspect` is the file's.
 std::string why_stretched(std::span<const SeenPoint> points, const Window& display, const Resection* camera,
                           double pixel_aspect);
 
-/// Says that the lens bends lines: each point lies in the right direction from the picture's middle, and at another
-/// distance. "" if not.
+/// Explains that the lens bends lines: each point lies in the right direction from the picture's middle, but at another
+/// distance. "" if it does not.
 std::string why_bent(std::span<const SeenPoint> points, const Window& display);
 
 }  // namespace alcove

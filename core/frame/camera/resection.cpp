@@ -415,13 +415,12 @@ std::variant<Resection, NoResection> resection_of(std::span<const SeenPoint> poi
   const auto best = camera ? std::optional(result_of(*camera, from, display)) : std::nullopt;
   const double median = best ? best->median : std::numeric_limits<double>::infinity();
   if (!best || best->within < kNearlyAll)
-    return NoResection{
-        fmt::format("{:.0f} % of them lie within {} px of their pixels by the camera that fits best, {:.2g} px in the "
-                    "median: no camera fits them, so they are filtered, or no positions, or those of a panorama",
-                    best ? 100 * best->within : 0, kSeenWithin, median),
-        median};
+    return NoResection{fmt::format("by the best camera {:.0f} % of them lie within {} px of their pixels, {:.2g} px in "
+                                   "the median: no camera fits, so they are filtered, no positions, or a panorama's",
+                                   best ? 100 * best->within : 0, kSeenWithin, median),
+                       median};
   if (!(best->focal_error <= kLargestFocalError))
-    return NoResection{"they lie in one plane, or nearly so, which many cameras see alike"};
+    return NoResection{"they lie in one plane, or nearly so, and many cameras fit"};
   return *best;
 }
 

@@ -124,8 +124,8 @@ void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings
     source.reading.behind.push_back({.kind = kind, .is_half = source.is_half(ref)});
     if (source.reading.behind.back().is_half && !source.reading.depth_is_half)
       source.suspicious.push_back(
-          {NoteCode::half_depth, fmt::format("{} of {} is stored as half float, and the depth is not: surfaces behind "
-                                             "are off by up to a 2048th of their depth; write it as float",
+          {NoteCode::half_depth, fmt::format("{} of {} is stored as half float, unlike the depth: hidden surfaces are "
+                                             "off by up to a 2048th of their depth; write it as float",
                                              ref.channel, path)});
     number++;
   }
@@ -253,8 +253,8 @@ Notes BehindSample::notes(const FrameSource& source) const {
       add_new(notes, notes_of(source, plane));
   if (source.channels.deep && !planes_.empty() && new_surfaces == 0)
     notes.push_back({NoteCode::nothing_hidden,
-                     fmt::format("{} holds no surface behind the first one: its elements were rendered in one go; give "
-                                 "--deep all elements that were rendered apart, or give peels to --behind",
+                     fmt::format("{} holds no surface behind the first one: its elements were rendered in one go; "
+                                 "render them apart and give them all to --deep, or give peels to --behind",
                                  deep_file(source).path())});
   return notes;
 }
@@ -274,8 +274,8 @@ void refuse_negative(const BehindCounts& plane, const std::string& name, std::si
 Notes thickness_notes(const BehindCounts& plane, const std::string& name) {
   if (double(plane.as_deep) < kAsDeep * double(plane.surfaces)) return {};
   return {{NoteCode::said_otherwise,
-           fmt::format("{} is no less than the depth on {:.0f} % of the surfaces, and as a thickness it is added to "
-                       "that: if it is the depth of back faces, give --behind-kind backs",
+           fmt::format("{} is as large as the depth, or larger, on {:.0f} % of the surfaces, too much for a thickness: "
+                       "if it is the depth of back faces, give --behind-kind backs",
                        name, percent(plane.as_deep, plane.surfaces))}};
 }
 
@@ -284,8 +284,9 @@ void refuse_other_depth(const BehindCounts& plane, const std::string& name, bool
   if (double(plane.otherwise) > kLeastOtherwise * double(plane.oblique) &&
       plane.otherwise > kFarMoreOtherwise * plane.as_read)
     fail(ErrorKind::input,
-         "{} is the frame's own depth on {:.0f} % of the pixels if it is {}, and is read as {} like the depth of {}: "
-         "write both alike, or name another channel with --set behind-channel; --depth-kind says how both are read",
+         "{} equals the frame's own depth on {:.0f} % of the pixels if read as {}, but is read as {}, as the depth of "
+         "{} is: write both alike, or name another channel with --set behind-channel; --depth-kind says how both are "
+         "read",
          name, percent(plane.otherwise, plane.oblique), along_ray ? "planar" : "along the ray",
          along_ray ? "along the ray" : "planar", depth);
   if (double(plane.before) < kRefused * double(plane.surfaces)) return;
@@ -305,15 +306,14 @@ Notes surface_notes(const BehindCounts& plane, const std::string& name) {
                                              name, percent(plane.before, plane.surfaces))});
   if (plane.same == plane.surfaces)
     notes.push_back({NoteCode::nothing_hidden,
-                     fmt::format("{} is the first surface wherever it has one, and shows nothing new: name the channel "
-                                 "of the surfaces behind with --set behind-channel, or give another file with --behind",
+                     fmt::format("{} shows nothing but the first surface: name the channel of the surfaces behind it "
+                                 "with --set behind-channel, or give another file with --behind",
                                  name)});
   else if (plane.known == plane.surfaces)
-    notes.push_back(
-        {NoteCode::nothing_hidden,
-         fmt::format("{} shows nothing new: the planes given before it have all of its surfaces; name another "
-                     "channel with --set behind-channel, give another file, or leave it out (--behind)",
-                     name)});
+    notes.push_back({NoteCode::nothing_hidden,
+                     fmt::format("{} shows nothing new: earlier planes have all its surfaces; name another channel "
+                                 "with --set behind-channel, give another file, or leave it out (--behind)",
+                                 name)});
   return notes;
 }
 
@@ -401,8 +401,7 @@ Window window_of_samples(const FrameSource& source) {
   const bool fits = right - left <= kMost && bottom - top <= kMost;
   const std::uint64_t most = std::max<std::uint64_t>(deep_file(source).display().pixels(), kMostTimes * pixels);
   if (!fits || std::uint64_t(right - left) * std::uint64_t(bottom - top) > most)
-    fail(ErrorKind::input, "{}: its deep parts and those beside them are too far apart for one picture (--deep)",
-         deep_file(source).path());
+    fail(ErrorKind::input, "{}: its parts are too far apart for one picture (--deep)", deep_file(source).path());
   return {int(left), int(top), int(right - left), int(bottom - top)};
 }
 
@@ -596,9 +595,8 @@ void settle_deep(FrameSource& source, const RawPart& raw) {
   if (double(best->same) < kLeastSame * double(first.compared))
     fail(ErrorKind::input,
          "{}: the first surfaces of its deep samples are the depth of {} on {:.2g} % of the pixels only, both as "
-         "planar depth and along the ray: give --deep the samples of the same frame and camera, of all its elements, "
-         "and flat depth "
-         "of others to --behind; --depth-kind and --depth-scale say how the depth is read",
+         "planar depth and along the ray: give --deep all elements of the same frame and camera, and give flat depth "
+         "to --behind; --depth-kind and --depth-scale say how the depth is read",
          path, source.depth_path(), percent(best->same, first.compared));
   const bool is_own = best->kind == source.reading.depth_kind && best->scale == source.reading.depth_scale;
   source.reading.deep_kind = is_own ? DepthKind::automatic : best->kind;
@@ -612,8 +610,8 @@ Notes deep_notes(const FrameSource& source) {
   const DeepCounts counts = file.deep_counts();
   if (counts.repaired == 0) return {};
   return {{NoteCode::repaired_samples,
-           fmt::format("{}: {:.2g} % of the deep samples have an opacity that is no number from 0 to 1, or no depth: "
-                       "they count as the nearest that is one, and as clear where there is none",
+           fmt::format("{}: {:.2g} % of the deep samples have an opacity outside 0 to 1, or no depth: their opacity "
+                       "becomes the nearest valid one, and without one they count as clear",
                        file.path(), 100.0 * double(counts.repaired) / double(counts.samples))}};
 }
 

@@ -35,7 +35,7 @@ DeepRules deep_rules(const FrameSource& source, const ExrFile& file, const std::
 void take_deep(FrameSource& source, const InputSettings& settings);
 
 /// Settles kind (planar or along the ray) and scale of samples beside a flat depth, and whether they list hidden
-/// surfaces. Fails with ErrorKind::input if their first surfaces are not those of the depth.
+/// surfaces. Fails with ErrorKind::input if their first surfaces differ from the depth.
 void settle_deep(FrameSource& source, const RawPart& raw);
 
 /// Reads the planes of samples as the frame's meaning says.
@@ -55,7 +55,7 @@ void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings
 /// are none.
 std::string hidden_sources_text(const FrameSource& source);
 
-/// How many pixels of a plane are what, beside the first surface.
+/// Counts of a plane's pixels, compared with the first surface.
 struct BehindCounts {
   std::size_t surfaces = 0;   // with a surface in the plane and in the frame
   std::size_t before = 0;     // surfaces before the first one

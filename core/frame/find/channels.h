@@ -128,9 +128,9 @@ class ChannelSearch {
   /// `own_file` says that the file holds nothing else. Fails if two layers hold the AOV.
   std::vector<ChannelRef> find(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file) const;
 
-  /// Finds the AOV as the rules name it; gives nothing if the user chose, or if none of the candidates is there. Of
-  /// several layers that fit one pattern, as of several cameras, it is the one that ends as `beside` does. Fails if
-  /// that leaves several.
+  /// Finds the AOV by the names of the rules; gives nothing if the user chose, or if the file has none of the
+  /// candidates. If several layers fit one pattern, such as one for each camera, the ending of `beside` chooses. Fails
+  /// if several remain.
   FoundByRules find_by_rules(std::size_t file, const AovNames& names, const std::string& chosen,
                              const std::vector<AovCandidate>& candidates, const std::string& beside = "") const;
 

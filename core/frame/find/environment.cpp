@@ -123,7 +123,7 @@ std::string environment_text(const std::string& path, const Environment& environ
     for (std::size_t c = 0; c < 3; c++)
       sums[c] += fmt::format("{}{:.6f}*transfer{}.{}", k > 0 ? " + " : "", color[c], k / 3, "XYZ"[k % 3]);
   }
-  text += fmt::format("  {:.0f} % of the light comes from elsewhere than they say{}\n", 100 * environment.missed,
+  text += fmt::format("  they miss {:.0f} % of the light{}\n", 100 * environment.missed,
                       environment.missed > kMostMissed ? ": a sun needs a light of its own" : "");
   text += "for Nuke, beside the Read of the AO file:\n\nExpression {\n";
   for (std::size_t c = 0; c < 3; c++) text += fmt::format(" expr{} \"max(0, {})\"\n", c, sums[c]);

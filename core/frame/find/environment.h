@@ -1,4 +1,4 @@
-// Distant surroundings as nine colours: what a surface with nine coefficients of its openness reflects of them.
+// Distant surroundings as nine colours, for surfaces with nine coefficients of openness.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

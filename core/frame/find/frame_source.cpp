@@ -227,17 +227,17 @@ void doubt_depth_of_three(FrameSource& source, const ChannelSearch& search, cons
   if (is_vector) {
     source.suspicious.push_back(
         {NoteCode::said_otherwise,
-         fmt::format("{} is taken as depth, and stands beside X and Y: where the three are positions, give the file to "
-                     "--position instead; --depth-channel {} says that it is depth",
+         fmt::format("{} is taken as depth, and stands beside X and Y: if the three are positions, give the file to "
+                     "--position instead; --depth-channel {} confirms the depth",
                      depth.channel, depth.channel),
          source.note_file(RawPlane::depth)});
     return;
   }
   if (!are_colours(planes)) return;
   const std::string text = fmt::format(
-      "R, G and B of {} differ, as in a picture of colours, normals or positions, and not as in one of depth: give "
-      "the file of the depth with --depth, or name its channel with --depth-channel; --position takes positions; "
-      "--depth-channel {} takes this one as depth",
+      "R, G and B of {} differ, as in colours, normals or positions, not in depth: give the file of the depth with "
+      "--depth, or name its channel with --depth-channel; --position takes positions; --depth-channel {} takes this "
+      "one as depth",
       layer.empty() ? "the file" : "layer " + layer.substr(0, layer.size() - 1), depth.channel);
   if (layer.empty()) fail(ErrorKind::input, "{}: {}", path, text);
   source.suspicious.push_back({NoteCode::said_otherwise, text, source.note_file(RawPlane::depth)});
@@ -253,7 +253,7 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
   for (const auto* aov : {&source.channels[RawPlane::beauty], &source.channels[RawPlane::indirect],
                           &source.channels[RawPlane::diffuse_color]})
     require_common_window(source, *aov, "beauty", "--beauty",
-                          "the composite is as large as the beauty, which stays as it is where there is no depth");
+                          "the composite is as large as the beauty, and unchanged where there is no depth");
   const auto window_of = [&](const ChannelRef& channel) { return source.part_of(channel).data; };
   const auto& beauty = source.channels[RawPlane::beauty];
   const auto other = std::ranges::find_if(
@@ -415,8 +415,7 @@ bool take_camera_of_positions(FrameSource& source, const ChannelSearch& search, 
   const bool looks_around = settings.around > 0 || settings.around_all;
   if (source.reading.camera.orthographic && looks_around && source.channels[RawPlane::depth].size() == 1)
     throw NoCamera(source.depth_path(),
-                   "its positions do not tell how far away an orthographic camera stands, and --around "
-                   "needs that");
+                   "--around needs the distance of an orthographic camera, which positions do not show");
   source.camera_from = kByPositions;
   note_pixel_aspect(source, kByPositions);
   return true;
@@ -623,10 +622,9 @@ bool expects_world_normals(const FrameSource& source, const InputSettings& setti
 }
 
 NoWorldToCamera::NoWorldToCamera(const std::string& file)
-    : Error(ErrorKind::input,
-            file +
-                ": its normals are in world space, and the camera has no world_to_camera: give a --camera file with "
-                "it, or --normal none, which reconstructs them from depth") {}
+    : Error(ErrorKind::input, file +
+                                  ": its normals are in world space, and the camera has no world_to_camera: give a "
+                                  "--camera file with it, or --normal none to reconstruct normals from depth") {}
 
 InputSettings with_some_camera(const InputSettings& settings) {
   InputSettings with = settings;

@@ -30,8 +30,8 @@ struct DeepFiles {
     std::size_t file;        // of FrameSource::files
     std::vector<int> parts;  // of that file
   };
-  std::vector<Element> elements;  // whose samples count together; channels name those of the first
-  Window data = {};               // over which samples are read
+  std::vector<Element> elements;  // their samples count together; channels name the first one's
+  Window data = {};               // the pixels of the samples
   bool depth_is_half = false;     // samples are the depth, and were rounded to half floats
 };
 
@@ -74,9 +74,9 @@ struct OpenQuestions {
 /// A frame that was found: its files, the channels of its planes, and how they are read. Nothing but headers is read to
 /// find it.
 struct FrameSource {
-  /// The file of the depth or the positions, after which the frame is called in messages.
+  /// The file of the depth or the positions; messages call the frame by it.
   const std::string& depth_path() const { return path_of(RawPlane::depth); }
-  /// The file of a plane for notes on it: "" where it is the one that the frame is called after, or there is none.
+  /// The file of a plane for notes on it: "" for the frame's own name, or without a file.
   std::string note_file(RawPlane plane) const {
     return channels[plane].empty() || path_of(plane) == main_file ? "" : path_of(plane);
   }
@@ -88,7 +88,7 @@ struct FrameSource {
   const ExrPart& part_of(const ChannelRef& ref) const { return file_of(ref).parts()[std::size_t(ref.part)]; }
   /// Whether its samples are half floats.
   bool is_half(const ChannelRef& ref) const;
-  /// The name of a channel without its last part, which a part's name stands for; "" where it has no layer.
+  /// The layer of a channel: its name without the last part, else the part's name; "" without a layer.
   std::string layer_of(const ChannelRef& ref) const;
 
   std::string main_file;  // see main_input()

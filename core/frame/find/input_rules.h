@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Keys: `detect`, patterns with * of header attributes ("arnold/*", "Software=Blender 3*") or of channels
-// ("channel:ViewLayer.*"), any of which tells the program; `detect-last`, patterns that other programs' files bear too,
-// so that theirs tell first; `depth-channel`, `normal-channels`, `position-channels`, layers, patterns of layers, or
-// channels with the likeliest first, each with its own kind or space behind a colon where it has one ("Nn:view"); and
-// `depth-kind`, `near`, `far`, `reversed-z`, `normal-space` and `normal-encoding`, which mean what the options of these
-// names mean; and `normal-averaged`, true where normals are always averaged over the pixel, so that it is no fault of
-// the file. The pixels decide the rest.
+// ("channel:ViewLayer.*"), any of them identifies the program; `detect-last`, patterns that also occur in other
+// programs' files, so that their patterns win; `depth-channel`, `normal-channels`, `position-channels`, layers,
+// patterns of layers, or channels with the likeliest first, each with its own kind or space behind a colon where it has
+// one ("Nn:view"); and `depth-kind`, `near`, `far`, `reversed-z`, `normal-space` and `normal-encoding`, as the options
+// of these names; and `normal-averaged`, true for programs that always average normals over the pixel. The pixels
+// decide the rest.
 #pragma once
 
 #include <optional>

@@ -242,7 +242,7 @@ std::vector<std::uint32_t> objects_of(const std::string& path, const Cryptomatte
   if (!objects.empty()) return objects;
   if (matte.manifest.empty() && !is_pattern(word.text)) return {cryptomatte_id(unescaped(word.text))};
   if (matte.manifest.empty())
-    fail(ErrorKind::input, "{}: {}: Cryptomatte {} has no manifest{}, so that only whole names are known; {}", path,
+    fail(ErrorKind::input, "{}: {}: Cryptomatte {} has no manifest{}, so only whole names are known; {}", path,
          typed(option, word.text), matte.name, matte.lacking.empty() ? "" : " (" + matte.lacking + ")", kEscapes);
   std::vector<std::string> names;
   for (const auto& [name, id] : matte.manifest) names.push_back(name);
@@ -289,10 +289,9 @@ void take(FrameSource& source, std::size_t file, const Cryptomatte& matte, const
   if (channels.size() <= kMostMattePlanes) return;
   channels.resize(kMostMattePlanes);
   add_new(source.notes,
-          {{NoteCode::unread_ranks,
-            fmt::format("Cryptomatte {} has {} ranks, of which the first {} are read: objects that cover little of a "
-                        "pixel are left out ({})",
-                        matte.name, matte.ranks.size(), kMostMattePlanes / 2, meant.option)}});
+          {{NoteCode::unread_ranks, fmt::format("Cryptomatte {} has {} ranks, and only the first {} are read: objects "
+                                                "that cover little of a pixel are left out ({})",
+                                                matte.name, matte.ranks.size(), kMostMattePlanes / 2, meant.option)}});
 }
 
 bool has_layer(const std::vector<Cryptomatte>& mattes, const std::string& layer) {

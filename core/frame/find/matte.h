@@ -1,4 +1,4 @@
-// Selections of surfaces: those that get AO (--matte), those that block (occluders, ignore); Cryptomattes.
+// Selections of surfaces: receivers of AO (--matte), blockers (occluders, ignore); Cryptomattes.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -23,7 +23,7 @@ struct Cryptomatte {
   struct Rank {
     std::string object, coverage;  // channels
   };
-  std::vector<Rank> ranks = {};  // the one that covers most first
+  std::vector<Rank> ranks = {};  // by coverage, the largest first
 };
 
 /// Gives all Cryptomattes of a view of a file that have channels, with their manifests. A manifest may be a file beside

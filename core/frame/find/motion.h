@@ -47,8 +47,8 @@ struct MotionReading {
 };
 
 /// Gives the reading by which the most surfaces stand still: vectors may have either sign, y up or down, and be in
-/// pixels, in parts of the picture, or in parts of its half. None where no reading is right for more than a few:
-/// then the vectors are of other frames or of another unit. `kind` may say to which frame they lead.
+/// pixels, in parts of the picture, or in parts of its half. None if no reading fits more than a few: then the vectors
+/// have another unit or belong to other frames. `kind` may fix the frame to which they point.
 std::optional<MotionReading> best_motion_reading(const MotionPlanes& planes, const MotionFrame& frame, MotionKind kind);
 
 /// Gives 1 for each pixel with a surface that moves by its vector, and for pixels up to `around` px beside it; else 0.

@@ -58,7 +58,7 @@ void read_from_other(ExrFile& file, const Window& from, int rows_together, const
 /// Says how to mend a file of another size than the depth.
 std::string way_out(const FrameSource& source, const Window& display) {
   if (display.width > source.reading.display.width)
-    return "compute from a depth of that size, if need be with --resolution half, or render both at the same size";
+    return "render both at the same size, and use --resolution half to save time";
   return "render both at the same size, or the depth at 2, 3 or 4 times that of the picture, with --set supersampling";
 }
 
@@ -117,13 +117,12 @@ int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const 
   for (const int times : {2, 3, 4})
     if (factor == 1 && is_times(source.reading.display, file.display(), times))
       fail(ErrorKind::input,
-           "{}: the beauty is of a picture of {}, and the depth, {}, is {} times as large: --set supersampling={} "
-           "filters all outputs down to the beauty's size; or render both at the same size",
+           "{}: the beauty's picture is {}, and the depth, {}, is {} times as large: --set supersampling={} filters "
+           "all outputs down to the beauty's size; or render both at the same size",
            file.path(), to_string(file.display()), to_string(source.reading.display), times, times);
   if (factor > 1 && !is_times(source.reading.display, file.display(), factor))
-    fail(ErrorKind::input,
-         "{}: the beauty is of a picture of {}, and --set supersampling={} of the depth, {}, makes {}", file.path(),
-         to_string(file.display()), factor, to_string(source.reading.display),
+    fail(ErrorKind::input, "{}: the beauty's picture is {}, and --set supersampling={} of the depth, {}, makes {}",
+         file.path(), to_string(file.display()), factor, to_string(source.reading.display),
          to_string(reduced(source.reading.display, source.reading.display, factor)));
   return factor;
 }

@@ -264,24 +264,24 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings, st
   std::string text;
   if (!seen && (std::get<NoResection>(found).median <= kNoCamera || !source.camera_from.empty())) return "";
   if (!why.empty()) {
-    text = fmt::format("the positions of {} tell no camera, since {} (--set position-channels); {} is taken", held, why,
+    text = fmt::format("the positions of {} show no camera, since {} (--set position-channels); {} is taken", held, why,
                        name_of_lens(source, settings));
   } else if (!seen) {
     text = fmt::format(
-        "no camera fits the positions of {}: by the best of all half of them lie {:.3g} px and more from the pixels "
-        "that hold them, so they are of a panorama, or no positions (--set position-channels); {} is taken",
+        "no camera fits the positions of {}: by the best one half of them lie {:.3g} px and more from their pixels, so "
+        "they are a panorama's, or no positions (--set position-channels); {} is taken",
         held, std::get<NoResection>(found).median, name_of_lens(source, settings));
   } else {
     const double px = beside(source.reading.camera, seen->camera, points);
     if (px <= limit) {
       const std::string elsewhere = why_elsewhere(source.reading.camera, seen->camera, points);
       if (elsewhere.empty()) return "";
-      text = fmt::format("by {} most positions of {} lie up to {:.3g} px from the pixels that hold them; {}",
+      text = fmt::format("by {} most positions of {} lie up to {:.3g} px from their pixels; {}",
                          name_of_lens(source, settings), held, by_camera, elsewhere);
       source.notes.push_back({NoteCode::positions_disagree, text});
       return text;
     }
-    text = fmt::format("by {} most positions of {} lie up to {:.3g} px from the pixels that hold them; they show {}{}",
+    text = fmt::format("by {} most positions of {} lie up to {:.3g} px from their pixels; they show {}{}",
                        name_of_lens(source, settings), held, px, text_of(seen->camera, source.reading.pixel_aspect),
                        source.camera_from.empty() ? ": give that, or leave the option out" : "");
   }
@@ -329,12 +329,12 @@ std::string difference_of(const std::vector<double>& depths, const std::vector<d
   const double ratio = median_of(ratios), offset = median_of(offsets), half = median_of(off);
   if (half <= 2 * kSame) return "";
   if (most_apart(ratios, ratio) <= kSame)
-    return fmt::format("it is {:.4g} times theirs, so the units differ: --depth-scale {:.4g} makes them alike", ratio,
+    return fmt::format("depth is {:.4g} times theirs, so the units differ: --depth-scale {:.4g} mends it", ratio,
                        1 / ratio);
   for (std::size_t i = 0; i < depths.size(); i++) moved.push_back((depths[i] + offset) / by_positions[i]);
   if (most_apart(moved, 1) <= kSame)
-    return fmt::format("it is theirs less {:.4g}, so it does not count from the eye", offset);
-  return fmt::format("half of it is {:.2g} % and more off, so it is of another kind (--depth-kind) or frame",
+    return fmt::format("depth is theirs less {:.4g}, so it does not count from the eye", offset);
+  return fmt::format("half of the depth is {:.2g} % and more off, so it is of another kind (--depth-kind) or frame",
                      100 * half);
 }
 

@@ -26,8 +26,8 @@ inline constexpr int kManyBands = 48, kFewBands = 4;
 /// needs.
 std::vector<SeenPoint> points_of(FrameSource& source, double sky, int bands);
 
-/// Says why points are no positions of the scene by what a camera shows of them: cut, stretched, or seen through a lens
-/// that bends lines; "" if nothing tells. Refuses panoramas.
+/// Explains why points are no positions of the scene: cut, stretched, or seen through a lens that bends lines; ""
+/// without an explanation. Refuses panoramas.
 std::string fault_of_positions(std::span<const SeenPoint> points, const ExrFile& file,
                                const std::variant<Resection, NoResection>& found);
 

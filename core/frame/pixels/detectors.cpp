@@ -66,9 +66,9 @@ Sentence enlarged_depth(const Findings& f) {
   const double across = enlargement(f.repeats[0]), down = enlargement(f.repeats[1]);
   if (std::max(across, down) == 1) return std::nullopt;
   return fmt::format(
-      "depth was enlarged {:.2g} times across and {:.2g} times down by repeating its nearest pixels: "
-      "neighbouring rows or columns are equal all over the picture, and AO takes the stairs for relief; "
-      "give the depth in its own, lower resolution, or render it at the full size",
+      "depth was enlarged {:.2g} times across and {:.2g} times down by repeating pixels: neighbouring rows or columns "
+      "are equal all over the picture, and AO shows the stairs; give the depth in its own, lower resolution, or render "
+      "it at the full size",
       across, down);
 }
 
@@ -81,8 +81,8 @@ std::string or_cut(const Findings& f) {
 Sentence cut_ramps_text(const Findings& f) {
   if (f.cut_pixels == 0) return std::nullopt;
   return fmt::format(
-      "{} pixels lay on ramps across outlines, and were given to the surfaces on both sides: where these end is an "
-      "estimate, and AO of blurred scenes was off by .05 to .2 (RMS) after it, of foliage by .35",
+      "{} pixels lay on ramps across outlines, and were given to the surfaces on both sides: their outlines are "
+      "estimates, and AO of blurred scenes was off by .05 to .2 (RMS) after it, of foliage by .35",
       f.cut_pixels);
 }
 
@@ -121,17 +121,16 @@ Sentence noisy_depth(const Findings& f) {
   if (u.count < kLeastCount || u.tenth < kLeast || u.alternating < kAlternating) return std::nullopt;
   // A tenth of the second differences of independent noise are below 0.31 of its standard deviation.
   return fmt::format(
-      "depth is noisy by about {:.2g} % all over the picture, no surface is smooth, and AO takes that "
-      "for relief: render without noise, or denoise depth before",
+      "depth is noisy by about {:.2g} % all over the picture, no surface is smooth, and AO shows the noise: render "
+      "without noise, or denoise depth before",
       100 * u.tenth / 0.31);
 }
 
 Sentence jittered_depth(const Findings& f) {
   if (!f.jitter) return std::nullopt;
   return fmt::format(
-      "flat surfaces are not flat: their depth is off by {:.2f} of its step from pixel to pixel, as if "
-      "it was sampled at random places within the pixels; AO takes that for relief; render depth at the "
-      "pixels' centres, without a filter",
+      "flat surfaces are not flat: their depth is off by {:.2f} of its step from pixel to pixel, as if sampled at "
+      "random places within the pixels, and AO shows grain; render depth at the pixels' centres, without a filter",
       *f.jitter);
 }
 
@@ -207,9 +206,8 @@ Sentence missing_columns(const Findings& f) {
     if (columns.empty == 0 || columns.empty % kTile != 0 || columns.covered < kCovered) continue;
     if ((*f.borders)[0].empty + (*f.borders)[1].empty + (*f.borders)[5 - side].empty > 0) continue;
     return fmt::format(
-        "the {} {} columns are empty, and those beside them full, from the top to the bottom: tiles "
-        "that were not rendered, or not assembled, count as sky, so that AO about them is too light: "
-        "render them again",
+        "the {} {} columns are empty from the top to the bottom, and their neighbours are full: missing tiles count as "
+        "sky, so that AO about them is too light: render them again",
         side == 2 ? "left" : "right", columns.empty);
   }
   return std::nullopt;
@@ -219,8 +217,8 @@ Sentence missing_tile(const Findings& f) {
   if (!f.rectangle) return missing_columns(f);
   const EmptyRectangle& r = *f.rectangle;
   return fmt::format(
-      "the rectangle of {} x {} pixels at ({}, {}) is {} throughout{}: a tile that was not rendered, or "
-      "not assembled, counts as sky, so that AO about it is too light: render it again",
+      "the rectangle of {} x {} pixels at ({}, {}) is {} throughout{}: a missing tile counts as sky, so that AO about "
+      "it is too light: render it again",
       r.right - r.left, r.bottom - r.top, r.left, r.top, r.value,
       r.is_unlike_sky ? ", unlike the sky elsewhere" : ", and stands on the grid of tiles");
 }
@@ -238,8 +236,8 @@ bool tells(const Curve& c) {
 Sentence overflown_depth(const Findings& f) {
   if (!f.overflow.is_reached || f.overflow.beyond == 0) return std::nullopt;
   return fmt::format(
-      "{:.0f} % of {} is infinite or 65504, the largest half float, and surfaces reach up to it: what lies "
-      "beyond counts as sky; write depth as float, or in larger units",
+      "{:.0f} % of {} is infinite or 65504, the largest half float, and surfaces reach up to it: farther surfaces "
+      "count as sky; write depth as float, or in larger units",
       100 * f.overflow.beyond, f.depth_channel);
 }
 
@@ -290,8 +288,8 @@ Sentence depth_curve(const Findings& f) {
                            : is_power ? fmt::format("a distance to the power of {:.3g}, as by a gamma", power)
                                       : "a distance that went through a curve, such as a picture's gamma or sRGB";
   return fmt::format(
-      "surfaces are not flat by these values at any offset, and are by a curve: depth is {}, and not "
-      "proportional to a distance; write it without that, as {}",
+      "surfaces are flat by a curve, and by no offset: depth is {}, and not proportional to a distance; write it "
+      "without the curve, as {}",
       what, word_of(DepthKind::planar));
 }
 
@@ -303,9 +301,8 @@ Sentence clamped_depth(const Findings& f) {
   const Plateau& p = *f.plateau;
   if (p.tilt < kLeastTilt && p.frontal > kLeastFrontal) return std::nullopt;
   return fmt::format(
-      "{:.0f} % of the surfaces have exactly the largest depth {:.6g}, and by their normals they are no "
-      "wall: depth was clamped there, which makes a false one; write it without that limit, or give "
-      "--sky {:.6g}, so that they count as sky",
+      "{:.0f} % of the surfaces have exactly the largest depth {:.6g}, and by their normals they are no wall: depth "
+      "was clamped there; write it without a limit, or give --sky {:.6g} to make them sky",
       100 * p.share, p.value, p.value);
 }
 
@@ -317,9 +314,8 @@ Sentence wrapped_depth(const Findings& f) {
   if (w.whole < kLeast || double(w.whole) < kMost * double(w.drops)) return std::nullopt;
   if (w.most > (1 + kFull) * w.period) return std::nullopt;
   return fmt::format(
-      "along outlines that cross smooth surfaces depth jumps from the end of its range, {:.6g}, to its "
-      "beginning: integers of too few bits wrapped round, and what lies farther counts as near; write "
-      "depth as float, or in larger units",
+      "within smooth surfaces depth jumps from the end of its range, {:.6g}, to its beginning: integers of too few "
+      "bits wrapped round, and far surfaces count as near; write depth as float, or in larger units",
       w.most);
 }
 
@@ -331,8 +327,8 @@ Sentence displaced_normals(const Findings& f) {
   if (f.normals.count < kLeast || double(f.normals.aligned) > kAligned * double(f.normals.count)) return std::nullopt;
   if (f.normals.beside == 0) return std::nullopt;
   return fmt::format(
-      "along {:.0f} % of the outlines the normals change beside the depth, by {:.2g} px in the median of all: they are "
-      "of another frame, or were displaced; --normal none reconstructs them from depth",
+      "along {:.0f} % of the outlines the normals change beside the depth, by {:.2g} px in the median: they are of "
+      "another frame, or were displaced; --normal none reconstructs them from depth",
       100 - percent(double(f.normals.aligned), double(f.normals.count)), f.normals.beside);
 }
 
@@ -340,7 +336,7 @@ constexpr std::array kTable{
     Detector{NoteCode::no_surfaces, "depth of all pixels", "none is a surface", "rendering again; --depth-kind, --sky",
              no_surfaces},
     Detector{NoteCode::holes_in_depth, "pixels without a surface between surfaces of one depth",
-             "there are such all over the picture", "filling them", holes_in_depth},
+             "they lie all over the picture", "filling them", holes_in_depth},
     Detector{NoteCode::enlarged_depth, "equal neighbours on slanted surfaces",
              "they stand in the same rows or columns all over the picture", "depth in its own resolution",
              enlarged_depth},
@@ -365,8 +361,7 @@ constexpr std::array kTable{
     Detector{NoteCode::missing_tile, "rectangles without surfaces",
              "the sky has another value than their 0, or their sides stand on a grid of 16 pixels", "rendering again",
              missing_tile},
-    Detector{NoteCode::depth_offset, "planes at an angle",
-             "they are flat by 1 / (depth + c) for another c than is read",
+    Detector{NoteCode::depth_offset, "planes at an angle", "they are flat by 1 / (depth + c), and c is not as read",
              "--depth-kind normalized with --near and --far", depth_offset},
     Detector{NoteCode::depth_curve, "planes at an angle", "they are flat by no offset, and by one curve",
              "depth without the curve", depth_curve},

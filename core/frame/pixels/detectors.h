@@ -33,7 +33,7 @@ bool speaks_against(const Curve& curve, const Reading& reading);
 /// The table. A code may have several rows.
 std::span<const Detector> detectors();
 
-/// What they say of a frame.
+/// The notes of all detectors on a frame.
 Notes detected(const Findings& findings);
 
 /// The table as docs/troubleshooting.md shows it.

@@ -22,8 +22,8 @@ struct PlacedRuns {
 };
 
 /// The largest rectangle without surfaces that has one value and does not reach from border to border. `rows` are some
-/// of the window's, which may be a part of the frame's: a rectangle that goes on beyond a part tells nothing.
-/// `is_sky_0`: 0 stands for what is infinitely far, and is not unlike the sky elsewhere.
+/// rows of the window, which may be a part of the frame: a rectangle that reaches beyond the part does not count.
+/// `is_sky_0`: 0 means infinitely far, as in the sky elsewhere.
 std::optional<EmptyRectangle> empty_rectangle(std::span<const float> depth, const Window& window, const Window& frame,
                                               std::span<const PlacedRuns> rows, bool is_sky_0 = false);
 

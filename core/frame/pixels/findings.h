@@ -1,4 +1,4 @@
-// What one walk over the pixels of a frame shows, as plain numbers. Detectors judge them.
+// The findings of one walk over the pixels of a frame, as plain numbers. Detectors judge them.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -16,7 +16,7 @@ namespace alcove {
 /// Borders between neighbouring rows, or columns, of a picture, across places where depth slowly changes.
 struct Repeats {
   int all = 0;
-  int borders = 0;  // that were looked at: those with enough such places
+  int borders = 0;  // with enough such places
   int equal = 0;    // of these: on both sides of nearly all places depth is exactly the same
   int steps = 0;    // depth changes at nearly all places
 };
@@ -25,7 +25,7 @@ struct Repeats {
 struct Outlines {
   std::size_t count = 0;
   std::size_t sharp = 0;  // that nearly all of the change lies between two pixels
-  // Of those that are one step, or one pixel between two surfaces: all, and with such a pixel.
+  // Outlines of one step, and such with one pixel between the surfaces: both together, and the latter.
   std::size_t steps = 0, blended = 0;
 };
 
@@ -70,7 +70,7 @@ struct EmptyRectangle {
   int left = 0, top = 0, right = 0, bottom = 0;  // right and bottom: one further
   double value = 0;                              // of all its pixels
   bool is_unlike_sky = false;                    // elsewhere pixels without a surface have another value
-  bool is_on_grid = false;                       // its sides stand where those of tiles do
+  bool is_on_grid = false;                       // its sides lie on the grid of tiles
 };
 
 /// The rows, or columns, along a border that have no surface.
@@ -90,7 +90,7 @@ struct Plateau {
   double frontal = 0;      // the share of normals within 4 degrees of it
 };
 
-/// Everything that detectors look at. What was not looked at is empty.
+/// The input of all detectors. Findings that were not looked for are empty.
 struct Findings {
   std::string depth_channel{};
   DepthKind depth_kind = DepthKind::planar;

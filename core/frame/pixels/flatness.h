@@ -1,4 +1,4 @@
-// Flat surfaces as the measure of what depth values mean, and the coarseness of these.
+// Flat surfaces as the measure of the meaning of depth values, and the coarseness of the values.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -1,4 +1,4 @@
-// Numbers of one row or column of a picture: what its pixels show of the way in which it was made.
+// Numbers of one row or column of a picture, as traces of the way in which it was made.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -22,8 +22,8 @@ struct Line {
   bool is_surface(std::size_t i) const { return inverse[i] > 0; }
 };
 
-/// Of each border between a pixel and the one before it: the places, among those that were looked at, where depth
-/// slowly changes, and those of them where it is the same on both sides.
+/// Counts, for each border between a pixel and the one before it, the sampled places where depth slowly changes, and
+/// the places among them where it is the same on both sides.
 struct BorderCounts {
   std::vector<std::uint32_t> places, equal;
 };
@@ -35,8 +35,8 @@ struct Ramp {
   std::size_t first, last;  // pixels
   bool is_sharp = false;    // nearly all of the change is one step
 };
-/// Those across outlines: by much of 1/z over a few pixels, with others before and behind. In order; those of the line
-/// read backwards are the same.
+/// The ramps across outlines: they change 1/z by much over a few pixels, and other surfaces lie before and behind. In
+/// order; the line read backwards has the same ones.
 std::vector<Ramp> ramps_in(std::span<const double> inverse, std::span<const float> raw);
 
 void count_outlines(const Line& line, Outlines& outlines);
@@ -47,7 +47,7 @@ struct HoleCounts {
 };
 HoleCounts count_holes(const Line& line, Holes& holes);
 
-/// Adds some of the line's second differences; counts neighbours and those with opposite signs.
+/// Adds some of the line's second differences; counts neighbours, and neighbours with opposite signs.
 struct BendSample {
   std::vector<double> sizes;
   std::size_t neighbours = 0, opposite = 0;

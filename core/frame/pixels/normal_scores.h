@@ -32,30 +32,29 @@ inline constexpr double kUsable = 0.5;
 struct NormalScore {
   NormalSpace space;
   NormalFlips flips;
-  double facing = 0;     // share that faces the camera, as all that is visible does
+  double facing = 0;     // share that faces the camera, as all visible surfaces do
   double agreement = 0;  // share within 20 degrees of the normal that depth gives
   double opposite = 0;   // share within 20 degrees of its opposite, which prepare.comp turns round
   double close = 0;      // share within 3 degrees of it, which only the right camera gives
   // Of readings by which at least kUsable agree.
-  double angle = 180;  // degrees to either, of the best quarter at most
-  Vector3 turn{};      // radians about an axis of view space, by which those within 20 degrees are turned as a whole
+  double angle = 180;  // degrees to either one: the largest of the best quarter
+  Vector3 turn{};      // radians about an axis of view space: the common turn of all within 20 degrees
 
-  /// The share of normals that are right once those of the other side are turned round.
+  /// The share of right normals after the opposite ones are turned round.
   double explained() const { return agreement + opposite; }
   double turn_degrees() const;
   /// Whether the normals agree so as they do by the right camera and components: nearly all, and not turned as a whole.
-  /// In rooms, which have three directions, those of another scene may bring 60 %.
+  /// In rooms, with their three directions, another scene's normals may bring 60 %.
   bool may_be_right() const { return agreement >= 0.8 && turn_degrees() < 3; }
   /// Whether clearly more normals agree so, and enough of them.
   bool clearly_beats(const NormalScore& other) const {
     return agreement >= kLeastAgreement && agreement > kClear * other.agreement;
   }
 };
-/// Whether one camera, or one way to take the components, fits so much better than another that it is no chance: so
-/// many times as many normals are close to those of depth, so large a share more, and a least share. Of the right
-/// cameras of 13 frames the least is 38 %.
+/// Whether one camera, or one order of components, fits better than another by more than chance: by a factor and a
+/// difference in the share of close normals, and by a least share. The right cameras of 13 frames have at least 38 %.
 bool is_sharper(const NormalScore& other, const NormalScore& score);
-/// Normals as they stand in a file, the depth that they are held against, and how both are read.
+/// Normals as in a file, the depth to compare them with, and the reading of both.
 struct NormalPlanes {
   NormalPlanes(const Reading& reading, std::span<const float> normal, std::span<const float> raw);
 
@@ -65,20 +64,20 @@ struct NormalPlanes {
   DepthMap map;
   Camera camera;
   View view;
-  int sparse = 1;                            // of so many places across and down one is looked at
+  int sparse = 1;                            // one of so many places, across and down, is sampled
   std::vector<std::size_t> components = {};  // of the planes, in the order in which they are read; empty: as they stand
 };
 /// Scores world space, where the camera knows it, and view space, each with all flips, the best agreement first. Gives
 /// nothing where too little of the frame is smooth.
 std::vector<NormalScore> score_normals(const NormalPlanes& planes);
-/// The one by which most normals are close, of those that agree with depth; null where none does.
+/// Of the scores that agree with depth, the one with the most close normals; null without any.
 const NormalScore* sharpest_of(const std::vector<NormalScore>& scores);
 /// The score of one of them; null where there is none.
 const NormalScore* score_of(const std::vector<NormalScore>& scores, NormalSpace space, const NormalFlips& flips);
-/// Agreement of a frame with normals that lost their components below 0. Depth tells, in the normals' own space.
+/// Agreement of a frame with normals that lost their components below 0, by depth, in the normals' own space.
 struct CutScore {
   double needed = 0;    // share of the normals with a component clearly below 0
-  double absolute = 0;  // of those, the share within 20 degrees of the normal without signs
+  double absolute = 0;  // of these, the share within 20 degrees of the normal without signs
   double clamped = 0;   // and of the normal with 0 in place of components below it
 };
 /// Gives nothing where too little of the frame is smooth.

@@ -11,7 +11,7 @@
 
 namespace alcove {
 
-/// The step between places, of which some 112 stand in the longer side: enough for shares to a percent.
+/// The step between places: about 112 of them lie along the longer side, enough for shares to a percent.
 inline int sparseness(const View& view) {
   constexpr int kAcross = 112;
   return std::max(1, std::max(view.size.x, view.size.y) / kAcross);

@@ -107,12 +107,10 @@ Notes DepthSample::notes(double smallest_radius, double largest_radius, int widt
              smallest_radius, 100 * below)});
 
   if (largest_radius > pixel_at(z) * std::max(width, height))
-    notes.push_back(
-        {NoteCode::radius_beyond_picture,
-         fmt::format(
-             "radius {:.3g} is {:.3g} pixels at the median depth {:.3g}, and the picture is {}x{}: most of what "
-             "it reaches is not in it; a smaller --radius needs no more than is seen",
-             largest_radius, largest_radius / pixel_at(z), z, width, height)});
+    notes.push_back({NoteCode::radius_beyond_picture,
+                     fmt::format("radius {:.3g} is {:.3g} pixels at the median depth {:.3g}, and the picture is {}x{}: "
+                                 "most of its reach lies outside the picture; give a smaller --radius",
+                                 largest_radius, largest_radius / pixel_at(z), z, width, height)});
   return notes;
 }
 

@@ -17,7 +17,7 @@ struct WalkedPlanes {
   bool has_read_normals = false;  // the reading of the normals is settled, too
 };
 
-/// Looks at some rows and columns, and fills in what they show. The result does not depend on the number of threads.
+/// Samples rows and columns, and fills in their findings. The result does not depend on the number of threads.
 void walk(const WalkedPlanes& planes, Findings& findings);
 
 }  // namespace alcove

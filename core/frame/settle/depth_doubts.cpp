@@ -55,8 +55,7 @@ class DepthDoubts : private DepthSettlement {
     if (!near || !by_matrix || std::abs(*by_matrix / *near - 1) < kSame) return;
     note(NoteCode::near_plane,
          fmt::format("the near plane is {:.4g}, but the camera file's projection, read with z = depth, has it at "
-                     "{:.4g}: so read, distances would be {:.3g} "
-                     "times as large; --near or --set device-range says which is right",
+                     "{:.4g}, for distances {:.3g} times as large; --near or --set device-range decides",
                      *near, *by_matrix, *by_matrix / *near));
   }
 
@@ -72,10 +71,10 @@ class DepthDoubts : private DepthSettlement {
                        text_of_range(), 100 * from_1, 100 * straight, word_of(reading_.depth_kind), facts_.said_by,
                        normalized_line(true)));
     else if (settings_.depth_kind == DepthKind::automatic && facts_.program.rules->depth_kind == DepthKind::automatic)
-      note(NoteCode::depth_below_1, fmt::format("{} and is read as {}; if it is normalized, give {}; "
-                                                "--depth-kind {} says that these are distances",
-                                                text_of_range(), word_of(reading_.depth_kind), normalized_line(false),
-                                                word_of(reading_.depth_kind)));
+      note(NoteCode::depth_below_1,
+           fmt::format("{} and is read as {}; if it is normalized, give {}; --depth-kind {} confirms distances",
+                       text_of_range(), word_of(reading_.depth_kind), normalized_line(false),
+                       word_of(reading_.depth_kind)));
   }
 
   /// The scores of the distances that the depth gives if it is read as is said.
@@ -90,12 +89,13 @@ class DepthDoubts : private DepthSettlement {
     const auto below = std::ranges::count_if(raw_.depth, [](float d) { return d > -1 && d < 0; });
     if (reading_.depth_range.device == DeviceRange::automatic && below > 0)
       note(NoteCode::said_otherwise,
-           fmt::format("{} pixels have a depth of -1 to 0 and count as sky: is it that of --set device-range=-1..1?",
-                       below));
+           fmt::format(
+               "{} pixels have a depth of -1 to 0 and count as sky: does the depth need --set device-range=-1..1?",
+               below));
     if (reading_.depth_range.device == DeviceRange::minus_one_to_one && values_.all.least >= 0)
       note(NoteCode::said_otherwise,
-           "no depth is below 0, so the nearest surface is beyond twice the near plane, or the depth is not that of "
-           "--set device-range=-1..1");
+           "no depth is below 0: either all surfaces lie beyond twice the near plane, or --set device-range=-1..1 is "
+           "wrong");
   }
 };
 

@@ -60,8 +60,7 @@ class DepthEnds : private DepthSettlement {
     if (double(at_end) < kPlateau * double(values_.all.pixels)) return true;
     if (double(beyond.count) > kFewErrors * double(values_.all.pixels))
       note(NoteCode::beyond_planes,
-           fmt::format("{:.2g} % of the depth lies beyond {}, and {:.2g} % is exactly {}: what lies beyond counts as "
-                       "that, the sky",
+           fmt::format("{:.2g} % of the depth lies beyond {}, and {:.2g} % is exactly {}: all of these count as sky",
                        100 * double(beyond.count) / double(values_.all.pixels), end,
                        100 * double(at_end) / double(values_.all.pixels), end));
     return false;
@@ -101,14 +100,13 @@ class DepthEnds : private DepthSettlement {
     // A wall that faces the camera has one planar depth and one normal; a dome around it has many normals.
     if (reading_.depth_kind == DepthKind::planar && far.like_first == far.count) return;
     if (far.is_bare()) reading_.found_sky = far.value;
-    note(NoteCode::finite_sky,
-         far.is_bare()
-             ? fmt::format("the depth {:.6g} of {:.1f} % of the pixels, which have no normals, is taken for the sky "
-                           "(--sky {:.6g} says it)",
-                           far.value, 100 * share, far.value)
-             : fmt::format("{:.1f} % of the pixels have exactly the depth {:.6g}, and all others end at {:.4g}: if "
-                           "that is the sky, and no wall, give --sky {:.6g}",
-                           100 * share, far.value, far.next, far.value));
+    note(NoteCode::finite_sky, far.is_bare()
+                                   ? fmt::format("the depth {:.6g} of {:.1f} % of the pixels, all without normals, is "
+                                                 "taken for the sky (--sky {:.6g} confirms it)",
+                                                 far.value, 100 * share, far.value)
+                                   : fmt::format("{:.1f} % of the pixels have exactly the depth {:.6g}, and all others "
+                                                 "end at {:.4g}: if they are sky, and no wall, give --sky {:.6g}",
+                                                 100 * share, far.value, far.next, far.value));
   }
 
   /// The pixels with the largest distance, and all others.

@@ -20,7 +20,7 @@ class FractionRules : private DepthSettlement {
     if (from_1 >= kLeastStraight && from_1 > kClear * straight)
       fail(ErrorKind::input,
            "{}: {}, and flat surfaces are straight on {:.0f} % as 1 - depth, on {:.0f} % as depth: it is normalized, "
-           "and 1 at the eye: give {}; if it is a distance all the same, --depth-kind planar",
+           "with 1 at the eye: give {}; if it is a distance all the same, give --depth-kind planar",
            path_, text_of_range(), 100 * from_1, 100 * straight, normalized_line(true));
     const bool is_supported = straight >= kSurelyStraight;
     const bool is_inverse =
@@ -59,7 +59,7 @@ class FractionRules : private DepthSettlement {
     if (double(nearer) <= kMostNearer * double(count)) return;
     fail(ErrorKind::input,
          "{}: {}, and {:.0f} % of it is nearer than the camera's near plane at {:.3g}, so these are no distances: if "
-         "they are normalized, give {}; if they are distances all the same, --depth-kind planar",
+         "they are normalized, give {}; if they are distances all the same, give --depth-kind planar",
          path_, text_of_range(), 100 * double(nearer) / double(count), *reading_.camera.near, normalized_line(false));
   }
 

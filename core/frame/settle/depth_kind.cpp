@@ -31,8 +31,8 @@ class DepthKindSettlement : private DepthSettlement {
     if (!tells) seen_.tells = false;
     if (tells || usual_ != DepthKind::inverse) refuse_fractions(*this, usual_);
     if (tells) return take_flattest(scores);
-    const std::string why = scores.empty() ? "too little of the frame is smooth to tell"
-                                           : "the frame has no flat surfaces that tell: " + text_of(scores);
+    const std::string why =
+        scores.empty() ? "too little of the frame is smooth to tell" : "no flat surfaces decide: " + text_of(scores);
     if (take_by_positions(why) || take_by_normals(why)) return;
     if (usual_ == DepthKind::inverse) return assume_passed_on(why);
     take_usual(why);
@@ -99,7 +99,7 @@ class DepthKindSettlement : private DepthSettlement {
   void take_passed_on(DepthKind kind, const std::string& why) {
     reading_.depth_kind = kind;
     guess("depth kind", word_of(kind),
-          fmt::format("{} ({}) writes 1/z, and passes on what others wrote; {}", facts_.program.rules->name,
+          fmt::format("{} ({}) writes 1/z, and passes on other programs' depth; {}", facts_.program.rules->name,
                       facts_.program.by, why),
           "--depth-kind", false);
   }
@@ -151,8 +151,8 @@ class DepthKindSettlement : private DepthSettlement {
     if (!values_.below_0.varies() || is_error || values_.side_above(0).is_mostly_one()) return;
     fail(ErrorKind::input,
          "{}: depth goes from {:.3g} to {:.3g}, {:.0f} % of it below 0, so these are no distances: if it is normalized "
-         "and goes on beyond its planes, as V-Ray writes it without clamp, give --depth-kind normalized --near N --far "
-         "F, the distances of 0 and of 1 (with --reversed-z, of 1 and of 0); if values below 0 are no surfaces, give "
+         "and goes on beyond its planes, as V-Ray's without clamp, give --depth-kind normalized --near N --far F, the "
+         "distances of 0 and of 1 (with --reversed-z, of 1 and of 0); if values below 0 are no surfaces, give "
          "--depth-kind planar{}",
          path_, values_.all.least, values_.surfaces.most, 100 * double(values_.below_0.count) / double(all),
          kDisparityHint);

@@ -60,8 +60,8 @@ Notes averaged_normals(const FrameSource& source, const RawPart& raw) {
          source.note_file(RawPlane::normal)}};
   const bool is_usual = source.program.rules->normal_averaged;
   return {{is_usual ? NoteCode::averaged_normals : NoteCode::shortened_normals,
-           fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over the pixel, at edges "
-                       "over several surfaces{}",
+           fmt::format("{:.0f} % of the normals are not of unit length: they were averaged over pixels, at edges over "
+                       "several surfaces{}",
                        100 * (1 - unit), is_usual ? ", as " + source.program.rules->name + " always does" : ""),
            source.note_file(RawPlane::normal)}};
 }

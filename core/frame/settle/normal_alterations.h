@@ -1,4 +1,4 @@
-// Alterations of normals that left them with the lengths of no vectors.
+// Alterations of normals that destroy their unit length.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

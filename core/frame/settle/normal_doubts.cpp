@@ -51,12 +51,12 @@ class NormalDoubts : private NormalSettlement {
       note(NoteCode::normals_disagree, fmt::format("{} ({})", *turned, kSpaceOptions));
     else if (const auto other = turned_back(*chosen))
       note(NoteCode::normals_disagree,
-           fmt::format("by the camera{} the normals as a whole are turned by {:.2g} degrees against depth: the best "
-                       "quarter is up to {:.2g} degrees off, turned back {:.2g}: it may be the camera of another frame",
+           fmt::format("by the camera{} all normals are turned by {:.2g} degrees against depth: the best quarter is up "
+                       "to {:.2g} degrees off, turned back {:.2g}: the camera may be another frame's",
                        from(), chosen->turn_degrees(), chosen->angle, other->angle));
     else if (!doubt_width(*chosen) && !agrees(*chosen) && !has_coarse_depth(reading_))
       note(NoteCode::normals_disagree,
-           fmt::format("even the best quarter of the normals is up to {:.1f} degrees off those of depth: {}",
+           fmt::format("even the best quarter of the normals is up to {:.1f} degrees off the normals of depth: {}",
                        chosen->angle, kCheck));
   }
 
@@ -92,7 +92,7 @@ class NormalDoubts : private NormalSettlement {
     const NormalScore& best = scores[0];
     refuse_turned_camera(chosen, best.close);
     const std::string read =
-        fmt::format("{}: its normals are not those of this depth and this camera (as {})", path_, text_of(chosen));
+        fmt::format("{}: its normals do not belong to this depth and this camera (as {})", path_, text_of(chosen));
     if (best.clearly_beats(chosen))
       fail(ErrorKind::input, "{}; but as {} ({}); {}", read, text_of(best), kSpaceOptions, kWithout);
     // Coarse depth turns the normals of depth themselves by so much.
@@ -100,7 +100,7 @@ class NormalDoubts : private NormalSettlement {
     const bool is_tangent = are_alike(raw_, depth_map_of(reading_));
     if (chosen.explained() >= kRefuted && is_listed(NoteCode::normals_disagree, settings_.allow)) return;
     fail(ErrorKind::input, "{}; no other space fits{}: {}; {}{}", read,
-         is_tangent ? ", but all look the same way, as those of tangent space" : "", kCheck, kWithout,
+         is_tangent ? ", but all look the same way, as in tangent space" : "", kCheck, kWithout,
          chosen.explained() >= kRefuted ? "; --set allow=normals-disagree takes them as they are" : "");
   }
 
@@ -161,9 +161,8 @@ class NormalDoubts : private NormalSettlement {
     if (width && width->score.close >= square->close) return false;
     note(NoteCode::said_otherwise,
          fmt::format(
-             "the frame's pixelAspectRatio is {:.4g}, and its normals show square pixels: {:.0f} % of them agree "
-             "with depth to 3 degrees then, {:.0f} % as it is; write the file with pixelAspectRatio 1, or give "
-             "--camera with fx = fy",
+             "the frame's pixelAspectRatio is {:.4g}, but with square pixels {:.0f} % of the normals agree with depth "
+             "to 3 degrees, as it is {:.0f} %; write the file with pixelAspectRatio 1, or give --camera with fx = fy",
              reading_.pixel_aspect, 100 * square->close, 100 * chosen.close));
     return true;
   }
@@ -176,10 +175,11 @@ class NormalDoubts : private NormalSettlement {
     const auto other = best_other_width(planes(), chosen);
     if (doubt_aspect(chosen, other)) return true;
     if (!other || !is_sharper(other->score, chosen)) return false;
-    note(NoteCode::field_of_view,
-         fmt::format("{} fits the normals better: {:.0f} % of them agree with depth to 3 degrees then, {:.0f} % as it "
-                     "is given: {}",
-                     other->what, 100 * other->score.close, 100 * chosen.close, kCheck));
+    note(
+        NoteCode::field_of_view,
+        fmt::format(
+            "{} fits the normals better: with it {:.0f} % of them agree with depth to 3 degrees, as given {:.0f} %: {}",
+            other->what, 100 * other->score.close, 100 * chosen.close, kCheck));
     return true;
   }
 };

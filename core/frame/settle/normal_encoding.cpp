@@ -78,10 +78,9 @@ class EncodingSettlement : private NormalSettlement {
     refuse_other_components(*this, {}, {});
     const auto& all = source_.channels[RawPlane::normal];
     fail(ErrorKind::input,
-         "{}: {} is {:.3g} everywhere, so that its normals lack a component: name the two channels that are there "
-         "(--normal-channels {},{}), which rebuilds z for those of view space; --normal-encoding octahedral or "
-         "spheremap "
-         "reads those of two channels in any space; {}",
+         "{}: {} is {:.3g} everywhere, so its normals lack a component: name the other two channels (--normal-channels "
+         "{},{}) to rebuild z in view space; --normal-encoding octahedral or spheremap reads two channels in any "
+         "space; {}",
          path_, all[missing->channel].channel, missing->value, all[missing->channel == 0 ? 1 : 0].channel,
          all[missing->channel == 2 ? 1 : 2].channel, kWithout);
   }

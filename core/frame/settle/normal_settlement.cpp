@@ -46,10 +46,8 @@ const NormalScore* NormalSettlement::straighter_than(const NormalScore& score,
 }
 
 std::string NormalSettlement::rotation_text(const NormalScore& chosen, const NormalScore& other) {
-  return fmt::format(
-      "as those of {} space the normals as a whole are turned by {:.1f} degrees against depth, as {} "
-      "by {:.1f}",
-      word_of(other.space), other.turn_degrees(), word_of(chosen.space), chosen.turn_degrees());
+  return fmt::format("read in {} space, all normals are turned by {:.1f} degrees against depth, read as {} by {:.1f}",
+                     word_of(other.space), other.turn_degrees(), word_of(chosen.space), chosen.turn_degrees());
 }
 
 std::optional<OtherCamera> NormalSettlement::straightened(const NormalScore& score, double least_turn,
@@ -70,8 +68,8 @@ std::optional<std::string> NormalSettlement::turned_world(const NormalScore& sco
   const auto turned = straightened(score, kClearTurn, kLargestAngle);
   if (!turned) return std::nullopt;
   return fmt::format(
-      "its normals look like those of world space by {}: {:.0f} % of them agree with depth to 3 degrees then, {:.0f} "
-      "% in view space",
+      "by {} its normals look like world space: {:.0f} % of them agree with depth to 3 degrees then, {:.0f} % in view "
+      "space",
       turned->what, 100 * turned->score.close, 100 * score.close);
 }
 

@@ -1,4 +1,4 @@
-// A frame whose normals are being settled: what the steps share.
+// A frame during the settling of its normals: the state that the steps share.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -20,11 +20,11 @@ inline constexpr double kNoBetter = 0.95;
 inline constexpr double kSharper = 1.2;
 /// If this part of the normals has unit length, and less than the other part by another encoding, they are vectors.
 inline constexpr double kUnit = 0.9, kNotUnit = 0.5;
-/// A reading explains the normals as well as the best one if, with those of the other side turned round, it explains
-/// this part of as many, and this part of those need not be turned.
+/// A reading counts as good as the best one if, after a turn of opposite normals, it explains this part of the best
+/// one's number, and if this part of the explained normals needed no turn.
 inline constexpr double kAsMany = 0.98, kLeastOwn = 0.2;
-/// Degrees. If all normals are turned by more than this against those of depth, they are of another space or another
-/// camera. Bumps do not turn them as a whole; half depth does so by up to a degree.
+/// Degrees. If all normals are turned by more than this against depth, their space or camera is another one. Bumps do
+/// not turn all normals alike; half depth turns them by up to a degree.
 inline constexpr double kLeastTurn = 1, kLeastTurnOfHalf = 3;
 
 class NormalSettlement : protected Settlement {
@@ -37,22 +37,22 @@ class NormalSettlement : protected Settlement {
  protected:
   NormalPlanes planes() const { return {over(reading_, raw_.window), raw_.normal, raw_.depth}; }
   static bool agrees(const NormalScore& score);
-  /// Whether a reading does as well as any, if need be with the normals of the other side turned round: they are a
-  /// fault of some objects, and flips are one of all.
+  /// Whether a reading is as good as any, if need be after a turn of opposite normals: opposite normals are a fault of
+  /// some objects, flips a fault of all.
   static bool explains(const NormalScore& score, const std::vector<NormalScore>& scores);
   static bool explains_most(const NormalScore& score, const std::vector<NormalScore>& scores);
-  /// Whether one reading has nothing of a turn that the normals as a whole have by the other, as those of a camera that
-  /// is turned by little have in the wrong space.
+  /// Whether one reading lacks the common turn of all normals in the other reading. A slightly turned camera causes
+  /// this turn in the wrong space.
   bool is_straighter(const NormalScore& score, const NormalScore& other) const;
   /// The same reading in the other space, where it is straighter.
   const NormalScore* straighter_than(const NormalScore& score, const std::vector<NormalScore>& scores) const;
   static std::string rotation_text(const NormalScore& chosen, const NormalScore& other);
-  /// The camera turned back by the turn that the normals as a whole have by it, where that is at least so many degrees,
-  /// and they then fit better, also than by another field of view. An angle of the best quarter below `fitting` is
-  /// none that could be better.
+  /// The camera, turned back by the common turn of all normals, if the turn is at least so many degrees, and if the
+  /// normals then fit better, also than with another field of view. If the best quarter's angle is below `fitting`, no
+  /// camera counts as better.
   std::optional<OtherCamera> straightened(const NormalScore& score, double least_turn, double fitting) const;
-  /// Tells whether normals that are read in view space are those of a world in which the camera is turned by little, if
-  /// no matrix places it.
+  /// Whether normals that are read in view space belong to a world in which the camera is turned by little, if no
+  /// matrix places it.
   std::optional<std::string> turned_world(const NormalScore& score) const;
   static std::string text_of(const NormalScore& s);
   /// Names the file of the camera, or the header's attributes.
@@ -81,13 +81,13 @@ void settle_normal_space(const NormalSettlement& normals, const NormalStatistics
 bool settle_cut_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores,
                         const NormalStatistics& statistics);
 
-/// Refuses normals whose components are in another order, or in two of the three channels, unless another camera
-/// explains them. `scores`: of the normals as they stand; none: they have no reading.
+/// Refuses normals with components in another order, or in two of the three channels, unless another camera explains
+/// them. `scores`: of the normals as they are; none: they have no reading.
 void refuse_other_components(const NormalSettlement& normals, const std::vector<NormalScore>& scores,
                              const NormalStatistics& statistics);
 
-/// Refuses the camera where the normals agree with depth by one that is turned in a usual way, and by the given one do
-/// not. `sharpest` is the share that another reading of the normals brings close.
+/// Refuses the given camera if the normals disagree with depth by it, and agree by a camera with a usual mistake
+/// undone. `sharpest` is the share of close normals in another reading.
 void refuse_turned_camera(const NormalSettlement& normals, const NormalScore& chosen, double sharpest);
 /// Notes normals that depth speaks against, and refuses normals that it refutes.
 void doubt_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores);

@@ -72,12 +72,11 @@ class SpaceSettlement : private NormalSettlement {
     const bool is_of_world = source_.open.normal_space ? is_sharper(closest(world), closest(scores))
                                                        : reading_.normal_space == NormalSpace::world;
     if (!is_of_world) return;
-    fail(
-        ErrorKind::input,
-        "{}: its normals ({}) have two components, which do not tell the sign of z in world space: give three "
-        "channels (--normal-channels), or say --normal-space view, or --normal-encoding octahedral or spheremap, where "
-        "they are such; {}",
-        path_, channels(), kWithout);
+    fail(ErrorKind::input,
+         "{}: its normals ({}) have two components, without the sign of z in world space: give three channels "
+         "(--normal-channels), or --normal-space view, or the right one of --normal-encoding octahedral and spheremap; "
+         "{}",
+         path_, channels(), kWithout);
   }
 
   /// Takes the space by which the normals have given the shift of the disparity. Its steps are too coarse for more.
@@ -129,11 +128,10 @@ class SpaceSettlement : private NormalSettlement {
   /// Refuses normals that are not those of view space where no matrix turns those of the world.
   [[noreturn]] void refuse_without_matrix(const std::vector<NormalScore>& scores) const {
     if (!source_.program.by.empty()) throw NoWorldToCamera(path_);
-    fail(
-        ErrorKind::input,
-        "{}: {:.0f} % of its normals at most agree with depth in view space; those of world space need a --camera file "
-        "with world_to_camera; if they are in view space, {}; {}",
-        path_, scores.empty() ? 0 : 100 * scores[0].agreement, kCheck, kWithout);
+    fail(ErrorKind::input,
+         "{}: {:.0f} % of its normals at most agree with depth in view space; normals in world space need a --camera "
+         "file with world_to_camera; if they are in view space, {}; {}",
+         path_, scores.empty() ? 0 : 100 * scores[0].agreement, kCheck, kWithout);
   }
 };
 

@@ -51,15 +51,14 @@ std::vector<Hypothesis> turned_worlds(const NormalPlanes& planes) {
     turned.back().planes.camera.view_from_world = matrix;
   };
   add("its world_to_camera looks like camera_to_world: give the inverse", inverse);
-  add("its world_to_camera looks like that of a camera with y down that looks along +z, as OpenCV's: negate its second "
-      "and its third row",
+  add("its world_to_camera looks like OpenCV's, with y down and z forward: negate its second and its third row",
       product(kOpenCv, given));
-  add("its world_to_camera looks like camera_to_world of a camera with y down that looks along +z, as OpenCV's: give "
-      "the inverse, with its second and its third row negated",
+  add("its world_to_camera looks like OpenCV's camera_to_world, with y down and z forward: give the inverse, with its "
+      "second and its third row negated",
       product(kOpenCv, inverse));
   for (const Matrix3& up : {kYUp, transposed(kYUp)})
-    add("its world_to_camera looks like that of a world with another axis up than the normals have (y, or z): give it "
-        "for the world of the normals",
+    add("its world_to_camera and the normals seem to have different up axes (y, or z): give it for the world of the "
+        "normals",
         product(given, up));
   std::ranges::move(other_rotations(planes), std::back_inserter(turned));
   return turned;

@@ -1,4 +1,4 @@
-// The mistakes that cameras come with, each undone and tried on the normals.
+// The usual mistakes of cameras, each undone and tried on the normals.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -9,20 +9,19 @@
 
 namespace alcove {
 
-/// A camera that was tried, its score, and the fault of the given camera if this one is right.
+/// A tried camera, its score, and the given camera's fault if the tried one is right.
 struct OtherCamera {
-  std::string what;  // a sentence that says what to do, without a full stop
+  std::string what;  // the sentence with the remedy, without a full stop
   NormalScore score;
 };
 
 /// Gives the best of the usual mistakes by which a camera turns the world or the picture: the inverse of its matrix,
-/// axes of another convention, another axis up, angles in another order, a picture that is upside down. None where too
-/// little of the frame is smooth, or where hardly all normals agree then. `as` is the reading of the normals that is
-/// tried.
+/// axes of another convention, another axis up, angles in another order, a picture that is upside down. None if too
+/// little of the frame is smooth, or if even then some normals disagree. `as` is the tried reading of the normals.
 std::optional<OtherCamera> best_turned_camera(const NormalPlanes& planes, const NormalScore& as);
 
-/// Gives the camera that is turned by a small angle within the normals' world: that by which they agree as a whole. In
-/// view space that world is the camera's own, as it is given. None where too little of the frame is smooth.
+/// Gives the camera, turned by a small angle within the normals' world so that all of them agree. In view space this
+/// world is the given camera's own. None if too little of the frame is smooth.
 std::optional<OtherCamera> slightly_turned_camera(NormalPlanes planes, const NormalScore& as);
 
 /// Gives the best of the orders in which the angles of a .chan file may turn the camera; none for other cameras, and

@@ -10,7 +10,7 @@
 
 namespace alcove {
 
-/// Channels that were tried, by their places among the three, and how they are read.
+/// Tried channels, by their places among the three, and their reading.
 struct OtherComponents {
   std::vector<std::size_t> channels;
   NormalEncoding encoding;
@@ -18,9 +18,8 @@ struct OtherComponents {
   NormalScore score;
 };
 
-/// Gives the order of the components of vectors, or else the encoding of the first two channels, by which most of the
-/// normals agree with depth within 3 degrees, of those that are clearly better than `score`. None where none is, or
-/// where too little of the frame is smooth.
+/// Gives the order of vector components, or else the encoding of the first two channels, with the most normals within 3
+/// degrees of depth. None if no order is clearly better than `score`, or if too little of the frame is smooth.
 std::optional<OtherComponents> best_other_components(const NormalPlanes& planes, bool are_vectors,
                                                      const NormalScore& score);
 
@@ -32,7 +31,7 @@ struct ConstantComponent {
 };
 std::optional<ConstantComponent> constant_component(const RawPart& raw, const DepthMap& map);
 
-/// Whether nearly all normals look the same way, as those of tangent space do.
+/// Whether nearly all normals look the same way, as in tangent space.
 bool are_alike(const RawPart& raw, const DepthMap& map);
 
 }  // namespace alcove

@@ -38,15 +38,15 @@ class PositionSettlement : private Settlement {
     const auto best = std::ranges::min_element(candidates, {}, &Candidate::error);
     if (!(*best->error <= kLargestError))
       fail(
-          ErrorKind::input,
-          "{}: its positions lie {} from the pixels that hold them: check --set position-space and --camera", path_,
+          ErrorKind::input, "{}: its positions lie {} from their pixels: check --set position-space and --camera",
+          path_,
           *best->error < 1e6 ? fmt::format("{:.1f} pixels (median)", *best->error) : "on the other side of the camera");
     reading_.position_space = best->space;
     reading_.depth_range.negative = best->forward;
     if (settings_.position_space == PositionSpace::automatic)
       guess("position space", best->space == PositionSpace::world ? "world" : "view",
-            fmt::format("positions lie {:.3f} pixels (median) from the pixels that hold them", *best->error),
-            "--set position-space", false);
+            fmt::format("positions lie {:.3f} pixels (median) from their pixels", *best->error), "--set position-space",
+            false);
   }
 };
 

@@ -30,8 +30,8 @@ void refuse_8_bits(std::span<const float> depth, const std::string& name) {
   }
   if (levels.size() >= kLeastLevels)
     fail(ErrorKind::input,
-         "{} holds only values of 8 bits, too few distances for AO: give --depth as floats, as EXR and DDS hold them{}",
-         name, kDisparityHint);
+         "{} holds only values of 8 bits, too few distances for AO: give --depth as floats, in EXR or DDS{}", name,
+         kDisparityHint);
 }
 
 /// Takes down how the values were rounded.

@@ -1,4 +1,4 @@
-// What the pixels of planes, from files or from memory, show: how depth was rounded, and what detectors look at.
+// Measures the pixels of planes, from files or from memory: the rounding of depth, and the detectors' findings.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,16 +14,16 @@
 
 namespace alcove {
 
-/// Measures how the depth of a window was rounded, and takes it down in `reading`: it changes how the values are
-/// judged, and how near occluders may be. Positions are not measured. Fails with ErrorKind::input, calling the depth
-/// `name`, if it holds 256 values at most, as a grey picture does.
+/// Measures the rounding of a window's depth and stores it in `reading`: it affects the judgement of values, and the
+/// nearest occluders. Positions are not measured. Fails with ErrorKind::input, with `name` for the depth, if it holds
+/// 256 values at most, as a grey picture does.
 Grain measure_rounding(Reading& reading, const Window& window, std::span<const float> depth, const std::string& name);
 
 /// Takes down the step of depth between planes that was stored as integers. The kind of the depth must be settled.
 void measure_levels(Reading& reading, std::span<const float> depth);
 
-/// What a walk over the pixels shows, for the detectors. The depth, called `name`, is settled; `has_read_normals` says
-/// that the normals are.
+/// The findings of a walk over the pixels, for the detectors. The depth, called `name`, is settled; `has_read_normals`
+/// says that the normals are.
 Findings findings_of(const Reading& reading, const RawPart& raw, const Evidence& seen, const std::string& name,
                      bool has_read_normals);
 

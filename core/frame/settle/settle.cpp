@@ -48,7 +48,7 @@ std::string reasons_of(const FrameSource& source, const RawPart& raw, const Evid
     return guess.what == "depth kind" && guess.chosen == word_of(DepthKind::inverse);
   });
   if (is_inverse && source.program.depth_kind != DepthKind::inverse && !source.reading.camera.orthographic)
-    text = fmt::format("; the depth is taken as 1/z by its flat surfaces, and {}", kOrthographicHint);
+    text = fmt::format("; its flat surfaces show 1/z, and {}", kOrthographicHint);
   try {
     for (const Note& note : detected(findings_of(source, raw, seen, false))) text += "; " + note.text;
   } catch (const Error&) {  // the depth has no meaning yet
@@ -114,7 +114,7 @@ void settle_by_planes(FrameSource& source, const InputSettings& settings, std::s
                       std::span<const float> normal, std::uint64_t most_bytes) {
   const Window& data = source.reading.data;
   if (depth.size() % data.pixels() != 0)
-    fail(ErrorKind::input, "{}: a part of a frame cannot settle it", source.depth_path());
+    fail(ErrorKind::input, "{}: a part of a frame cannot decide how it is read", source.depth_path());
   if (data.pixels() <= kEvidencePixels && depth.size_bytes() + normal.size_bytes() <= most_bytes)
     return settle(source, settings, {data, depth, normal});
   const Window rows = middle_rows(source, most_bytes);
@@ -159,11 +159,10 @@ bool settle_like_or_alone(FrameSource& source, const FrameSource& settled, const
     const DepthRange &own = source.reading.depth_range, &other = settled.reading.depth_range;
     const double apart = std::abs(*own.disparity_shift - *other.disparity_shift);
     if (source.evidence->tells && apart > own.disparity_error + other.disparity_error) {
-      source.notes.push_back(
-          {NoteCode::unusual_reading,
-           fmt::format("disparity's shift is {:.5g} here, and that of the sequence {:.5g}: the frame has depths of its "
-                       "own, and AO may change from frame to frame (--set disparity-shift says one for all)",
-                       *own.disparity_shift, *other.disparity_shift)});
+      source.notes.push_back({NoteCode::unusual_reading,
+                              fmt::format("disparity's shift is {:.5g} here, and {:.5g} in the sequence: AO may change "
+                                          "from frame to frame (--set disparity-shift sets one for all)",
+                                          *own.disparity_shift, *other.disparity_shift)});
       return false;
     }
   } catch (const Error&) {  // it does not tell

@@ -23,7 +23,7 @@ void settle(FrameSource& source, const InputSettings& settings, const RawPart& r
 /// Does the same, with the evidence in `seen` instead of the source; if it fails, `seen` has the evidence so far.
 void settle(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen);
 
-/// The most pixels that a frame is settled by.
+/// The most pixels for settling a frame.
 constexpr std::size_t kEvidencePixels = std::size_t(1) << 24;
 
 /// Settles a frame by planes of all its pixels. If they are more than kEvidencePixels, or their results take more than
@@ -32,8 +32,8 @@ void settle_by_planes(FrameSource& source, const InputSettings& settings, std::s
                       std::span<const float> normal,
                       std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
-/// Does the same by planes that it reads itself: of all rows, or of as many from the middle as fit into `most_bytes`.
-/// Fails with ErrorKind::device too, if a single row holds more than kEvidencePixels.
+/// Reads the planes itself: all rows, or as many from the middle as fit into `most_bytes`. Fails with ErrorKind::device
+/// too, if a single row holds more than kEvidencePixels.
 void settle_by_rows(FrameSource& source, const InputSettings& settings,
                     std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
@@ -41,8 +41,8 @@ void settle_by_rows(FrameSource& source, const InputSettings& settings,
 /// settled by itself.
 bool settle_like(FrameSource& source, const FrameSource& settled);
 
-/// Does the same for a frame of disparity whose shift nobody says, unless its own normals prove another one: then it is
-/// settled by itself, with a note. It reads as settle_by_rows() does. Returns whether it is settled like the other.
+/// Does the same for a frame of disparity with an unknown shift. If its own normals prove another shift, it is settled
+/// by itself, with a note. It reads as settle_by_rows() does. Returns whether it is settled like the other frame.
 bool settle_like_or_alone(FrameSource& source, const FrameSource& settled, const InputSettings& settings,
                           std::uint64_t most_bytes);
 

@@ -81,9 +81,8 @@ double DepthSettlement::straightness_from_1() const {
 }
 
 std::string DepthSettlement::normalized_line(bool reversed) {
-  return fmt::format(
-      "--depth-kind normalized{} --near 0 --far F, where F is the distance, in scene units, that {} stands for",
-      reversed ? " --reversed-z" : "", reversed ? 0 : 1);
+  return fmt::format("--depth-kind normalized{} --near 0 --far F, where F is the distance of {} in scene units",
+                     reversed ? " --reversed-z" : "", reversed ? 0 : 1);
 }
 
 void settle_depth(const PlanesToSettle& planes, const DepthFacts& facts) {

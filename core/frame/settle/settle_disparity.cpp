@@ -16,8 +16,7 @@ namespace alcove {
 namespace {
 
 constexpr const char* kOptions =
-    "--set disparity-shift B, the value of what is infinitely far, or --near N --far F, the distances of the values 1 "
-    "and 0";
+    "--set disparity-shift B, the value at infinity, or --near N --far F, the distances of the values 1 and 0";
 // Parts of the median value above the shift.
 constexpr double kMostUncertain = 0.12, kProven = 0.02;  // of the shift's error
 constexpr double kSame = 0.02;                           // of the difference of shifts that are one
@@ -79,13 +78,13 @@ class DisparitySettlement : private DepthSettlement {
   ShiftScore found_shift() const {
     const auto found = scores();
     if (found.empty())
-      fail(ErrorKind::input, "{}: disparity is a / z + b, and nothing tells b: give normals, by --normal, or {}{}",
-           path_, kOptions, hint_of_planes());
+      fail(ErrorKind::input, "{}: disparity is a / z + b, with an unknown b: give normals, by --normal, or {}{}", path_,
+           kOptions, hint_of_planes());
     const ShiftScore& best = found[0];
     refuse_turned(best);
     if (best.agreement < kLeastAgreement || uncertainty(best) > kMostUncertain)
       fail(ErrorKind::input,
-           "{}: disparity is a / z + b, and the normals do not tell b: {}; give {}; or other normals (--normal), with "
+           "{}: disparity is a / z + b, and the normals do not show b: {}; give {}; or other normals (--normal), with "
            "--normal-space and --flip-normal",
            path_, text_of(best), kOptions);
     refuse_ambiguous(found);
@@ -96,8 +95,8 @@ class DisparitySettlement : private DepthSettlement {
   void refuse_turned(const ShiftScore& score) const {
     if (score.agreement < kLeastAgreement || values_.all.most - score.shift > score.shift - values_.all.least) return;
     fail(ErrorKind::input,
-         "{}: by the normals its larger values are farther away ({}), and those of disparity are nearer: turn the "
-         "values round, or give another --depth-kind",
+         "{}: by the normals its larger values are farther away ({}), and in disparity they are nearer: invert the "
+         "values, or give another --depth-kind",
          path_, text_of(score));
   }
 
@@ -127,20 +126,20 @@ class DisparitySettlement : private DepthSettlement {
     if (reading_.depth_is_coarse) seen_.space_by_shift = score.space;
     const double part = uncertainty(score), ao = std::max(kAoOfShift * part, kAoOfMisfit * (1 - score.agreement));
     take_down("disparity's shift", fmt::format("{:.5g}", score.shift),
-              fmt::format("{}; the error is {:.2g} % of the median value above it, and by this and what does not fit "
-                          "AO is off by up to {:.1g}, beside the errors along blurred outlines",
+              fmt::format("{}; the error is {:.2g} % of the median value above it, and with other misfits AO is off by "
+                          "up to {:.1g}, apart from blurred outlines",
                           text_of(score), 100 * part, ao),
               "--set disparity-shift", true, part < kProven && ao < kLittleAo);
   }
 
   static std::string text_of(const RightAngles& found) {
-    return fmt::format("with b = {:.5g} +- {:.2g} most of the planes in the picture meet at right angles", found.shift,
+    return fmt::format("with b = {:.5g} +- {:.2g} most planes in the picture meet at right angles", found.shift,
                        found.error);
   }
 
   std::string hint_of_planes() const {
     const auto found = shift_by_right_angles(view_, raw_.depth, seen_.grain);
-    return found ? fmt::format("; {}: where they do, give --set disparity-shift={:.5g}", text_of(*found), found->shift)
+    return found ? fmt::format("; {}: if they do, give --set disparity-shift={:.5g}", text_of(*found), found->shift)
                  : "";
   }
 

@@ -18,11 +18,10 @@ void note_centre(FrameSource& source) {
   // A renderer writes its own camera into headers.
   if (source.open.camera || !source.camera_from.empty() || !is_off_centre(source.reading.camera)) return;
   source.notes.push_back(
-      {NoteCode::principal_point,
-       fmt::format("the principal point is at ({:.6g}, {:.6g}) of {} x {} pixels, and no pixel shows whether it is on "
-                   "the right side of the centre",
-                   source.reading.camera.cx, source.reading.camera.cy, source.reading.camera.width,
-                   source.reading.camera.height)});
+      {NoteCode::principal_point, fmt::format("the principal point is at ({:.6g}, {:.6g}) of {} x {} pixels, and no "
+                                              "pixel shows on which side of the centre it belongs",
+                                              source.reading.camera.cx, source.reading.camera.cy,
+                                              source.reading.camera.width, source.reading.camera.height)});
 }
 
 void settle_normals(FrameSource& source, const InputSettings& settings, const RawPart& raw, Evidence& seen) {

@@ -34,8 +34,7 @@ void Settlement::take_down(const std::string& what, const std::string& chosen, c
 void Settlement::guess(const std::string& what, const std::string& chosen, const std::string& why,
                        const std::string& option, bool unusual, bool proven) {
   if (settings_.strict)
-    fail(ErrorKind::input, "{}: --strict, and nothing says the {}; it would be {} ({}): give {}", path_, what, chosen,
-         why, option);
+    fail(ErrorKind::input, "{}: --strict, and the {} is a guess, {} ({}): give {}", path_, what, chosen, why, option);
   take_down(what, chosen, why, option, unusual, proven);
 }
 

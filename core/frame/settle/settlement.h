@@ -1,4 +1,4 @@
-// A frame that is being settled, from files or from memory: what its steps share.
+// A frame during settling, from files or from memory: the state that the steps share.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
