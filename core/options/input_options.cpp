@@ -178,6 +178,11 @@ void add_channel_rows(std::vector<SettingRow>& rows) {
       .text("ambient", &S::ambient, "LIGHT[*LAYER][*NUMBER],...",
             "layers of the beauty's file which alone AO dims, each by that much; beauty: all of it")
       .idle(unless_composite);
+  pixels
+      .text("shadow-layers", &S::shadow_layers, "NAME:LAYER,...",
+            "layers of the beauty's file, each dimmed by the shadow of the light NAME of --lights")
+      .idle(unless_composite)
+      .idle(unless_lights);
   pixels.text("material-ao-channel", &S::material_ao_channel, "NAME", "of the materials' AO, in its file or INPUT");
   pixels.text("albedo-channels", &S::albedo_channels, "LAYER|R,G,B", "the diffuse colour's layer, or its channels")
       .idle(unless_multi_bounce)
