@@ -14,6 +14,7 @@
 #include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
+#include "core/frame/find/lights.h"
 #include "core/frame/raw_plane.h"
 #include "core/run/run_files.h"
 #include "core/run/run_preview.h"
@@ -227,6 +228,8 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
   };
   RunPreview first(look_of(typed, with_radii({"auto"}), 0).settings);
   check_reports(typed, first.plan());
+  const bool is_of_sun = turns_sun(first.plan().settings().estimator);  // of one radius, if nothing else is typed
+  if (is_of_sun && given.empty()) given = {"auto"};
   std::size_t frames = first.plan().frames().size();
   const bool names_frames = std::ranges::count(arguments, Words{"--frames"}) > 0;
   const bool is_contact_sheet = frames > 1 && !names_frames && given.size() == 1 && count_of(arguments) == 1;
@@ -242,7 +245,8 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
     frames = 1;
   }
   Words radii;
-  for (const double radius : radii_of(given, proposed, !is_contact_sheet)) radii.push_back(fmt::format("{}", radius));
+  for (const double radius : radii_of(given, proposed, !is_contact_sheet && !is_of_sun))
+    radii.push_back(fmt::format("{}", radius));
   const auto all = with_radii(radii);
   const std::size_t count = count_of(all);
   if (count * frames > kMostPictures && !(count == 1 && typed.page.empty()))

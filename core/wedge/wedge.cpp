@@ -94,6 +94,7 @@ class WedgeMaker {
       firsts_.emplace_back(with_planes_of_page(look.settings));
       add_new(look.notes, firsts_.back().prepare());
     }
+    memory_ = memory_for_frames(plan().settings(), lanes_.device().info());
     set_exr_threads(core_count());
     set_exr_memory(memory_.host_bytes / kCodecPart);
   }
@@ -239,9 +240,9 @@ class WedgeMaker {
   const bool has_page_;
   const DeviceSettings& device_ = looks_.front().settings.device;
   Lanes lanes_{{device_.device, device_.require_gpu, device_.validate, !device_.no_pipeline_cache}, 1};
-  const RunMemory memory_ = memory_for_frames(looks_.front().settings, lanes_.device().info());
   const std::vector<std::vector<std::size_t>> groups_ = groups_of(looks_);
-  std::deque<RunPreview> firsts_;       // of each look
+  std::deque<RunPreview> firsts_;  // of each look
+  RunMemory memory_;
   std::optional<FrameSource> settled_;  // as which all are read
   ReadPlanes planes_;                   // of the frame
   std::size_t first_cell_ = 0;          // of the sheet, of the frame

@@ -33,8 +33,8 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kSolid = kThicknessWidth | kCompletesBorder | kTellsBacks;
 layout(constant_id = 1) const uint kDirections = 1;  // of the light
 // 1: `result` holds the visibility where occluders are thin, and takes the confidence: 1 less the distance to what
-// is visible for certain. The rules of this run are those of the thickest occluders, and a ray that leaves the image
-// is seen by the part of length / (length + size): the farther it has come, the less likely is it blocked beyond.
+// is visible for certain. This run takes the thickest occluders. A ray that leaves the image counts by its length, see
+// kHalfKnown.
 layout(constant_id = 2) const uint kConfidence = 0;
 layout(scalar, push_constant) uniform Push { ShadowParams params; };
 readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
@@ -64,6 +64,9 @@ const float kLeastFacingToGoOn = 0.02;
 
 /// A light so near to the eye's ray, by its sine, is seen wherever the eye sees.
 const float kLeastSine = 1e-4;
+
+/// Radii after which a ray that leaves the image is as likely blocked beyond as not. It is a guess.
+const float kHalfKnown = 4.0;
 
 /// Scene units: where nothing bounds the reach.
 const float kFarther = 1e20;
@@ -327,7 +330,7 @@ float seen_of(View view, Receiver r, vec3 position, vec3 direction, float far) {
   if (blocked) return 0.0;
   if (kConfidence == 0u || !leaves) return 1.0;
   const float seen_length = length_to_border(view, r, ray);
-  return seen_length / (seen_length + params.size);
+  return seen_length / (seen_length + kHalfKnown * params.size);
 }
 
 /// A direction to the light, and how far away it is: with two numbers in [0, 1), a place of its disc.

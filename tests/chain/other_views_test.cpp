@@ -121,6 +121,8 @@ TEST_P(Projections, what_another_view_sees_behind_a_plate_casts_its_shadow) {
     inputs.lights = {{.at = {toward.x, toward.y, toward.z}}};
     EstimatorSettings settings = plain_settings();
     settings.radius = 0.5;
+    settings.thickness = ThicknessKind::constant;
+    settings.thickness_length = 0.05;
     const FrameOutputs outputs = run_chain(recorder(), inputs, settings, output);
     recorder().run();
     return values_of(outputs.shadow);

@@ -114,7 +114,7 @@ Vector3 turned(const std::string& top, const std::string& space, std::optional<d
                            R"(}, {"name": "key", "space": ")" + space +
                            R"(", "kind": "sun", "direction": [0, 3, 4]}]})";
   const auto lights = lights_of(text, "lights.json", settings)->in_view(camera, 0);
-  EXPECT_EQ(lights[0].at, (Vector3{1, 2, 3})) << "a lamp stays";
+  EXPECT_EQ(lights[0].at, (Vector3{1, 2, camera.left_handed ? -3. : 3.})) << "a lamp stays";
   return lights[1].at;
 }
 
@@ -143,7 +143,7 @@ TEST(Lights, that_turn_must_be_one_sun) {
   EstimatorSettings settings;
   settings.sun_azimuth = 1;
   const std::string two = R"({"lights": [{"name": "a", )" + kSun + R"(}, {"name": "b", )" + kSun + "}]}";
-  const auto refused = [&](const std::string& text, const Options& words) {
+  const auto refused = [&](const std::string& text, const std::vector<std::string>& words) {
     expect_error(ErrorKind::usage, words, [&] { lights_of(text, "lights.json", settings); });
   };
   refused(file_of(kLamp), {"lights.json", "no sun", "--set sun"});

@@ -1,6 +1,7 @@
 // Runs with --lights: what they write, what they are computed anew for, and what they refuse before any work.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/command_line.h"
+#include "tests/support/exr_header.h"
 
 namespace alcove::shadow_run_test {
 namespace {

@@ -95,8 +95,8 @@ TEST_F(Wedge, turns_a_sun_and_shows_its_shadow_by_one_estimate) {
   }
   EXPECT_GT(pictures.size(), 2u);
   EXPECT_EQ(estimates.size(), 1u);
-  expect_refused(run(of_frame("--radius 1 --lights " + lights)), 2, {"--lights", "sun-azimuth"});
-  expect_refused(run(of_frame("--radius 1 --set sun-azimuth=0,90")), 2, {"sun-azimuth", "--lights"});
+  test::expect_refused(run(of_frame("--radius 1 --lights " + lights)), 2, {"--lights", "sun-azimuth"});
+  test::expect_refused(run(of_frame("--radius 1 --set sun-azimuth=0,90")), 2, {"sun-azimuth", "--lights"});
 }
 
 // Looks that differ in their shaping alone take one estimate, and so one time of it.
