@@ -288,9 +288,8 @@ void RunPreview::take_lights() {
     if (std::ranges::find(names, name) == names.end())
       fail(ErrorKind::usage, "--set shadow-layers={}:{}: {} has no light \"{}\"{}", name, layer, lights->path, name,
            suggestion(name, names));
-  settings_.output.read_lights = lights;
   plan_->set_lights(lights);
-  require_distinct_channels(settings_);
+  require_distinct_channels(plan().settings());
 }
 
 Notes RunPreview::prepare() {
