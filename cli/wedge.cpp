@@ -14,6 +14,7 @@
 #include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
+#include "core/frame/find/lights.h"
 #include "core/frame/raw_plane.h"
 #include "core/run/run_files.h"
 #include "core/run/run_preview.h"
@@ -23,7 +24,7 @@ namespace {
 
 constexpr std::size_t kMostPictures = 64;
 /// Options of run that a wedge has, beside those of groups of its own.
-const Words kOthers{"--frames", "--device", "--memory", "-q,--quiet"};
+const Words kOthers{"--frames", "--lights", "--device", "--memory", "-q,--quiet"};
 /// Those that no look has.
 const Words kOwn{"-o,--output", "--sheet", "-q,--quiet", "--dry-run"};
 
@@ -36,7 +37,9 @@ constexpr const char* kWedge =
     "Examples:\n"
     "  alcove wedge frame.exr --camera camera.json -o looks.html\n"
     "  alcove wedge frame.exr --camera camera.json --radius .1,.2,.5,1 --preset draft,production --sheet looks.png\n"
-    "  alcove wedge frame.exr --camera camera.json --radius .5 --set intensity=.8,1,1.3 -o looks.html\n";
+    "  alcove wedge frame.exr --camera camera.json --radius .5 --set intensity=.8,1,1.3 -o looks.html\n"
+    "  alcove wedge frame.exr --camera camera.json --radius .5 --lights sun.json --set sun-azimuth=0,90,180 -o "
+    "suns.html\n";
 
 /// The options of run that say how a frame is read and estimated, and its own.
 Command wedge_syntax() {
@@ -50,6 +53,8 @@ Command wedge_syntax() {
   for (auto& row : command.rows) {
     if (row.name == "--frames") row.sentence = "such as 1001,1050; else the middle one of INPUT on the disk";
     if (row.name == "--dry-run") row.sentence = "print frames, looks, memory and cost, and stop";
+    if (row.name == "--lights")
+      row.sentence = "a sun of it is the picture where --set sun-azimuth or sun-elevation turns it";
     if (row.name == "--preset") row.sentence = "settings from presets, a look for each of a list";
     if (row.name == "--set") row.value = "KEY=VALUE[,VALUE...]";
     if (row.name == "--radius")
@@ -80,7 +85,7 @@ struct Typed {
 
 /// Whether a setting says how the frame is read, which all looks share.
 bool is_shared(const OptionRow& row) {
-  return row.group == "Input" || row.group == "Hidden surfaces" || has(kOthers, row.name);
+  return row.group == "Input" || row.group == "Hidden surfaces" || (has(kOthers, row.name) && row.name != "--lights");
 }
 
 /// The values of a list. A setting that takes a list itself has one value, but for radii and presets.
@@ -223,6 +228,8 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
   };
   RunPreview first(look_of(typed, with_radii({"auto"}), 0).settings);
   check_reports(typed, first.plan());
+  const bool is_of_sun = turns_sun(first.plan().settings().estimator);  // of one radius, if nothing else is typed
+  if (is_of_sun && given.empty()) given = {"auto"};
   std::size_t frames = first.plan().frames().size();
   const bool names_frames = std::ranges::count(arguments, Words{"--frames"}) > 0;
   const bool is_contact_sheet = frames > 1 && !names_frames && given.size() == 1 && count_of(arguments) == 1;
@@ -238,7 +245,8 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
     frames = 1;
   }
   Words radii;
-  for (const double radius : radii_of(given, proposed, !is_contact_sheet)) radii.push_back(fmt::format("{}", radius));
+  for (const double radius : radii_of(given, proposed, !is_contact_sheet && !is_of_sun))
+    radii.push_back(fmt::format("{}", radius));
   const auto all = with_radii(radii);
   const std::size_t count = count_of(all);
   if (count * frames > kMostPictures && !(count == 1 && typed.page.empty()))
@@ -252,6 +260,11 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
     if (proposed && has_own_radius && looks.back().settings.estimator.radius == proposed) name += " (proposed)";
   }
   check_looks(looks);
+  const bool shows = std::ranges::any_of(looks, [](const WedgeLook& look) { return shows_lights(look.settings); });
+  if (std::ranges::count(arguments, Words{"--lights"}) > 0 && !shows)
+    fail(ErrorKind::usage,
+         "--lights: a wedge shows a light where --set sun-azimuth or sun-elevation turns it, or --set shadow-layers "
+         "names its layer");
   return looks;
 }
 

@@ -39,6 +39,8 @@ struct InputSettings {
   std::string normal_channels, beauty_channels, position_channels;
   // the light that AO may dim, see core/frame/find/frame_source.cpp; empty: found
   std::string ambient;
+  // layers of the beauty's file that shadows of --lights dim: NAME:LAYER, with commas
+  std::string shadow_layers;
   // the materials' own AO: a file, and the full name of a channel. Empty file: the input, if a channel is named; empty
   // name: found
   std::string material_ao, material_ao_channel;
@@ -163,7 +165,9 @@ struct EstimatorSettings {
   double intensity = 1;                // factor on the occlusion, 0 to 100
   double power = 1;                    // exponent of the visibility, above 0 to 100
   std::optional<double> shadow_reach;  // scene units, > 0: the farthest blocker of a light; none: anywhere
-  double least = 0;                    // the lowest AO after all shaping, 0 to 1; a matte's outside may be lower
+  std::string sun;                     // the light that these turn; empty: the only sun
+  std::optional<double> sun_azimuth, sun_elevation;  // degrees: see docs/inputs.md; none: as the lights file says
+  double least = 0;  // the lowest AO after all shaping, 0 to 1; a matte's outside may be lower
   // scene units of planar depth, both or none, 0 <= start < end: the AO fades to 1 from one to the other
   std::optional<double> fade_start, fade_end;
   // perceptual roughness of all surfaces for specular occlusion, 0 to 1; by default half way, as in engines' default

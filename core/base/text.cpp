@@ -249,6 +249,34 @@ Json with_valid_strings(const Json& json) {
 
 std::string json_text(const nlohmann::ordered_json& json, int indent) { return with_valid_strings(json).dump(indent); }
 
+nlohmann::json json_of(const std::string& text, int deepest, std::string& why) {
+  // The parser would tell the depth, but looks then at all entries of a list for each of them.
+  int depth = 0, most = 0;
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < text.size(); i++) {
+    if (is_quoted && text[i] == '\\')
+      i++;
+    else if (text[i] == '"')
+      is_quoted = !is_quoted;
+    else if (!is_quoted && (text[i] == '{' || text[i] == '['))
+      most = std::max(most, ++depth);
+    else if (!is_quoted && (text[i] == '}' || text[i] == ']'))
+      depth--;
+  }
+  why = fmt::format("; its JSON nests deeper than {}", deepest);
+  if (most > deepest) return nullptr;
+  why.clear();
+  try {
+    return nlohmann::json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    const auto end = text.begin() + std::ptrdiff_t(std::min(error.byte, text.size()));
+    why = fmt::format("; line {} is no JSON", 1 + std::count(text.begin(), end, '\n'));
+  } catch (const nlohmann::json::exception&) {
+    why = "; it has a number that no computer holds";
+  }
+  return nullptr;
+}
+
 std::string frames_text(std::vector<int> frames) {
   std::ranges::sort(frames);
   std::string text;

@@ -54,6 +54,10 @@ std::optional<double> number_of(std::string_view text);
 /// Gives " (did you mean a or b?)" for the end of a message, or an empty text if no candidate is near.
 std::string suggestion(std::string_view name, std::span<const std::string> candidates);
 
+/// Reads JSON. Where the text is none, or its objects and lists lie within each other deeper than `deepest`, since
+/// copying and quoting them recurses, gives null and says why, for the end of a message: "; line 3 is no JSON".
+nlohmann::json json_of(const std::string& text, int deepest, std::string& why);
+
 /// The document in valid UTF-8, on one line or with `indent` spaces per level. Keys and strings may hold names of
 /// files, which may be no UTF-8: as_utf8() escapes them.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);

@@ -120,8 +120,10 @@ FrameOutputs with_light(gpu::Recorder& gpu, const FrameInputs& frame, const Seen
   const GBuffer& gbuffer = seen.surfaces.frame;
   const Visibility& visibility = seen.visibility;
   if (wanted.has(&FrameOutputs::shadow))
-    out.shadow =
-        cut(gpu, frame, &shadow(gpu, seen.surfaces.wide, with_margin(frame), settings, told_of(seen)), "shadow");
+    out.shadow = cut(gpu, frame,
+                     &shadow(gpu, seen.surfaces.wide, with_margin(frame), settings, told_of(seen),
+                             wanted.has(&FrameOutputs::confidence)),
+                     "shadow");
   if (wanted.has(&FrameOutputs::transfer))
     out.transfer = &transfer(gpu, gbuffer, visibility, frame.aov_from_view, "transfer");
   if (wanted.has(&FrameOutputs::relight))
@@ -157,7 +159,8 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& se
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, open, *visibility.ao, settings.roughness);
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
   out = reduce(gpu, frame, wanted.filter, out);
-  out.composite = composite(gpu, gbuffer, out.color_ao ? out.color_ao : out.ao, frame, wanted.look, settings.least);
+  const gpu::Buffer* ao = out.color_ao ? out.color_ao : out.ao;
+  out.composite = composite(gpu, gbuffer, ao, out.shadow, frame, wanted.look, settings.least);
   for (const auto* view : wanted.debug_views) out.debug.push_back(debug(gpu, *view, gbuffer, seen.stages, frame));
   return out;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "core/base/text.h"
 
 namespace alcove {
@@ -37,6 +38,21 @@ bool names_picture(const std::string& text) {
 bool chooses_occluders(const InputSettings& settings) {
   return !settings.occluders.empty() || !settings.occluder_objects.empty() || !settings.ignore.empty() ||
          !settings.ignored_objects.empty();
+}
+
+std::vector<ShadowLayer> shadow_layers_of(const InputSettings& settings) {
+  std::vector<ShadowLayer> layers;
+  if (settings.shadow_layers.empty()) return layers;
+  for (const auto& text : split(settings.shadow_layers)) {
+    const auto colon = text.find(':');
+    if (colon == 0 || colon >= text.size() - 1)
+      fail(ErrorKind::usage,
+           "--set shadow-layers={}: it takes NAME:LAYER, a light of --lights and its layer in the beauty's file, "
+           "several with commas",
+           text);
+    layers.push_back({text.substr(0, colon), text.substr(colon + 1)});
+  }
+  return layers;
 }
 
 bool has_deep(const InputSettings& settings) { return settings.deep != FileList{}; }

@@ -25,7 +25,7 @@ constexpr std::size_t kMostBehindPlanes = 16;
 /// The most planes of a matte: those of an identifier and its coverage, for each rank of a Cryptomatte.
 constexpr std::size_t kMostMattePlanes = 32;
 
-/// The most lights that AO may dim.
+/// The most lights that AO and shadows may dim.
 constexpr std::size_t kMostAmbientLights = 16;
 
 /// A row of the table.
@@ -84,6 +84,13 @@ bool names_picture(const std::string& text);
 
 /// Whether some surfaces are no occluders.
 bool chooses_occluders(const InputSettings& settings);
+
+/// A layer of the beauty, and the light of --lights that it is the light of.
+struct ShadowLayer {
+  std::string light, layer;
+};
+/// What --set shadow-layers lists. Fails with ErrorKind::usage on a text that is no such list.
+std::vector<ShadowLayer> shadow_layers_of(const InputSettings& settings);
 
 /// Whether --deep names a file.
 bool has_deep(const InputSettings& settings);

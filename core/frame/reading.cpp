@@ -299,6 +299,10 @@ void read_like(Reading& reading, const Meaning& settled) {
   reading.depth_range.far = own.far;
 }
 
+bool dims_beauty(const std::vector<AmbientReading>& lights) {
+  return std::ranges::none_of(lights, [](const AmbientReading& light) { return light.weight.has_value(); });
+}
+
 DepthMap depth_map_of(const Reading& reading) {
   return depth_map(reading.depth_kind, reading.depth_range, reading.position_space, reading.camera, reading.depth_scale,
                    sky_of(reading.depth_kind, reading.depth_is_half, reading.sky, reading.found_sky));

@@ -145,10 +145,13 @@ struct MatteReading {
 
 /// The reading of a light of the planes of RawPlane::indirect: see composite.comp.
 struct AmbientReading {
-  double weight = 1;
-  int color = -1;  // index into RawPlane::diffuse_color of its factor; below 0: none
+  std::optional<double> weight = 1;  // how much of it AO dims; none: a shadow alone does
+  int color = -1;                    // index into RawPlane::diffuse_color of its factor; below 0: none
+  std::string shadow = {};           // the light of --lights whose shadow dims it; empty: none
   bool operator==(const AmbientReading&) const = default;
 };
+/// Whether AO dims the whole beauty, since none of these says what else.
+bool dims_beauty(const std::vector<AmbientReading>& lights);
 
 /// The meaning of one frame, with its windows and its camera.
 struct Reading : Meaning {
@@ -164,7 +167,7 @@ struct Reading : Meaning {
   bool cuts_ramps = false;          // pixels of blurred outlines go to the surfaces on both sides: see cut_ramps()
   std::vector<BehindPlane> behind;  // of the planes of RawPlane::behind, one for each
   MatteReading matte, occluders;
-  std::vector<AmbientReading> ambient;  // the lights that AO may dim; none: it dims the whole beauty
+  std::vector<AmbientReading> ambient;  // the lights that AO and shadows may dim
 };
 
 /// Gives the same reading for a part of the frame.

@@ -147,7 +147,19 @@ void add_search_rows(std::vector<SettingRow>& rows) {
   pixels
       .number("shadow-reach", &S::shadow_reach, "scene units", above_to(0, 1e15),
               "the farthest blocker of a light; else anywhere in the frame")
-      .idle([](const Settings& all) { return unless_given(asks_for_shadows(all), "--lights"); });
+      .idle(unless_lights);
+  pixels
+      .number("sun-azimuth", &S::sun_azimuth, "degrees", between(-360, 360),
+              "of a sun of --lights: from x counterclockwise, seen from above")
+      .idle(unless_lights);
+  pixels
+      .number("sun-elevation", &S::sun_elevation, "degrees", between(-90, 90), "of a sun of --lights, above the ground")
+      .idle(unless_lights);
+  pixels.text("sun", &S::sun, "NAME", "which sun of --lights these two turn; else its only one")
+      .idle([](const Settings& all) {
+        const auto& e = all.estimator;
+        return unless_given(e.sun_azimuth || e.sun_elevation, "--set sun-azimuth and no --set sun-elevation");
+      });
   pixels
       .choice("elevation", &S::elevation,
               "a horizon's elevation; view: above the plane across the view ray; surface: above the surface")

@@ -181,6 +181,11 @@ void add_channel_rows(std::vector<SettingRow>& rows) {
       .text("ambient", &S::ambient, "LIGHT[*LAYER][*NUMBER],...",
             "the layers of the beauty's file that AO dims, with weights; beauty: all of it")
       .idle(unless_composite);
+  pixels
+      .text("shadow-layers", &S::shadow_layers, "NAME:LAYER,...",
+            "layers of the beauty's file, each dimmed by the shadow of the light NAME of --lights")
+      .idle(unless_composite)
+      .idle(unless_lights);
   pixels.text("material-ao-channel", &S::material_ao_channel, "NAME",
               "the material AO's channel, in its file or INPUT");
   pixels.text("albedo-channels", &S::albedo_channels, "LAYER|R,G,B", "the diffuse colour's layer, or its channels")

@@ -26,6 +26,7 @@ std::string if_by_error(const Settings& settings);
 bool asks_for_confidence(const Settings& settings);
 /// Shadows of lights use the settings of thickness, noise and denoiser, beside any estimator of the AO.
 bool asks_for_shadows(const Settings& settings);
+std::string unless_lights(const Settings& settings);
 std::string unless_denoised(const Settings& settings, std::initializer_list<Denoise> kinds);
 /// Some pixels take the estimates of others, be it at another density.
 std::string unless_shared_estimates(const Settings& settings);

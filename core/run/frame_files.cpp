@@ -215,9 +215,11 @@ std::vector<float> shown_composite(FrameSource& source, const Window& window, co
 
 }  // namespace
 
-ShownPicture shown_plane(const FrameSource& source, const Window& window, const gpu::Buffer& plane) {
+ShownPicture shown_plane(const FrameSource& source, const Window& window, const gpu::Buffer& planes,
+                         std::size_t plane) {
   const Window display = picture_of(source.reading, source.reading.display), data = picture_of(source.reading, window);
-  const std::vector<float> pixels = in_picture(source, window, plane.as<float>());
+  const std::vector<float> pixels =
+      in_picture(source, window, planes.as<float>().subspan(plane * window.pixels(), window.pixels()));
   const Window written = written_picture(source);
   return {display.width, display.height, 1, displayed(display, written, cropped(pixels, data, written), 1)};
 }
@@ -334,9 +336,10 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
 std::string composite_text(const FrameSource& source, const Settings& all) {
   const CompositeLook& look = all.output.look;
   std::string text = "multiply: beauty * ao";
-  if (!source.channels[RawPlane::indirect].empty())
+  if (!dims_beauty(source.reading.ambient))
     text = fmt::format("ambient: beauty - D + D * ao, D = {}",
                        all.input.ambient.empty() ? "indirect diffuse" : all.input.ambient);
+  if (!all.input.shadow_layers.empty()) text += fmt::format("; shadows: {}", all.input.shadow_layers);
   if (all.output.multi_bounce) text += "; ao with multi-bounce";
   if (look.fog_density > 0) text += fmt::format("; ao seen through fog of density {}", look.fog_density);
   if (look.gain != 1) text += fmt::format("; gain {}", look.gain);
@@ -447,8 +450,7 @@ void require_for_outputs(const FrameSource& source, const OutputSettings& settin
     fail(ErrorKind::input,
          "{}: --environment lights the world, and needs a camera with world_to_camera: give a --camera file with it",
          file);
-  if (settings.multi_bounce && !source.channels[RawPlane::beauty].empty() &&
-      source.channels[RawPlane::indirect].empty())
+  if (settings.multi_bounce && !source.channels[RawPlane::beauty].empty() && dims_beauty(source.reading.ambient))
     fail(
         ErrorKind::input,
         "{}: --set multi-bounce brightens indirect diffuse light in the --composite, and the frame has none (--beauty)",

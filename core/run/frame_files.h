@@ -123,7 +123,8 @@ class FrameWriter {
 };
 
 /// A plane over a window, as it is, in the picture's display window; 0 where there are no pixels.
-ShownPicture shown_plane(const FrameSource& source, const Window& window, const gpu::Buffer& plane);
+ShownPicture shown_plane(const FrameSource& source, const Window& window, const gpu::Buffer& planes,
+                         std::size_t plane = 0);
 /// The composite that is computed over a window, or the beauty where that is null, through the view transform.
 ShownPicture shown_colors(FrameSource& source, const Window& window, const gpu::Buffer* computed,
                           const DisplayTransform* transform);

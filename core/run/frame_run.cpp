@@ -224,8 +224,7 @@ Notes FrameTally::notes_on(const FrameSource& source, const InputSettings& setti
     notes.push_back(
         {NoteCode::no_normals,
          "there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)"});
-  if (!source.channels[RawPlane::beauty].empty() && source.channels[RawPlane::indirect].empty() &&
-      settings.ambient.empty())
+  if (!source.channels[RawPlane::beauty].empty() && dims_beauty(source.reading.ambient) && settings.ambient.empty())
     notes.push_back({NoteCode::no_indirect_light,
                      "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims "
                      "direct light too; --set ambient names its ambient light, or beauty for all of it",
@@ -423,7 +422,7 @@ class FrameRun {
 
   /// Computes the visibility once, and the results of each look from it.
   void run_looks(FrameSource& source, const Window& computed) {
-    const FrameInputs inputs = load(source, computed);
+    FrameInputs inputs = load(source, computed);
     last_.forget();
     const Seen seen = see(gpu_, inputs, settings_.estimator, settings_.output);
     run_passes();
@@ -431,6 +430,7 @@ class FrameRun {
     for (std::size_t i = 0; i < run_.looks.size(); i++) {
       throw_if_stopped();
       const Settings& look = run_.looks[i];
+      if (const auto& lights = look.output.read_lights) inputs.lights = lights->in_view(source.reading.camera, frame_);
       const FrameOutputs outputs = results_of(gpu_, inputs, seen, look.estimator, look.output);
       time.own_ms = run_passes();
       // What is noted is the same of each.

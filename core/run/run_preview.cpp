@@ -270,11 +270,16 @@ void RunPreview::take_radii_of_depth(Notes& notes) {
 
 void RunPreview::take_lights() {
   refuse_overwriting(plan());  // which says more than that an output is no lights file
-  const auto lights = read_lights(settings_.output.lights);
+  const auto lights = read_lights(settings_.output.lights, settings_.estimator);
   lights->require_frames(plan().frames());
-  settings_.output.read_lights = lights;
+  std::vector<std::string> names;
+  for (const auto& light : lights->lights) names.push_back(light.name);
+  for (const auto& [name, layer] : shadow_layers_of(settings_.input))
+    if (std::ranges::find(names, name) == names.end())
+      fail(ErrorKind::usage, "--set shadow-layers={}:{}: {} has no light \"{}\"{}", name, layer, lights->path, name,
+           suggestion(name, names));
   plan_->set_lights(lights);
-  require_distinct_channels(settings_);
+  require_distinct_channels(plan().settings());
 }
 
 Notes RunPreview::prepare() {
@@ -414,6 +419,8 @@ std::string plan_text(RunPreview& look, bool is_wedge) {
   const Camera& camera = source.reading.camera;
   line("camera", fmt::format("{}, {:.6g} x {:.6g} px {}", camera.orthographic ? "orthographic" : "perspective",
                              camera.fx, camera.fy, camera.orthographic ? "per scene unit" : "focal length"));
+  if (first.input.roi && !first.output.lights.empty() && !first.estimator.shadow_reach)
+    line("lights", "--roi takes the whole frame, of which anything may block: --set shadow-reach bounds that");
   const FrameMemory frame = memory_with_others(plan, source, first);
   const std::uint64_t bytes = frame.of(source.reading.data).host;
   InputIdentities identities(plan);

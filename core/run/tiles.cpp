@@ -51,15 +51,11 @@ Window grown(const Window& window, int margin_x, int margin_y, const Window& wit
 /// How far pixels count for what filters make of another one, in px: by their estimates, and by whether they have one.
 int reach_of_filters(const EstimatorSettings& settings) { return filter_reach_of(settings) + site_reach_of(settings); }
 
-/// The most pixels that the denoiser of soft shadows reaches.
-constexpr int kDenoiseMost = 8;
-
 /// The same for all that a frame's outputs are made from.
 int filter_reach(const Settings& settings) {
-  const int of_soft = settings.output.lights.empty() ? 0 : kDenoiseMost;
-  const int own = std::max(reach_of_filters(settings.estimator), of_soft);
-  if (!wants(settings.output, &FrameOutputs::confidence)) return own;
-  return std::max(own, reach_of_filters(bracket_of(settings.estimator)));
+  const int own = reach_of_filters(settings.estimator);
+  const bool is_alone = settings.output.lights.empty() && !wants(settings.output, &FrameOutputs::confidence);
+  return is_alone ? own : std::max(own, reach_of_filters(bracket_of(settings.estimator)));
 }
 
 /// How far lines reach beyond the sphere of the radius until they tell what those of the whole frame do, in px; 0 where
@@ -67,6 +63,10 @@ int filter_reach(const Settings& settings) {
 int line_reach(const EstimatorSettings& settings) {
   if (searches_exactly(settings)) return int(settings.resolution) * (kProfileRestart + 2);
   return tells_backs(settings) ? int(settings.resolution) * 4 : 0;
+}
+int line_reach(const Settings& settings) {
+  const int own = line_reach(settings.estimator);
+  return settings.output.lights.empty() ? own : std::max(own, line_reach(bracket_of(settings.estimator)));
 }
 
 /// The reach, in px, of the passes that pair surfaces with their backs and read mattes of occluders; 0 without them.
@@ -138,7 +138,7 @@ Surroundings::Surroundings(const FrameSource& source, const Settings& settings, 
       radius_(settings.estimator.radius ? radii_of(settings.estimator).back() : 0),
       occluders_(reach_of_occluders(settings)),
       filters_(filter_reach(settings) + reduce_reach(settings.output.filter, source.reading.supersampling)),
-      lines_(std::max(line_reach(settings.estimator), settings.output.lights.empty() ? 0 : line_reach(bracket_of({})))),
+      lines_(line_reach(settings)),
       pairs_(pair_reach(source, settings.estimator)),
       widest_run_(widest_run(settings.estimator)) {}
 

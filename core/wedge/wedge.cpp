@@ -59,6 +59,7 @@ std::string estimate_of(Settings settings) {
   estimator.least = plain.least;
   estimator.fade_start = plain.fade_start;
   estimator.fade_end = plain.fade_end;
+  estimator.sun_azimuth = estimator.sun_elevation = {};
   settings.output.look = {};
   std::string text;
   for (const auto& row : option_table())
@@ -81,7 +82,7 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<WedgeLook>& lo
 /// The settings of a look that is computed for a page, which also takes its depth.
 Settings with_planes_of_page(Settings settings) {
   settings.output.aovs = "ao,depth";
-  settings.output.lights.clear();
+  if (!shows_lights(settings)) settings.output.lights.clear();
   return settings;
 }
 
@@ -93,6 +94,7 @@ class WedgeMaker {
       firsts_.emplace_back(with_planes_of_page(look.settings));
       add_new(look.notes, firsts_.back().prepare());
     }
+    memory_ = memory_for_frames(plan().settings(), lanes_.device().info());
     set_exr_threads(core_count());
     set_exr_memory(memory_.host_bytes / kCodecPart);
   }
@@ -188,7 +190,7 @@ class WedgeMaker {
     run.take_look = [&](std::size_t i, FrameSource& source, const Window& window, const FrameOutputs& outputs,
                         const LookTime& time) {
       ms[i] = time.estimate_ms + time.own_ms;
-      const std::vector<ShownPicture> shown = pictures_of(source, window, outputs, run.looks[i].output);
+      const std::vector<ShownPicture> shown = pictures_of(source, window, outputs, run.looks[i]);
       put_into_page(looks_[group[i]], shown, cells[group[i]]);
       cells[group[i]].row["ms"] = ms[i];
       cells[group[i]].row["estimate_ms"] = time.estimate_ms;
@@ -206,10 +208,13 @@ class WedgeMaker {
     run_pipeline(lanes_, run, budget_of_lane(memory_, 1, lanes_.device().info()), std::span(&frame, 1), take, {});
   }
 
-  /// The AO and the composite, if there is one.
+  /// The AO, or the shadow of the sun that looks turn, and the composite, if there is one.
   std::vector<ShownPicture> pictures_of(FrameSource& source, const Window& window, const FrameOutputs& outputs,
-                                        const OutputSettings& output) {
-    std::vector<ShownPicture> shown{shown_plane(source, window, *outputs.ao)};
+                                        const Settings& look) {
+    const OutputSettings& output = look.output;
+    std::vector<ShownPicture> shown{turns_sun(look.estimator)
+                                        ? shown_plane(source, window, *outputs.shadow, output.read_lights->sun)
+                                        : shown_plane(source, window, *outputs.ao)};
     Json& scale = frames_.back()["scale"];
     if (has_page_ && scale.is_null()) scale = scale_of(source.reading, shown_plane(source, window, *outputs.depth));
     if (!outputs.composite) return shown;
@@ -235,9 +240,9 @@ class WedgeMaker {
   const bool has_page_;
   const DeviceSettings& device_ = looks_.front().settings.device;
   Lanes lanes_{{device_.device, device_.require_gpu, device_.validate, !device_.no_pipeline_cache}, 1};
-  const RunMemory memory_ = memory_for_frames(looks_.front().settings, lanes_.device().info());
   const std::vector<std::vector<std::size_t>> groups_ = groups_of(looks_);
-  std::deque<RunPreview> firsts_;       // of each look
+  std::deque<RunPreview> firsts_;  // of each look
+  RunMemory memory_;
   std::optional<FrameSource> settled_;  // as which all are read
   ReadPlanes planes_;                   // of the frame
   std::size_t first_cell_ = 0;          // of the sheet, of the frame
@@ -247,8 +252,13 @@ class WedgeMaker {
 
 }  // namespace
 
+bool shows_lights(const Settings& settings) {
+  return turns_sun(settings.estimator) || !settings.input.shadow_layers.empty();
+}
+
 void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet) {
-  for (auto& look : looks) look.settings.output.lights.clear();  // which a preset may name
+  for (auto& look : looks)
+    if (!shows_lights(look.settings)) look.settings.output.lights.clear();  // which a preset may name
   WedgeMaker maker(looks, !page.empty());
   std::set<std::optional<double>> radii;
   for (const auto& look : looks) radii.insert(look.settings.estimator.radius);

@@ -21,6 +21,9 @@ struct WedgeLook {
   std::optional<Error> error = {};  // why one of its frames failed
 };
 
+/// Whether a look shows lights: it turns a sun, or its composite dims their layers.
+bool shows_lights(const Settings& settings);
+
 /// Computes looks of the same frames, which are read alike, and once; all but time, notes and errors is given. Looks
 /// that differ only in their shaping have one estimate. Writes a page and a sheet; "" stands for none. A row of the
 /// sheet has all radii, where there are several and anything else differs too. A look that fails is left out. Fails

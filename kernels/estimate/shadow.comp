@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: planar depth, view normals; surfaces that may block, and the nearest in every block; how far back each is solid.
-// Out: visibility of the light, 1 = lit.
+// Out: visibility of the light, 1 = lit; or how far it is known, see kConfidence.
 //
 // The ray to the light is walked along its image, pixel by pixel. The steps have their numbers at the code:
 //  1. A surface that faces away from the light has 0.
@@ -33,6 +33,10 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 // behind the first
 layout(constant_id = 0) const uint kSolid = kThicknessWidth | kCompletesBorder | kTellsBacks;
 layout(constant_id = 1) const uint kDirections = 1;  // of the light
+// 1: `result` holds the visibility where occluders are thin, and takes the confidence: 1 less the distance to what
+// is visible for certain. This run takes the thickest occluders. A ray that leaves the image counts by its length, see
+// kHalfKnown.
+layout(constant_id = 2) const uint kConfidence = 0;
 layout(scalar, push_constant) uniform Push { ShadowParams params; };
 readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
 readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
@@ -41,7 +45,7 @@ readonly buffer Occluders { float occluder_depth[]; };
 readonly buffer Nearest { vec2 nearest[]; };  // nearest and farthest depth per block, from nearest
 readonly buffer Hidden { float hidden[]; };   // planes of hidden surfaces that may block, see GBuffer; with layers only
 readonly buffer Backs { uint backs[]; };      // one uint per pixel, from backs; only with kTellsBacks
-writeonly buffer Result { float result[]; };  // one float per pixel, in [0, 1]
+buffer Result { float result[]; };            // one float per pixel, in [0, 1]
 
 const int kSurfaces = ALCOVE_SURFACES;
 const uint kThickness = kSolid & 3u;
@@ -62,16 +66,20 @@ const float kLeastFacingToGoOn = 0.02;
 /// A light so near to the eye's ray, by its sine, is seen wherever the eye sees.
 const float kLeastSine = 1e-4;
 
+/// Radii after which a ray that leaves the image is as likely blocked beyond as not. It is a guess.
+const float kHalfKnown = 4.0;
+
 /// Scene units: where nothing bounds the reach.
 const float kFarther = 1e20;
 
 /// A ray to the light on the image.
 struct Ray {
   vec3 position, direction;
-  float far;          // scene units: where it ends
-  vec2 step_px;       // pixels per step; the longer component is +-1
-  float whole_steps;  // to its end, on the image or not; kEndless: any number
-  int steps;          // of them, those on the image
+  float far;           // scene units: where it ends
+  vec2 step_px;        // pixels per step; the longer component is +-1
+  float steps_across;  // steps per scene unit of the way, at a depth of 1
+  float whole_steps;   // to its end, on the image or not; kEndless: any number
+  int steps;           // of them, those on the image
   // A surface of depth z so many pixels beside the receiver is before the ray if z * facing - scale * dot(change,
   // beside) <= most; scale: z, or 1 orthographic.
   float facing, most;
@@ -88,7 +96,8 @@ Ray ray_of(View view, Receiver r, vec3 position, vec3 direction, float cosine, f
   ray.direction = direction;
   ray.far = far;
   ray.step_px = slice.image_t / pixels;
-  ray.whole_steps = z > 0.0 ? far * sine * pixels / z : kEndless;
+  ray.steps_across = sine * pixels;
+  ray.whole_steps = z > 0.0 ? far * ray.steps_across / z : kEndless;
   ray.steps = int(min(steps_to_border(view, r.pixel, ray.step_px), ray.whole_steps));
   ray.facing = sine * r.ray_length;
   ray.most = ray.facing * r.z;
@@ -278,12 +287,19 @@ bool is_blocked_beyond(View view, Receiver r, Ray ray) {
   return both(both(exists, is_beyond), both(is_near, is_risen));
 }
 
-/// Whether a light is blocked, from its direction and its distance, or that of the farthest place that may block.
-bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far) {
+/// How long a ray is up to the border, in scene units.
+float length_to_border(View view, Receiver r, Ray ray) {
+  const float steps = steps_to_border(view, r.pixel, ray.step_px);
+  const float across = ray.steps_across + (r.perspective ? steps * ray.direction.z : 0.0);
+  return steps * (r.perspective ? r.z : 1.0) / max(across, 1e-30);
+}
+
+/// How much of a light is seen, from its direction and its distance, or that of the farthest place that may block.
+float seen_of(View view, Receiver r, vec3 position, vec3 direction, float far) {
   const float cosine = dot(direction, r.eye);
   const vec3 across = direction - cosine * r.eye;
   const float sine = length(across);
-  if (sine < kLeastSine) return false;
+  if (sine < kLeastSine) return 1.0;
   const Ray ray = ray_of(view, r, position, direction, cosine, sine, across / sine, far);
   const Reach reach = reach_of(view, params.size, 0.0, params.size, params.thickness, params.bias);
   const uint outline = outline_of(ray.step_px);
@@ -322,8 +338,12 @@ bool is_blocked(View view, Receiver r, vec3 position, vec3 direction, float far)
       }
     } while (k <= ray.steps && !blocked);
   }
-  if (kBeyondBorder && !blocked && float(ray.steps + 1) < ray.whole_steps) blocked = is_blocked_beyond(view, r, ray);
-  return blocked;
+  const bool leaves = both(!blocked, float(ray.steps + 1) < ray.whole_steps);
+  if (kBeyondBorder && leaves) blocked = is_blocked_beyond(view, r, ray);
+  if (blocked) return 0.0;
+  if (kConfidence == 0u || !leaves) return 1.0;
+  const float seen_length = length_to_border(view, r, ray);
+  return seen_length / (seen_length + kHalfKnown * params.size);
 }
 
 /// A direction to the light, and how far away it is: with two numbers in [0, 1), a place of its disc.
@@ -360,7 +380,8 @@ void main() {
   for (uint k = 0u; k < kDirections; k++) {
     const vec2 place = vec2((float(k) + noise.x) / float(kDirections), fract(noise.y + kGolden * float(k)));  // 7.
     const vec4 light = towards(position, place);
-    if (dot(light.xyz, r.normal) > 0.0 && !is_blocked(view, r, position, light.xyz, light.w)) seen += 1.0;  // 1.
+    if (dot(light.xyz, r.normal) > 0.0) seen += seen_of(view, r, position, light.xyz, light.w);  // 1.
   }
-  result[at] = seen / float(kDirections);
+  seen /= float(kDirections);
+  result[at] = kConfidence == 0u ? seen : clamp(1.0 - (result[at] - seen), 0.0, 1.0);
 }

@@ -64,16 +64,18 @@ struct MultiBounceParams {
   float albedo;     // 0 to 1
 };
 
-/// A part of the beauty that AO may dim.
+/// A part of the beauty that AO may dim, or a shadow.
 struct AmbientLight {
-  float weight;  // how much of its light it dims
+  float weight;  // how much of its light AO dims
   int color;     // which of the colours multiplies the light (Blender: DiffInd x DiffCol); below 0: the light holds it
+  int shadow;    // plane of the shadow that dims it; below 0: none
 };
 
 struct CompositeParams {
   View view;
   uint has_alpha;     // 0: every pixel is wholly covered
-  uint lights;        // ambient ones, which alone are dimmed; 0: the whole beauty is
+  uint lights;        // that are dimmed
+  uint dims_beauty;   // 1: AO dims the whole beauty, 0: the lights by their weights
   uint has_color;     // 1: the visibility has a plane per colour
   float fog_density;  // of the beauty's fog, 1 / scene units, >= 0; 0: none
   float gain;         // factor on the occlusion, >= 0

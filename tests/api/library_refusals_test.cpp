@@ -208,7 +208,7 @@ TEST_F(Library, takes_or_refuses_every_option_of_the_table) {
   // Of files, frames, reports: whoever adds an option decides whether it is one of these.
   const Options names = typed(
       "accumulate depth normal position beauty material-ao matte occluders ignore objects object-channel "
-      "depth-channel normal-channels position-channels beauty-channels ambient material-ao-channel "
+      "depth-channel normal-channels position-channels beauty-channels ambient shadow-layers material-ao-channel "
       "albedo-channels matte-channel matte-object layer view supersampling roi source strict allow camera "
       "chan-rotation behind behind-channel deep deep-opacity other-views around motion motion-channels "
       "motion-kind frames output-offset chunk missing keep-going warnings-as-errors resume overwrite dry-run "

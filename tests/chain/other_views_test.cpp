@@ -3,6 +3,7 @@
 #include "core/chain/filters/filters.h"
 #include "core/chain/geometry/geometry.h"
 #include "core/chain/hidden/hidden.h"
+#include "core/frame/find/lights.h"
 #include "kernels/base/reprojection.h"
 #include "kernels/hidden/hidden.h"
 #include "tests/support/chain.h"
@@ -101,6 +102,47 @@ class Projections : public testing::TestWithParam<std::pair<bool, bool>> {};
 INSTANTIATE_TEST_SUITE_P(All, Projections,
                          testing::Values(std::pair{false, false}, std::pair{false, true}, std::pair{true, false},
                                          std::pair{true, true}));
+
+TEST_P(Projections, what_another_view_sees_behind_a_plate_casts_its_shadow) {
+  const auto [of_other, of_here] = GetParam();
+  const Scene scene{{Plane{{0, 0, -0.6}, {0, 0, 1}}, parallelogram({-0.7, 2, -0.3}, {1.4, 0, 0}, {0, 0, 0.9}),
+                     parallelogram({-0.3, 2.6, -0.6}, {0.6, 0, 0}, {0, 0, 0.8})}};
+  const Shot shot = looking({0, -1, 0.8}, {0, 2.5, -0.3}, of_here);
+  const Rendering here = render(scene, shot);
+  const Rendering other = render(scene, looking({0.5, 5.5, 0.8}, {0, 2.5, -0.3}, of_other));
+  const Vec3 way{0, 1, 0.8}, toward = shot.view_from_world(unit(way));
+  const auto shadow_of = [&](const std::vector<OtherView>& others) {
+    OutputSettings output;
+    output.lights = "lights.json";
+    output.read_lights = lights_of(R"({"lights": [{"name": "a", "kind": "sun", "direction": [0, 0, 1]}]})", "");
+    output.aovs = "shadow";
+    FrameInputs inputs = upload(recorder(), here.frame);
+    inputs.others = others;
+    inputs.lights = {{.at = {toward.x, toward.y, toward.z}}};
+    EstimatorSettings settings = plain_settings();
+    settings.radius = 0.5;
+    settings.thickness = ThicknessKind::constant;
+    settings.thickness_length = 0.05;
+    const FrameOutputs outputs = run_chain(recorder(), inputs, settings, output);
+    recorder().run();
+    return values_of(outputs.shadow);
+  };
+  // On the floor before the plate, the far side of the plate hides what casts this shadow below it.
+  const auto alone = shadow_of({}), found = shadow_of({seen_by(other, shot, "other")});
+  int count = 0, dark_alone = 0, dark_found = 0;
+  for (std::size_t i = 0; i < found.size(); i++) {
+    const Hit& hit = here.hits[i];
+    if (hit.primitive != 0) continue;
+    const Hit blocker = scene.hit({hit.position + 1e-6 * hit.normal, way});
+    if (blocker.primitive != 2) continue;
+    count++;
+    dark_alone += alone[i] < 0.5;
+    dark_found += found[i] < 0.5;
+  }
+  EXPECT_GT(count, 50);
+  EXPECT_LT(dark_alone, count / 2);
+  EXPECT_GT(dark_found, 9 * count / 10);
+}
 
 TEST_P(Projections, a_wall_that_another_view_sees_is_found_behind_what_hides_it) {
   const auto [of_other, of_here] = GetParam();

@@ -41,6 +41,8 @@ const std::map<std::string, Change> kChanges{
     {"beauty-channels",
      {"--composite c.exr", "--set beauty-channels=ViewLayer.Combined", "--set beauty-channels=ViewLayer.DiffInd"}},
     {"ambient", {"--composite c.exr", "--set ambient=DiffInd", "--set ambient=DiffInd*0.5"}},
+    {"shadow-layers",
+     {"--composite c.exr --lights H", "--set shadow-layers=key:DiffInd", "--set shadow-layers=key:DiffCol"}},
     {"material-ao-channel", {"", "--set material-ao-channel=u.q1", "--set material-ao-channel=u.q2"}},
     {"albedo-channels",
      {"--composite c.exr --set multi-bounce=true", "--set albedo-channels=ViewLayer.DiffCol",

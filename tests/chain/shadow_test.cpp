@@ -20,7 +20,6 @@ Light seen_by(const Shot& shot, Light light) {
   const Vec3 at{light.at[0], light.at[1], light.at[2]};
   const Vec3 v = shot.view_from_world(light.is_lamp ? at - shot.eye : at);
   light.at = {v.x, v.y, v.z};
-  light.in_world = false;
   return light;
 }
 
@@ -31,16 +30,16 @@ EstimatorSettings settings_of(double radius) {
   return settings;
 }
 
-/// The shadows of lights in view space, one plane behind the other.
-std::vector<float> shadows(const HostFrame& frame, const std::vector<Light>& lights,
-                           const EstimatorSettings& settings) {
+/// The shadows of lights in view space, one plane behind the other; with their confidence, if asked for.
+std::vector<float> shadows(const HostFrame& frame, const std::vector<Light>& lights, const EstimatorSettings& settings,
+                           const std::string& aovs = "shadow") {
   std::string text;
   for (std::size_t i = 0; i < lights.size(); i++)
     text += fmt::format(R"({}{{"name": "l{}", "kind": "sun", "direction": [0, 0, 1]}})", i == 0 ? "" : ",", i);
   OutputSettings output;
   output.lights = "lights.json";
   output.read_lights = lights_of(R"({"lights": [)" + text + "]}", "lights.json");
-  output.aovs = "shadow";
+  output.aovs = aovs;
   FrameInputs inputs = upload(recorder(), frame);
   inputs.lights = lights;
   const FrameOutputs outputs = run_chain(recorder(), inputs, settings, output);
@@ -227,6 +226,109 @@ TEST(Shadow, of_a_hard_light_does_not_depend_on_the_seed_nor_on_the_units) {
   for (double& x : larger[1].at) x *= 1024;
   settings.radius = 512;
   EXPECT_TRUE(same_bits(once, shadows(scaled(room, 10), larger, settings)));
+}
+
+/// A box on a floor, as much of it as is right of some column.
+struct CutBox {
+  explicit CutBox(int columns)
+      : part(render(box_on_floor(), whole)), frame(crop_of(part.frame, {columns, 0, 160 - columns, 120})) {
+    std::erase_if(part.hits, [&, i = 0](const Hit&) mutable { return i++ % 160 < columns; });
+    part.shot.data.width = 160 - columns;
+    light.at = seen_by(whole, world).at;
+  }
+  /// The confidence, and what is true, of all pixels.
+  std::vector<float> confidence() const {
+    const auto planes = shadows(frame, {light}, settings_of(0.5), "confidence,shadow");
+    return {planes.begin() + std::ptrdiff_t(planes.size() / 2), planes.end()};
+  }
+
+  const Shot whole = Shot::perspective({0.5, -4, 3}, {0.5, -0.2, 0}, 45, 160, 120);
+  const Light world = sun({-std::cos(kPi / 6), 0.1, std::sin(kPi / 6)});  // from the left
+  Rendering part;
+  HostFrame frame;
+  Light light;
+};
+
+TEST(Shadow, is_confident_where_its_caster_is_in_the_frame_alone) {
+  const CutBox whole(0), cut(100);
+  const auto of_whole = whole.confidence(), of_cut = cut.confidence();
+  double within = 0, without = 0;
+  int count = 0;
+  for (int y = 0; y < 120; y++)
+    for (int x = 100; x < 160; x++) {
+      const Hit& hit = whole.part.at(x, y);
+      if (hit.primitive != 0 || is_lit(box_on_floor(), hit, whole.world)) continue;
+      within += of_whole[std::size_t(160 * y + x)];
+      without += of_cut[std::size_t(60 * y + x - 100)];
+      count++;
+    }
+  ASSERT_GT(count, 200);
+  EXPECT_GT(within / count, 0.9);
+  EXPECT_LT(without / count, 0.5);
+}
+
+TEST(Shadow, is_wrong_where_it_is_not_confident) {
+  for (const int columns : {0, 60, 100}) {
+    const CutBox box(columns);
+    const auto shadow = shadows(box.frame, {box.light}, settings_of(0.5));
+    const auto confidence = box.confidence();
+    double of_right = 0, of_wrong = 0;
+    int right = 0, wrong = 0;
+    for (std::size_t i = 0; i < shadow.size(); i++) {
+      ASSERT_GE(confidence[i], 0);
+      ASSERT_LE(confidence[i], 1);
+      if (box.part.hits[i].primitive < 0) ASSERT_EQ(confidence[i], 1);
+      const bool is_wrong = shadow[i] != (is_lit(box_on_floor(), box.part.hits[i], box.world) ? 1 : 0);
+      (is_wrong ? of_wrong : of_right) += confidence[i];
+      (is_wrong ? wrong : right)++;
+    }
+    EXPECT_LT(of_wrong / wrong, 0.7 * of_right / right) << columns << ": " << wrong << " of " << shadow.size();
+  }
+}
+
+TEST(Shadow, of_a_lamp_in_the_frame_is_known_without_what_is_outside) {
+  const HostFrame floor = render({{kGround}}, Shot::perspective({0, -3, 3}, {0, -0.5, 0}, 45, 80, 60)).frame;
+  const Light light = lamp({0, 0, -3});
+  const auto planes = shadows(floor, {light}, settings_of(0.5), "confidence,shadow");
+  for (const float known : planes) ASSERT_EQ(known, 1);
+}
+
+TEST(Shadow, of_a_lamp_behind_two_surfaces_is_that_of_the_peels) {
+  Scene scene{{kGround}};
+  scene.add(parallelepiped({-0.6, 0, 0.4}, {1.2, 0, 0}, {0, 0.05, 0}, {0, 0, 0.8}));
+  scene.add(parallelepiped({-0.6, 0.8, 0}, {1.2, 0, 0}, {0, 0.05, 0}, {0, 0, 0.5}));
+  const Shot shot = Shot::perspective({0, -4, 2.2}, {0, 0, 0.3}, 45, 160, 120);
+  const Rendering rendering = render(scene, shot);
+  const Light light = lamp({0, 1.3, 0.3});
+  const auto wrong = [&](const HostFrame& frame) {
+    return share_wrong(rendering, scene, light, shadows(frame, {seen_by(shot, light)}, settings_of(0.5)), 2);
+  };
+  const double of_one = wrong(rendering.frame), of_peels = wrong(peeled(scene, shot, 4));
+  EXPECT_GT(of_one, 0.05);
+  EXPECT_LT(of_peels, 0.01);
+}
+
+TEST(Shadow, of_a_wall_goes_on_beyond_the_border_as_the_settings_say) {
+  const Shot shot = Shot::perspective({3, 0, 1.5}, {0, 0, 0.2}, 50, 120, 90);
+  const CutWall cut(shot);
+  const Light light = sun({-1, 0, 1});
+  EstimatorSettings settings = settings_of(0.5);
+  std::vector<double> dark;  // part of the floor, in the shadow of the wall's part that is cut off
+  for (const Completion complete : {Completion::none, Completion::border}) {
+    settings.complete = complete;
+    const auto shadow = shadows(cut.frame, {seen_by(shot, light)}, settings);
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < shadow.size(); i++) {
+      const Hit& hit = cut.whole.hits[i + std::size_t(cut.rows * shot.data.width)];
+      if (hit.primitive != 0 || hit.position.x < 0.3 || hit.position.x > 0.5) continue;
+      sum += 1 - shadow[i];
+      count++;
+    }
+    dark.push_back(sum / count);
+  }
+  EXPECT_EQ(dark[0], 0);
+  EXPECT_GT(dark[1], 0.9);
 }
 
 /// The share of pixels that differ from the reference, of every seventh.

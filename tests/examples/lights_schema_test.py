@@ -27,6 +27,8 @@ CASES = {
     "a lamp": of(LAMP, radius=0.1, space="view"),
     "both": {"lights": [SUN, LAMP]},
     "none": {"lights": []},
+    "a world whose y is up": {**of(SUN), "up": "y"},
+    "a world whose x is up": {**of(SUN), "up": "x"},
     "too many": {"lights": [{**SUN, "name": str(i)} for i in range(17)]},
     "no list": {"lights": SUN},
     "another field at the top": {**of(SUN), "light": 1},

@@ -238,6 +238,9 @@ TEST_F(CameraFiles, the_frames_own_entry_wins) {
   EXPECT_EQ(read(fields, -8).fx, 80);
   EXPECT_TRUE(read(fields, -8).orthographic);
   expect_refused(fields.dump(), "frames", 9);
+  json wrong = fields;
+  wrong["frames"][0]["fx"] = "wide";
+  expect_refused(wrong.dump(), "\"fx\" of frame 7 must", 7);
   for (const auto* field : {"fx", "fy", "cx", "cy", "resolution"}) {
     fields["frames"][0][field] = fields[field];
     fields.erase(field);
@@ -251,6 +254,7 @@ TEST_F(CameraFiles, text_that_is_no_camera_is_refused_with_what_is_taken) {
                            "{\"fx\": 1e999, \"fy\": 1}", "{'fx': 1}", "\xff\xfe{}", "{\"fx\": \"\xff\"}"})
     expect_refused(text, "JSON");
   expect_refused(std::string(100000, '['), "JSON");
+  expect_refused("{\"fx\": 1,\n\n\"fy\": }", "line 3 is no JSON");
   for (const char* text : {"Camera2 {\n focal 50\n}\n", "Kaydara FBX Binary", "#usda 1.0", "[1, 2]"}) {
     expect_refused(text, ".chan");
     expect_refused(text, "docs/inputs.md");

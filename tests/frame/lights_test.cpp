@@ -27,9 +27,9 @@ const std::string kLamp = R"("kind": "point", "position": [1, 2, 3])";
 TEST(Lights, are_suns_of_directions_one_long_and_lamps_at_places) {
   const std::string view = R"(, "space": "view")";
   EXPECT_EQ(in_view(file_of(kSun + R"(, "angular_diameter": 0.53)" + view))[0],
-            (Light{.in_world = false, .at = {0, 0, 1}, .size = 0.53}));
+            (Light{.name = "key", .at = {0, 0, 1}, .size = 0.53}));
   EXPECT_EQ(in_view(file_of(kLamp + R"(, "radius": 0.1)" + view))[0],
-            (Light{.is_lamp = true, .in_world = false, .at = {1, 2, 3}, .size = 0.1}));
+            (Light{.name = "key", .is_lamp = true, .at = {1, 2, 3}, .size = 0.1}));
 }
 
 TEST(Lights, of_the_world_turn_with_the_camera_and_lamps_move_with_it) {
@@ -88,7 +88,9 @@ TEST(Lights, with_a_misspelt_or_senseless_field_are_refused_by_name) {
   expect_refused(file_of(kSun + R"(, "frames": [{"frame": 1, "name": "b"}])"), "no field \"name\"");
   expect_refused(file_of(kSun + R"(, "frames": [{"frame": 1}, {"frame": 1}])"), "twice");
   expect_refused(file_of(R"("kind": "sun", "frames": [{"frame": 1, "direction": [1, 0, 0]}, {"frame": 2}])"),
-                 "\"direction\" is missing in frame 2");
+                 "frame 2: \"direction\" is missing");
+  expect_refused(file_of(kSun + ",\n\"frames\": [1,\n}]"), "line 3 is no JSON");
+  expect_refused(R"({"up": "x", "lights": []})", "z or y");
   for (const char* number : {"4294967297", "-2147483649", "18446744073709551616", "1e300", "1.5", "\"1\"", "true"})
     expect_refused(file_of(kSun + fmt::format(R"(, "frames": [{{"frame": 1}}, {{"frame": {}}}])", number)),
                    "\"frame\"");
@@ -100,6 +102,56 @@ TEST(Lights, with_a_misspelt_or_senseless_field_are_refused_by_name) {
   std::string many = R"({"lights": [)";
   for (int i = 0; i < 17; i++) many += fmt::format(R"({}{{"name": "l{}", {}}})", i ? "," : "", i, kSun);
   expect_refused(many + "]}", "17 lights");
+}
+
+/// The direction of a light of this space after a turn.
+Vector3 turned(const std::string& top, const std::string& space, std::optional<double> azimuth,
+               std::optional<double> elevation, const Camera& camera = {}) {
+  EstimatorSettings settings;
+  settings.sun_azimuth = azimuth;
+  settings.sun_elevation = elevation;
+  const std::string text = "{" + top + R"("lights": [{"name": "lamp", "space": "view", )" + kLamp +
+                           R"(}, {"name": "key", "space": ")" + space +
+                           R"(", "kind": "sun", "direction": [0, 3, 4]}]})";
+  const auto lights = lights_of(text, "lights.json", settings)->in_view(camera, 0);
+  EXPECT_EQ(lights[0].at, (Vector3{1, 2, camera.left_handed ? -3. : 3.})) << "a lamp stays";
+  return lights[1].at;
+}
+
+TEST(Lights, turn_a_sun_about_what_is_up) {
+  Camera camera;
+  camera.view_from_world = Matrix3{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const double half = std::sqrt(0.5);
+  const auto expect_near = [](const Vector3& found, const Vector3& right) {
+    for (std::size_t i = 0; i < 3; i++) EXPECT_NEAR(found[i], right[i], 1e-12) << i;
+  };
+  expect_near(turned("", "world", 90, 45, camera), {0, half, half});
+  expect_near(turned("", "world", 0, 0, camera), {1, 0, 0});
+  expect_near(turned("", "world", {}, 90, camera), {0, 0, 1});
+  expect_near(turned("", "world", 180, {}, camera), {-0.6, 0, 0.8});
+  expect_near(turned("", "world", {}, 0, camera), {0, 1, 0});
+  expect_near(turned(R"("up": "y", )", "world", 90, 45, camera), {0, half, -half});
+  expect_near(turned(R"("up": "y", )", "world", {}, 0, camera), {0, 0, 1});
+  expect_near(turned("", "view", 270, 45), {0, half, half});
+  Camera left_handed;
+  left_handed.left_handed = true;
+  expect_near(turned("", "view", 270, 45, left_handed), {0, half, half});
+  expect_near(turned("", "view", {}, 0, left_handed), {0, 0, -1});
+}
+
+TEST(Lights, that_turn_must_be_one_sun) {
+  EstimatorSettings settings;
+  settings.sun_azimuth = 1;
+  const std::string two = R"({"lights": [{"name": "a", )" + kSun + R"(}, {"name": "b", )" + kSun + "}]}";
+  const auto refused = [&](const std::string& text, const std::vector<std::string>& words) {
+    expect_error(ErrorKind::usage, words, [&] { lights_of(text, "lights.json", settings); });
+  };
+  refused(file_of(kLamp), {"lights.json", "no sun", "--set sun"});
+  refused(two, {"a, b", "--set sun=NAME"});
+  settings.sun = "c";
+  refused(two, {"no sun c"});
+  settings.sun = "b";
+  EXPECT_EQ(lights_of(two, "lights.json", settings)->sun, 1u);
 }
 
 TEST(Lights, are_refused_in_a_short_sentence_whatever_the_file_holds) {

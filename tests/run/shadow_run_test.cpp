@@ -1,6 +1,7 @@
 // Runs with --lights: what they write, what they are computed anew for, and what they refuse before any work.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/command_line.h"
+#include "tests/support/exr_header.h"
 
 namespace alcove::shadow_run_test {
 namespace {
@@ -63,6 +64,120 @@ TEST_F(ShadowRun, is_computed_anew_where_the_lights_alone_have_changed) {
   EXPECT_EQ(fs::last_write_time(ao), written) << "it is kept";
   write_lights(R"("kind": "sun", "direction": [0, -1, 2])");
   EXPECT_NE(shadow_of("--resume"), before);
+}
+
+/// A beauty with a layer of the light beside its indirect light.
+class ShadowComposite : public ShadowRun {
+ protected:
+  ShadowComposite() : file(wall_frame()) {
+    write_lights(kSun + R"(, "angular_diameter": 20)");
+    add_beauty(file);
+    std::size_t at = 0;
+    for (const char* c : {"R", "G", "B"})
+      for (std::size_t i = 0; i < kWallWindow.pixels(); i++)
+        file.planes[std::string("ViewLayer.key_light.") + c].push_back(float(at++ * 37 % 503) / 503);
+    file.write(frame);
+  }
+  double at(const std::string& layer, const std::string& c, std::size_t i) const {
+    return file.planes.at("ViewLayer." + layer + "." + c)[i];
+  }
+  double diffuse(const std::string& c, std::size_t i) const { return at("DiffInd", c, i) * at("DiffCol", c, i); }
+
+  /// What a composite is made of in a pixel: its shadow and occlusion, 0 where nothing is dark.
+  struct Pixel {
+    double shadow, occlusion;
+    std::size_t i;
+    std::string c;
+  };
+  /// The largest difference between the composite and what it must be.
+  double error(const std::string& more, const std::function<double(const Pixel&)>& loss) const {
+    done(joined({"--lights", lights, "--composite", composite, "--type", "float"},
+                typed("--set composite-layers=rgba " + more)));
+    const auto shadow = plane("shadow-key.Y"), ao_plane = plane("Y");
+    const Image result = read_exr_image(composite);
+    double largest = 0, taken = 0;
+    for (const std::string c : {"R", "G", "B"})
+      for (std::size_t i = 0; i < shadow.size(); i++) {
+        const double less = loss({1 - shadow[i], at("Combined", "A", i) * (1 - ao_plane[i]), i, c});
+        largest = std::max(largest, std::abs(result.plane(std::string_view(c))[i] - (at("Combined", c, i) - less)));
+        taken = std::max(taken, std::abs(less));
+      }
+    EXPECT_GT(taken, 0.1);
+    return largest;
+  }
+
+  FrameFile file;
+  const std::string composite = folder / "composite.exr";
+};
+
+TEST_F(ShadowComposite, dims_the_layers_of_its_light_and_ao_what_is_left) {
+  const auto key = [&](const Pixel& p) { return p.shadow * at("key_light", p.c, p.i); };
+  const std::string of_key = "--set shadow-layers=key:key_light ";
+  EXPECT_LT(error(of_key + "--set ambient=DiffInd*0", key), 1e-5);
+  EXPECT_LT(error(of_key, [&](const Pixel& p) { return key(p) + diffuse(p.c, p.i) * p.occlusion; }), 1e-5);
+  EXPECT_LT(error(of_key + "--set ambient=beauty",
+                  [&](const Pixel& p) { return key(p) + (at("Combined", p.c, p.i) - key(p)) * p.occlusion; }),
+            1e-5);
+  EXPECT_LT(error(of_key + "--set ambient=key_light*0.5",
+                  [&](const Pixel& p) {
+                    const double layer = at("key_light", p.c, p.i);
+                    return layer * p.shadow + 0.5 * layer * (1 - p.shadow) * p.occlusion;
+                  }),
+            1e-5);
+  EXPECT_LT(error("--set shadow-layers=key:key_light,key:DiffInd",
+                  [&](const Pixel& p) {
+                    const double light = diffuse(p.c, p.i);
+                    return key(p) + light * p.shadow + light * (1 - p.shadow) * p.occlusion;
+                  }),
+            1e-5)
+      << "the colour that belongs to it, and AO once";
+  EXPECT_LT(
+      error(of_key + "--set mix=0.4", [&](const Pixel& p) { return 0.4 * (key(p) + diffuse(p.c, p.i) * p.occlusion); }),
+      1e-5);
+  const auto& z = file.planes.at("ViewLayer.Depth.Z");
+  EXPECT_LT(error(of_key + "--set fog-density=0.2",
+                  [&](const Pixel& p) {
+                    const double x = (double(p.i % 64) - 31.5) / 60, y = (double(p.i / 64) - 17.5) / 60;
+                    const double clear = std::exp(-0.2 * z[p.i] * std::sqrt(1 + x * x + y * y));
+                    return clear * (key(p) + diffuse(p.c, p.i) * p.occlusion);
+                  }),
+            1e-5);
+  EXPECT_THAT(text_in(read_header(composite), "alcove/composite"), HasSubstr("shadows: key:key_light"));
+}
+
+TEST_F(ShadowComposite, is_refused_where_a_light_or_a_layer_is_not_there) {
+  const auto refused = [&](int code, const std::string& layers, const Options& texts, bool wanted = true) {
+    Options more{"--lights", lights, "--set", "shadow-layers=" + layers};
+    if (wanted) more.insert(more.end(), {"--composite", composite});
+    expect_run_refused(code, texts, more);
+  };
+  refused(2, "kay:key_light", {"--set shadow-layers", lights, "no light \"kay\"", "did you mean key"});
+  refused(3, "key:kay_light", {"--set shadow-layers", "kay_light", frame});
+  refused(2, "key:key_light", {"--set shadow-layers", "--composite"}, false);
+  for (const char* text : {"key", ":key_light", "key:", "key:key_light,"}) refused(2, text, {"NAME:LAYER"});
+  refused(2, "key:key_light,key:key_light", {"key_light is there twice"});
+  expect_run_refused(2, {"--set shadow-layers", "--lights"},
+                     {"--composite", composite, "--set", "shadow-layers=key:key_light"});
+}
+
+TEST_F(ShadowRun, of_a_region_has_the_bits_of_the_whole_and_says_its_cost) {
+  write_lights(R"("kind": "point", "position": [0.5, 0, 1.5], "radius": 0.2)");
+  const std::string plan = "takes the whole frame";
+  for (const char* more : {"", "--set shadow-reach=0.5"}) {
+    const Options options = joined({"--lights", lights, "--radius", "0.3", "--aov", "confidence,shadow"}, typed(more));
+    const Image whole = expect_region_of_whole(options, {20, 22, 9, 7});
+    EXPECT_EQ(whole.names, (Words{"confidence.Y", "shadow-key.Y", "shadow-key.confidence"}));
+    const std::string said = done(joined(options, {"--roi", "20,22,9,7", "--dry-run"})).out;
+    EXPECT_EQ(said.find(plan) != said.npos, *more == 0) << said;
+  }
+}
+
+TEST_F(ShadowRun, follows_a_sun_that_the_settings_turn) {
+  const auto before = shadow_of("--set sun-azimuth=90 --set sun-elevation=63.434948822922");
+  write_lights(R"("kind": "sun", "direction": [1, 0, 0])");
+  EXPECT_NE(shadow_of(), before);
+  EXPECT_EQ(shadow_of("--set sun-azimuth=90 --set sun-elevation=63.434948822922"), before);
+  expect_refused(2, {"--lights", lights, "--set", "sun-azimuth=90", "--set", "sun=kay"}, {"no sun kay"});
 }
 
 TEST_F(ShadowRun, is_refused_without_lights_or_where_these_cannot_be_placed) {

@@ -75,6 +75,30 @@ TEST_F(Wedge, shows_the_bits_of_its_commands) {
   expect_bits_of_commands(shown(of_frame("--radius .7 --estimator hbao,crytek,bitmask --intensity 1,2")));
 }
 
+TEST_F(Wedge, turns_a_sun_and_shows_its_shadow_by_one_estimate) {
+  const std::string lights = folder / "lights.json";
+  write_bytes(lights, R"({"lights": [{"name": "lamp", "kind": "point", "position": [0, 0, 9]},
+                                     {"name": "key", "kind": "sun", "direction": [0, 1, 2]}]})");
+  const json report =
+      shown(of_frame("--radius 1 --lights " + lights + " --set sun-azimuth=0,90 --set sun-elevation=40,80"));
+  ASSERT_EQ(report["candidates"].size(), 4);
+  std::set<std::string> pictures;
+  std::set<double> estimates;
+  for (std::size_t i = 0; i < 4; i++) {
+    run_command_of(report, i);
+    const Image made = read_exr_image(folder / "ao.exr");
+    const auto key = made.plane(std::string_view("shadow-key.Y"));
+    const std::string picture = report["images"][i]["result"];
+    EXPECT_EQ(picture, grey_picture(kWallWindow.width, kWallWindow.height, {key.begin(), key.end()}));
+    pictures.insert(picture);
+    estimates.insert(report["rows"][i]["estimate_ms"].get<double>());
+  }
+  EXPECT_GT(pictures.size(), 2u);
+  EXPECT_EQ(estimates.size(), 1u);
+  test::expect_refused(run(of_frame("--radius 1 --lights " + lights)), 2, {"--lights", "sun-azimuth"});
+  test::expect_refused(run(of_frame("--radius 1 --set sun-azimuth=0,90")), 2, {"sun-azimuth", "--lights"});
+}
+
 // Looks that differ in their shaping alone take one estimate, and so one time of it.
 TEST_F(Wedge, estimates_once_for_looks_that_differ_in_their_shaping_alone) {
   FrameFile with_beauty = wall_frame();

@@ -21,11 +21,13 @@ constexpr double kAnywhere = 1e20;  // scene units: a reach that nothing bounds
 // Of a light of some size.
 constexpr uint kDirections = 4, kDirectionsExact = 16;
 
+bool is_hard(const Light& light) { return !(float(light.size) > 0); }
+
 /// The nearest and the farthest depth of every block.
-const gpu::Buffer& nearest(gpu::Recorder& gpu, const GBuffer& occluders) {
+const gpu::Buffer& nearest(gpu::Recorder& gpu, const GBuffer& occluders, const std::string& name) {
   const auto blocks = [](int side) { return std::size_t((side + kNearestStep - 1) / kNearestStep); };
   const ivec2 size = occluders.view.size;
-  const gpu::Buffer& result = gpu.buffer("nearest", blocks(size.x) * blocks(size.y) * sizeof(vec2));
+  const gpu::Buffer& result = gpu.buffer(name, blocks(size.x) * blocks(size.y) * sizeof(vec2));
   gpu.dispatch("nearest", NearestParams{size}, {{"Occluders", occluder_depth_of(occluders)}, {"Nearest", result}},
                {uint(blocks(size.x)), uint(blocks(size.y))});
   return result;
@@ -34,7 +36,7 @@ const gpu::Buffer& nearest(gpu::Recorder& gpu, const GBuffer& occluders) {
 }  // namespace
 
 gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
-                    const EstimatorSettings& settings, const gpu::Buffer* told) {
+                    const EstimatorSettings& settings, const gpu::Buffer* told, bool with_confidence) {
   if (frame.lights.empty()) throw std::logic_error("there are shadows without lights");
   EstimatorSettings sampled = bracket_of(settings);
   sampled.stride = 1;  // every pixel has a shadow of its own
@@ -46,50 +48,63 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
     chain_ends(gpu, counted, links);
     told = &backs(gpu, counted, links);
   }
+  // The visibility, and with confidence what brackets it: with the thinnest occluders, then with the thickest.
+  struct Rule {
+    GBuffer counted;
+    Reach reach;
+    const gpu::Buffer *told, *nearest;
+  };
+  std::vector<Rule> rules{{counted, reach, told, &nearest(gpu, counted, "nearest")}};
+  if (with_confidence) {
+    Reach thin = reach, thick = reach;
+    thin.thickness = float(kThin * reach.radius);
+    thin.complete = Completion::none;
+    thick.thickness = kMostBack * reach.radius;
+    const GBuffer most = occluders(gpu, gbuffer, frame, Unknown::blocked);
+    rules.push_back({counted, thin, nullptr, rules.front().nearest});
+    rules.push_back({most, thick, nullptr, &nearest(gpu, most, "bracket nearest")});
+  }
   ShadowParams params{};
   params.view = gbuffer.view;
   params.reach = float(settings.shadow_reach.value_or(kAnywhere));
   params.size = reach.radius;
   params.bias = settings.estimator == Estimator::crytek ? 0 : reach.bias;
-  params.thickness = reach.thickness;
   params.noise_origin = gbuffer.grid.origin;
   params.noise_shift = sampling.noise_shift;
   params.depth_precision = gbuffer.depth_precision;
-  const std::size_t bytes = frame.lights.size() * plane_bytes(gbuffer.view);
-  std::vector<gpu::Binding> buffers{{"Depth", gbuffer.depth},
-                                    {"Normal", gbuffer.normal},
-                                    {"Occluders", occluder_depth_of(counted)},
-                                    {"Nearest", nearest(gpu, counted)},
-                                    {"Backs", gpu::Optional(told)}};
-  if (gbuffer.surfaces > 1) buffers.push_back({"Hidden", occluder_hidden_of(counted)});
-  const uint solid = solid_of(reach, told != nullptr) | kHiddenSurface * (gbuffer.surfaces - 1);
-  const bool exact = searches_exactly(settings);
-  const auto estimate = [&](bool soft, const gpu::Buffer& result) {
-    for (std::size_t i = 0; i < frame.lights.size(); i++) {
-      const Light& light = frame.lights[i];
-      if ((float(light.size) > 0) != soft) continue;
-      params.light = to_vec3(light.at);
-      params.is_lamp = light.is_lamp ? 1 : 0;
-      params.spread = float(light.is_lamp ? light.size : std::tan(light.size * std::numbers::pi / 360));
-      params.plane = uint(i);
-      std::vector<gpu::Binding> all = buffers;
-      all.push_back({"Result", result});
-      const uint directions = !soft ? 1 : exact ? kDirectionsExact : kDirections;
-      const std::vector<uint> constants{solid, directions};
-      if (gbuffer.surfaces == 1)
-        gpu.dispatch("shadow", params, all, extent_of(gbuffer.view), constants);
-      else
-        gpu.dispatch("shadow_layers", params, all, extent_of(gbuffer.view), constants);
-    }
+  const std::size_t count = frame.lights.size();
+  const auto dispatch = [&](const Light& light, std::size_t i, std::size_t rule, const gpu::Buffer& result) {
+    const auto& [of_rule, blocks, backs, nearest] = rules[rule];
+    params.light = to_vec3(light.at);
+    params.is_lamp = light.is_lamp ? 1 : 0;
+    params.spread = float(light.is_lamp ? light.size : std::tan(light.size * std::numbers::pi / 360));
+    params.thickness = blocks.thickness;
+    params.plane = uint(rule == 0 ? i : count + i);
+    std::vector<gpu::Binding> buffers{
+        {"Depth", gbuffer.depth}, {"Normal", gbuffer.normal},      {"Occluders", occluder_depth_of(of_rule)},
+        {"Nearest", nearest},     {"Backs", gpu::Optional(backs)}, {"Result", result}};
+    if (gbuffer.surfaces > 1) buffers.push_back({"Hidden", occluder_hidden_of(of_rule)});
+    const uint solid = solid_of(blocks, backs != nullptr) | kHiddenSurface * (gbuffer.surfaces - 1);
+    const uint directions = is_hard(light) ? 1 : searches_exactly(settings) ? kDirectionsExact : kDirections;
+    const std::vector<uint> constants{solid, directions, rule == 2 ? 1u : 0u};
+    if (gbuffer.surfaces == 1)
+      gpu.dispatch("shadow", params, buffers, extent_of(gbuffer.view), constants);
+    else
+      gpu.dispatch("shadow_layers", params, buffers, extent_of(gbuffer.view), constants);
+  };
+  const auto estimate = [&](bool hard, const gpu::Buffer& result) {
+    for (std::size_t i = 0; i < count; i++)
+      for (std::size_t rule = 0; is_hard(frame.lights[i]) == hard && rule < rules.size(); rule++)
+        dispatch(frame.lights[i], i, rule, result);
   };
   // Noise is of soft lights alone. So these are filtered, and hard ones take their planes behind the filter.
-  gpu::Buffer* result = &gpu.buffer("shadow", bytes);
-  if (std::ranges::any_of(frame.lights, [](const Light& light) { return float(light.size) > 0; })) {
+  gpu::Buffer* result = &gpu.buffer("shadow", (with_confidence ? 2 : 1) * count * plane_bytes(gbuffer.view));
+  if (!std::ranges::all_of(frame.lights, is_hard)) {
     gpu.clear(*result);
-    estimate(true, *result);
+    estimate(false, *result);
     result = &denoise(gpu, gbuffer, *result, denoiser_of(sampled), "shadow ");
   }
-  estimate(false, *result);
+  estimate(true, *result);
   return *result;
 }
 

@@ -11,12 +11,6 @@
 #include "kernels/results/results.h"
 
 namespace alcove {
-namespace {
-
-/// The thickness of thin occluders, in radii.
-constexpr double kThin = 0.02;
-
-}  // namespace
 
 EstimatorSettings bracket_of(const EstimatorSettings& settings) {
   EstimatorSettings bracket = settings;

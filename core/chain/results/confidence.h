@@ -7,6 +7,9 @@
 
 namespace alcove {
 
+/// The thickness of the thinnest occluders that bracket a visibility, in radii.
+inline constexpr double kThin = 0.02;
+
 /// The settings of the two estimates, by slices and steps at full resolution, that bracket the AO of any estimator.
 EstimatorSettings bracket_of(const EstimatorSettings& settings);
 

@@ -21,8 +21,11 @@ bool is_of_visibility(const DebugView* view) {
 
 std::vector<std::string> shadow_channels(const OutputSettings& settings) {
   std::vector<std::string> channels;
-  if (settings.read_lights)
-    for (const auto& light : settings.read_lights->lights) channels.push_back(fmt::format("shadow-{}.Y", light.name));
+  if (!settings.read_lights) return channels;
+  for (const auto& light : settings.read_lights->lights) channels.push_back(fmt::format("shadow-{}.Y", light.name));
+  if (std::ranges::count(split(settings.aovs), "confidence") > 0)
+    for (const auto& light : settings.read_lights->lights)
+      channels.push_back(fmt::format("shadow-{}.confidence", light.name));
   return channels;
 }
 

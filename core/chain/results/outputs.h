@@ -47,8 +47,9 @@ struct FrameOutputs {
   // for each surface that is kept behind the first, nearer first, a plane of planar depth, kSkyDepth for none; and a
   // plane of 1 where it closes the solid of the one before it, else 0
   gpu::Buffer* hidden = nullptr;
-  gpu::Buffer* confidence = nullptr;          // a plane, in [0, 1]
-  gpu::Buffer* shadow = nullptr;              // a plane for each light, in [0, 1], 1 = lit; sky: 1
+  gpu::Buffer* confidence = nullptr;  // a plane, in [0, 1]
+  // a plane for each light, in [0, 1], 1 = lit; sky: 1. With confidence one more for each, of that in it
+  gpu::Buffer* shadow = nullptr;
   gpu::Buffer* error = nullptr;               // a plane: with a tolerance, the estimated error of the visibility
   gpu::Buffer* specular_occlusion = nullptr;  // a plane, in [0, 1], 1 = open
   // a plane, of several radii their mean and one for each: the parts that the own surface blocks inside and outside, in

@@ -129,8 +129,8 @@ gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu:
   return result;
 }
 
-gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* ao, const FrameInputs& frame,
-                       const CompositeLook& look, double least) {
+gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* ao, const gpu::Buffer* shadow,
+                       const FrameInputs& frame, const CompositeLook& look, double least) {
   if (!frame[RawPlane::beauty]) return nullptr;
   const gpu::Buffer& beauty = *frame[RawPlane::beauty];
   const gpu::Buffer* light = frame[RawPlane::indirect];
@@ -138,13 +138,16 @@ gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Bu
   gpu::Buffer& result = gpu.buffer("composite", beauty.bytes());
   gpu::Buffer& lights = gpu.buffer(
       "ambient lights", std::max<std::size_t>(1, frame.ambient.size()) * sizeof(AmbientLight), gpu::Use::upload);
-  std::ranges::transform(frame.ambient, lights.as<AmbientLight>().begin(), [](const AmbientReading& reading) {
-    return AmbientLight{float(reading.weight), reading.color};
+  std::ranges::transform(frame.ambient, lights.as<AmbientLight>().begin(), [&](const AmbientReading& reading) {
+    const auto from = std::ranges::find(frame.lights, reading.shadow, &Light::name);
+    return AmbientLight{float(reading.weight.value_or(0)), reading.color,
+                        from == frame.lights.end() ? -1 : int(from - frame.lights.begin())};
   });
   CompositeParams params{};
   params.view = frame.view;
   params.has_alpha = planes_in(beauty, frame.view) == 4 ? 1 : 0;
   params.lights = light ? uint(frame.ambient.size()) : 0;
+  params.dims_beauty = dims_beauty(frame.ambient) ? 1 : 0;
   params.has_color = planes_in(*ao, frame.view) == 3 ? 1 : 0;
   params.fog_density = float(look.fog_density);
   params.gain = float(look.gain);
@@ -157,6 +160,7 @@ gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Bu
                 {"Light", gpu::Optional(light)},
                 {"Color", gpu::Optional(color)},
                 {"Lights", lights},
+                {"Shadow", gpu::Optional(shadow)},
                 {"Result", result},
                 {"Counts", gbuffer.counts},
                 {"Depth", gbuffer.depth}},

@@ -55,8 +55,9 @@ gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, cons
 gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
 
 /// The beauty's planes, for the host; null if the frame has no beauty. `ao` has one plane, or three with multi-bounce.
-/// It dims the lights of frame.ambient; without any, the whole beauty. The look's gain takes no AO below `least`.
-gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* ao, const FrameInputs& frame,
-                       const CompositeLook& look, double least);
+/// It dims the lights of frame.ambient; without any, the whole beauty. `shadow` has a plane for each of frame.lights,
+/// which dims the lights that name it; may be null. The look's gain takes no AO below `least`.
+gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* ao, const gpu::Buffer* shadow,
+                       const FrameInputs& frame, const CompositeLook& look, double least);
 
 }  // namespace alcove

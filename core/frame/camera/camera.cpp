@@ -123,7 +123,7 @@ using Json = nlohmann::json;
 // Kernels keep these numbers as floats and square them: within these limits they stay finite and above 0.
 constexpr double kLeastScale = 1e-18, kMostScale = 1e18;  // fx and fy
 constexpr double kMostCenter = 1e9;                       // px: cx and cy, to either side
-constexpr int kDeepest = 64;  // lists and objects within each other, since copying and quoting them recurses
+constexpr int kDeepest = 64;                              // lists and objects within each other
 
 bool is_scale(double pixels) { return pixels >= kLeastScale && pixels <= kMostScale; }
 
@@ -143,7 +143,9 @@ struct CameraFile {
   }
 
   [[noreturn]] void refuse(const char* field, const std::string& why) const {
-    fail(ErrorKind::input, "{}: camera field \"{}\" {} (--camera)", path, field, why);
+    const bool is_of_frame = frame.contains(field) || view_of_frame.contains(field);
+    fail(ErrorKind::input, "{}: camera field \"{}\"{} {} (--camera)", path, field,
+         is_of_frame ? " of frame " + frame["frame"].dump() : "", why);
   }
 
   double number(const char* field) const {
@@ -212,20 +214,15 @@ struct CameraFile {
 
 /// The object that the text of a camera file is.
 Json object_of(const std::string& text, const std::string& path) {
-  const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepest)
-      fail(ErrorKind::input, "{}: JSON that nests deeper than {}; --camera takes a camera file", path, kDeepest);
-    return true;
-  };
   if (const std::string why = why_foreign_camera(text); !why.empty())
     fail(ErrorKind::input, "{}: {} (--camera; docs/inputs.md describes a camera file)", path, why);
-  Json top = Json::parse(text, bounded, false);
+  std::string why;
+  Json top = json_of(text, kDeepest, why);
   if (!top.is_object())
-    fail(
-        ErrorKind::input,
-        "{}: not a JSON object: --camera takes a camera file in JSON, as docs/inputs.md describes it, or a .chan file, "
-        "which Nuke, Maya, Houdini and Blender export from a camera",
-        path);
+    fail(ErrorKind::input,
+         "{}: not a JSON object{}: --camera takes a camera file in JSON, as docs/inputs.md describes it, or a .chan "
+         "file, which Nuke, Maya, Houdini and Blender export from a camera",
+         path, why);
   return top;
 }
 

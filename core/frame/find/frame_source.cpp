@@ -23,7 +23,7 @@ namespace alcove {
 
 namespace {
 
-// The parts of a beauty that AO may dim: a list of layers, colours and weights.
+// The parts of a beauty that AO may dim, or a shadow: a list of layers, colours and weights.
 
 /// A light, as the user typed it.
 struct TypedLight {
@@ -92,14 +92,18 @@ void append(std::vector<ChannelRef>& planes, const std::vector<ChannelRef>& more
   planes.insert(planes.end(), more.begin(), more.end());
 }
 
+void add_light(FrameSource& source, const ChannelSearch& search, const std::vector<ChannelRef>& light,
+               const std::string& said_color, std::optional<double> weight) {
+  const std::string color = said_color.empty() ? color_of(light.front()) : said_color;
+  auto& colors = source.channels[RawPlane::diffuse_color];
+  source.reading.ambient.push_back({weight, color.empty() ? -1 : int(colors.size() / 3)});
+  append(source.channels[RawPlane::indirect], light);
+  if (!color.empty()) append(colors, search.find(light.front().file, kLightNames, color, false));
+}
+
 void add_typed(FrameSource& source, const ChannelSearch& search, std::size_t file, const std::string& text) {
   const TypedLight typed = typed_light(text);
-  const auto light = search.find(file, kLightNames, typed.light, false);
-  const std::string color = typed.color.empty() ? color_of(light.front()) : typed.color;
-  auto& colors = source.channels[RawPlane::diffuse_color];
-  source.reading.ambient.push_back({typed.weight, color.empty() ? -1 : int(colors.size() / 3)});
-  append(source.channels[RawPlane::indirect], light);
-  if (!color.empty()) append(colors, search.find(file, kLightNames, color, false));
+  add_light(source, search, search.find(file, kLightNames, typed.light, false), typed.color, typed.weight);
 }
 
 /// The indirect diffuse light; Blender's only with its colour, without which the part of the beauty is unknown.
@@ -129,6 +133,24 @@ void find_ambient(FrameSource& source, const ChannelSearch& search, std::size_t 
          lights.size());
   for (const auto& light : lights) add_typed(source, search, file, light);
   if (lights.empty()) find_usual(source, search, file);
+}
+
+/// Finds the layers that shadows dim; one that AO dims, too, is there once. Fails as find_ambient() does.
+void find_shadowed(FrameSource& source, const ChannelSearch& search, std::size_t file, const InputSettings& settings) {
+  AovNames names = kLightNames;
+  names.channel_option = "--set shadow-layers";
+  auto& lights = source.reading.ambient;
+  for (const auto& [name, layer] : shadow_layers_of(settings)) {
+    const auto light = search.find(file, names, layer, false);
+    std::size_t at = 0;
+    while (at < lights.size() && source.channels[RawPlane::indirect][3 * at] != light.front()) at++;
+    if (at == lights.size()) add_light(source, search, light, "", std::nullopt);
+    if (!lights[at].shadow.empty()) fail(ErrorKind::usage, "--set shadow-layers: the layer {} is there twice", layer);
+    lights[at].shadow = name;
+  }
+  if (lights.size() > kMostAmbientLights)
+    fail(ErrorKind::usage, "--set shadow-layers and ambient: they take at most {} layers, and there are {}",
+         kMostAmbientLights, lights.size());
 }
 
 // A picture of colours, normals or positions, told from depth where the depth channel is one of three.
@@ -249,6 +271,7 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
   source.channels[RawPlane::beauty] = search.with_alpha(
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
   find_ambient(source, search, file, settings);
+  find_shadowed(source, search, file, settings);
   source.reading.supersampling = supersampling_of(source, source.channels[RawPlane::beauty][0], settings);
   for (const auto* aov : {&source.channels[RawPlane::beauty], &source.channels[RawPlane::indirect],
                           &source.channels[RawPlane::diffuse_color]})

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "core/base/file.h"
 #include "core/base/text.h"
@@ -15,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kDeepestLights = 8;          // objects and lists within each other, since quoting them recurses
+constexpr int kDeepestLights = 8;          // objects and lists within each other
 constexpr std::size_t kLongestName = 64;   // of a light: it is part of a channel's name
 constexpr std::size_t kLongestShown = 60;  // characters of a text of the file in a message
 constexpr double kFarthestLight = 1e12;    // scene units: kernels square it as a float
@@ -24,24 +25,6 @@ constexpr double kWidestSun = 30;          // degrees: wider ones are no discs a
 /// A text of the file for a message.
 std::string shown(const std::string& text) {
   return text.size() > kLongestShown ? as_utf8(text.substr(0, kLongestShown)) + "..." : text;
-}
-
-/// How many objects and lists lie within each other at most. The parser would tell, but looks at all entries of a list
-/// for each of them where it is asked to.
-int nesting_of(const std::string& text) {
-  int depth = 0, most = 0;
-  bool is_quoted = false;
-  for (std::size_t i = 0; i < text.size(); i++) {
-    if (is_quoted && text[i] == '\\')
-      i++;
-    else if (text[i] == '"')
-      is_quoted = !is_quoted;
-    else if (!is_quoted && (text[i] == '{' || text[i] == '['))
-      most = std::max(most, ++depth);
-    else if (!is_quoted && (text[i] == '}' || text[i] == ']'))
-      depth--;
-  }
-  return most;
 }
 
 /// Reads the lights of a file: every complaint names the file and the light.
@@ -136,7 +119,7 @@ LightsFile::Entry entry_of(LightReader reader, const Json& json) {
   reader.require_known(json, fields);
   fields.resize(2);
   fields.emplace_back("frame");
-  light.in_world = !json.contains("space") || reader.word(json["space"], "space", {"world", "view"}) == "world";
+  entry.in_world = !json.contains("space") || reader.word(json["space"], "space", {"world", "view"}) == "world";
   const bool is_placed = reader.take(json, light);
   entry.is_constant = !json.contains("frames");
   if (entry.is_constant) {
@@ -148,18 +131,49 @@ LightsFile::Entry entry_of(LightReader reader, const Json& json) {
   if (!frames.is_array() || frames.empty()) reader.refuse("\"frames\" must be a list of objects");
   for (const auto& frame : frames) {
     if (!frame.is_object() || !frame.contains("frame")) reader.refuse("\"frames\" must list objects with a \"frame\"");
-    reader.require_known(frame, fields);
     const int number = reader.frame_number(frame["frame"]);
+    LightReader of_number{reader.path, fmt::format("{}, frame {}", reader.light, number)};
+    of_number.require_known(frame, fields);
     Light of_frame = light;
-    if (!reader.take(frame, of_frame) && !is_placed)
-      reader.refuse(fmt::format("\"{}\" is missing in frame {}", where, number));
-    if (!entry.of_frames.emplace(number, of_frame).second)
-      reader.refuse(fmt::format("\"frames\" has frame {} twice", number));
+    if (!of_number.take(frame, of_frame) && !is_placed) of_number.refuse(fmt::format("\"{}\" is missing", where));
+    if (!entry.of_frames.emplace(number, of_frame).second) of_number.refuse("it is there twice");
   }
   return entry;
 }
 
+/// A direction with another azimuth, or another elevation, where these are given.
+Vector3 turned(const Vector3& at, std::optional<double> azimuth, std::optional<double> elevation, bool is_z_up) {
+  if (!azimuth && !elevation) return at;
+  const std::size_t up = is_z_up ? 2 : 1, side = is_z_up ? 1 : 2;
+  const double left = is_z_up ? 1 : -1, degree = std::numbers::pi / 180;
+  const double around = azimuth ? *azimuth * degree : std::atan2(left * at[side], at[0]);
+  const double high = elevation ? *elevation * degree : std::asin(std::clamp(at[up], -1.0, 1.0));
+  Vector3 result{};
+  result[0] = std::cos(high) * std::cos(around);
+  result[side] = left * std::cos(high) * std::sin(around);
+  result[up] = std::sin(high);
+  return result;
+}
+
+/// Takes the sun that the settings turn.
+void take_turn(LightsFile& file, const EstimatorSettings& settings) {
+  if (!turns_sun(settings)) return;
+  std::vector<std::string> suns;
+  for (std::size_t i = 0; i < file.lights.size(); i++) {
+    const auto& [name, of_frames, is_constant, in_world] = file.lights[i];
+    if (of_frames.begin()->second.is_lamp) continue;
+    if (settings.sun.empty() || settings.sun == name) file.sun = i, suns.push_back(name);
+  }
+  if (suns.size() != 1)
+    fail(ErrorKind::usage, "--set sun-azimuth and sun-elevation: {} has {} {}: --set sun=NAME says which sun they turn",
+         file.path, suns.empty() ? "no sun" : "the suns", suns.empty() ? settings.sun : list_of(suns));
+  file.azimuth = settings.sun_azimuth;
+  file.elevation = settings.sun_elevation;
+}
+
 }  // namespace
+
+bool turns_sun(const EstimatorSettings& settings) { return settings.sun_azimuth || settings.sun_elevation; }
 
 void LightsFile::require_frames(const std::vector<int>& frames) const {
   for (const auto& light : lights)
@@ -176,18 +190,19 @@ void LightsFile::require_frames(const std::vector<int>& frames) const {
 std::vector<Light> LightsFile::in_view(const Camera& camera, int frame) const {
   require_frames({frame});
   std::vector<Light> result;
-  for (const auto& [name, of_frames, is_constant] : lights) {
+  for (const auto& [name, of_frames, is_constant, in_world] : lights) {
     Light light = is_constant ? of_frames.begin()->second : of_frames.at(frame);
-    if (light.in_world && !camera.view_from_world)
+    light.name = name;
+    if (in_world && !camera.view_from_world)
       fail(ErrorKind::input,
            "{}: light \"{}\" is in world space, and needs a camera with world_to_camera: give a --camera file with it, "
            "or the light in view space (--lights)",
            path, name);
-    if (light.in_world) light.at = times(*camera.view_from_world, light.at);
-    if (light.in_world && light.is_lamp)
+    if (!in_world && camera.left_handed) light.at[2] = -light.at[2];
+    if (name == lights[sun].name) light.at = turned(light.at, azimuth, elevation, in_world && !is_y_up);
+    if (in_world) light.at = times(*camera.view_from_world, light.at);
+    if (in_world && light.is_lamp)
       for (std::size_t i = 0; i < 3; i++) light.at[i] += camera.view_from_world_offset[i];
-    if (!light.in_world && camera.left_handed) light.at[2] = -light.at[2];
-    light.in_world = false;
     result.push_back(light);
   }
   return result;
@@ -197,14 +212,17 @@ bool LightsFile::is_soft(std::size_t light) const {
   return std::ranges::any_of(lights[light].of_frames, [](const auto& of_frame) { return of_frame.second.size > 0; });
 }
 
-std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::string& path) {
-  LightsFile file{path, {}};
+std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::string& path,
+                                            const EstimatorSettings& settings) {
+  LightsFile file;
+  file.path = path;
   LightReader reader{path, "the file"};
-  if (nesting_of(text) > kDeepestLights) reader.refuse(fmt::format("its JSON nests deeper than {}", kDeepestLights));
-  const Json top = Json::parse(text, nullptr, false);
+  std::string why;
+  const Json top = json_of(text, kDeepestLights, why);
   if (!top.is_object() || !top.contains("lights") || !top["lights"].is_array())
-    reader.refuse("it must be a JSON object with a list \"lights\"");
-  reader.require_known(top, {"lights"});
+    reader.refuse(fmt::format("it must be a JSON object with a list \"lights\"{}", why));
+  reader.require_known(top, {"lights", "up"});
+  file.is_y_up = top.contains("up") && reader.word(top["up"], "up", {"z", "y"}) == "y";
   const Json& lights = top["lights"];
   if (lights.empty() || lights.size() > kMostLights)
     reader.refuse(fmt::format("it lists {} lights, and a run takes 1 to {}", lights.size(), kMostLights));
@@ -215,11 +233,12 @@ std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::
     if (std::ranges::count(file.lights, name, &LightsFile::Entry::name) > 1)
       reader.refuse(fmt::format("the name \"{}\" is there twice", name));
   }
+  take_turn(file, settings);
   return std::make_shared<const LightsFile>(std::move(file));
 }
 
-std::shared_ptr<const LightsFile> read_lights(const std::string& path) {
-  return lights_of(read_text(path, "lights", "--lights"), path);
+std::shared_ptr<const LightsFile> read_lights(const std::string& path, const EstimatorSettings& settings) {
+  return lights_of(read_text(path, "lights", "--lights"), path, settings);
 }
 
 }  // namespace alcove

@@ -4,9 +4,11 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/settings.h"
 #include "core/frame/camera/camera.h"
 #include "core/frame/camera/linear.h"
 
@@ -17,8 +19,8 @@ inline constexpr std::size_t kMostLights = 16;
 
 /// A light in one frame.
 struct Light {
+  std::string name = {};
   bool is_lamp = false;  // a lamp at a place; else a sun, which is infinitely far away
-  bool in_world = true;  // else in view space
   Vector3 at{};          // scene units: of a lamp its place; of a sun the direction to it, 1 long
   double size = 0;  // of a lamp its radius, scene units; of a sun its angular diameter, degrees, below 180; 0: hard
   bool operator==(const Light&) const = default;
@@ -30,9 +32,14 @@ struct LightsFile {
     std::string name;                // letters, digits, - and _; each once
     std::map<int, Light> of_frames;  // by the number of the frame; of a light that is the same in all frames one
     bool is_constant = true;
+    bool in_world = true;  // else in view space
   };
   std::string path;
+  bool is_y_up = false;       // the world; else its z is
   std::vector<Entry> lights;  // 1 to kMostLights
+  // Degrees that the settings give to a sun. See docs/inputs.md.
+  std::size_t sun = 0;  // of `lights`
+  std::optional<double> azimuth = {}, elevation = {};
 
   /// Fails with ErrorKind::input if a light that changes from frame to frame does not list one of these.
   void require_frames(const std::vector<int>& frames) const;
@@ -43,9 +50,14 @@ struct LightsFile {
   bool is_soft(std::size_t light) const;
 };
 
-/// Reads a lights file; docs/inputs.md lists its fields. Fails with ErrorKind::input, and names file, light and field.
-std::shared_ptr<const LightsFile> read_lights(const std::string& path);
+/// Whether the settings turn a sun.
+bool turns_sun(const EstimatorSettings& settings);
+
+/// Reads a lights file; docs/inputs.md lists its fields. Fails with ErrorKind::input, and names file, light and field;
+/// and with ErrorKind::usage where the settings turn a sun that the file does not have.
+std::shared_ptr<const LightsFile> read_lights(const std::string& path, const EstimatorSettings& settings = {});
 /// The same of its text; `path` is for messages.
-std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::string& path);
+std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::string& path,
+                                            const EstimatorSettings& settings = {});
 
 }  // namespace alcove
