@@ -123,7 +123,7 @@ void add_search_rows(std::vector<SettingRow>& rows) {
   using S = EstimatorSettings;
   OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
   const auto unless_crytek = [](const Settings& all) { return unless_estimator(all, {Estimator::crytek}); };
-  pixels.number("--slices", &S::slices, "per pixel", between(1, 64), "directions of the search")
+  pixels.number("--slices", &S::slices, "per pixel", between(1, 64), "directions of the search, and to a soft light")
       .idle(unless_slices_anywhere)
       .idle(if_by_error_alone);
   pixels.number("--steps", &S::steps, "per side", between(1, 4096), "samples to each side of a slice")

@@ -106,7 +106,7 @@ void add_preview_rows(std::vector<SettingRow>& rows) {
       .idle(unless_shown_composite);
   pixels
       .word("preview-style", &S::preview_style, {"auto", "ao", "composite", "split"},
-            "auto: the composite, or the AO without one; split: beauty left, composite right")
+            "auto: the composite, or AO, or the first light's shadow; split: beauty left, composite right")
       .idle([](const Settings& all) {
         const std::string& style = all.output.preview_style;
         return style == "auto" || style == "ao" ? "" : unless_shown_composite(all);

@@ -254,7 +254,9 @@ ShownPicture beside(const ShownPicture& left, const ShownPicture& right) {
 }
 
 ShownPicture preview_of(FrameSource& source, const Window& window, const FrameOutputs& outputs,
-                        const DisplayTransform* transform, const std::string& style) {
+                        const DisplayTransform* transform, const OutputSettings& settings) {
+  const std::string& style = settings.preview_style;
+  if (Wanted(settings).previews_shadow) return shown_plane(source, window, *outputs.shadow);
   if (!outputs.composite || style == "ao") return shown_plane(source, window, *outputs.ao);
   const ShownPicture composite = shown_colors(source, window, outputs.composite, transform);
   return style == "split" ? beside(shown_colors(source, window, nullptr, transform), composite) : composite;
@@ -270,7 +272,7 @@ void write_pictures(FrameSource& source, const Window& computed, const FrameOutp
     write_debug_view(debug_path(settings, *plane.view), *plane.view, plane.size.x, plane.size.y,
                      plane.values->as<float>(), text);
   if (settings.preview.empty()) return;
-  const ShownPicture shown = preview_of(source, computed, outputs, transform, settings.preview_style);
+  const ShownPicture shown = preview_of(source, computed, outputs, transform, settings);
   if (take_preview) return take_preview(shown);
   write_png(settings.preview, shown.width, shown.height, shown.channels, shown.pixels, text);
 }

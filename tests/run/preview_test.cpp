@@ -66,6 +66,20 @@ colorspaces:
   const std::string png = folder / "preview.png", config = folder / "config.ocio", ocio = "ocio=" + config + " ";
 };
 
+TEST_F(Preview, of_a_run_without_ao_is_the_shadow_of_the_first_light) {
+  const std::string lights = folder / "lights.json";
+  write_bytes(lights, R"({"lights": [{"name": "key", "kind": "sun", "direction": [0, 1, 2]},
+                                     {"name": "fill", "kind": "sun", "direction": [0, 0, 1]}]})");
+  done({"--lights", lights, "--aov", "shadow", "--preview", png});
+  const Image image = read_exr_image(ao);
+  const auto shadow = image.plane("shadow-key.Y");
+  ASSERT_NE(std::ranges::count(shadow, 0), std::ranges::ssize(shadow)) << "all is dark";
+  ASSERT_GT(std::ranges::count(shadow, 0), 0) << "nothing is dark";
+  EXPECT_THAT(picture_in(png).planes, ElementsAre(ElementsAreArray(shadow)));
+  done({"--lights", lights, "--aov", "ao,shadow", "--preview", png});
+  EXPECT_THAT(picture_in(png).planes, Not(ElementsAre(ElementsAreArray(shadow))));
+}
+
 TEST_F(Preview, of_the_composite_may_be_of_the_ao_or_have_the_beauty_beside_it) {
   const Picture composite = shown(""), beauty = shown("mix=0");
   EXPECT_EQ(shown("preview-style=composite").planes, composite.planes);

@@ -19,7 +19,7 @@ namespace {
 constexpr double kAnywhere = 1e20;  // scene units: a reach that nothing bounds
 
 // Of a light of some size.
-constexpr uint kDirections = 4, kDirectionsExact = 16;
+constexpr uint kLeastDirections = 2, kDirectionsExact = 16;
 
 bool is_hard(const Light& light) { return !(float(light.size) > 0); }
 
@@ -85,7 +85,9 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
         {"Nearest", nearest},     {"Backs", gpu::Optional(backs)}, {"Result", result}};
     if (gbuffer.surfaces > 1) buffers.push_back({"Hidden", occluder_hidden_of(of_rule)});
     const uint solid = solid_of(blocks, backs != nullptr) | kHiddenSurface * (gbuffer.surfaces - 1);
-    const uint directions = is_hard(light) ? 1 : searches_exactly(settings) ? kDirectionsExact : kDirections;
+    const uint directions = is_hard(light)               ? 1
+                            : searches_exactly(settings) ? kDirectionsExact
+                                                         : std::max(uint(settings.slices), kLeastDirections);
     const std::vector<uint> constants{solid, directions, rule == 2 ? 1u : 0u};
     if (gbuffer.surfaces == 1)
       gpu.dispatch("shadow", params, buffers, extent_of(gbuffer.view), constants);

@@ -112,8 +112,10 @@ Wanted::Wanted(const OutputSettings& settings)
   completed = !settings.stats.empty() || std::ranges::any_of(debug_views, shows_completed);
   for (const AovSource source : {AovSource::open_directions, AovSource::transfer})
     order += std::ranges::any_of(aovs, is_at_least(source)) ? 1 : 0;
+  previews_shadow = !settings.preview.empty() && settings.composite.empty() && settings.preview_style == "auto" &&
+                    has(&FrameOutputs::shadow) && !has(&FrameOutputs::ao);
   visibility = std::ranges::any_of(aovs, is_at_least(AovSource::visibility)) || multi_bounce ||
-               !settings.composite.empty() || !settings.preview.empty() ||
+               !settings.composite.empty() || (!settings.preview.empty() && !previews_shadow) ||
                std::ranges::any_of(debug_views, is_of_visibility);
 }
 

@@ -145,10 +145,11 @@ struct Wanted {
 
   std::vector<Aov> aovs;
   std::vector<const DebugView*> debug_views;
-  bool visibility = false;  // AO, or an output made from it
-  uint order = 0;           // of the moments for other outputs, of an estimator that finds open directions
-  bool completed = false;   // the visibility that completed surfaces block
-  bool only_own = false;    // the estimate alone, for other frames
+  bool visibility = false;       // AO, or an output made from it
+  uint order = 0;                // of the moments for other outputs, of an estimator that finds open directions
+  bool completed = false;        // the visibility that completed surfaces block
+  bool only_own = false;         // the estimate alone, for other frames
+  bool previews_shadow = false;  // of the first light, where there is no AO to be seen
   bool multi_bounce = false;
   std::vector<Light> lights;  // suns in place of the AOV shadow's lights when a frame is rehearsed; soft as they
   PixelFilter filter;
