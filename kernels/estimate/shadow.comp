@@ -33,8 +33,8 @@ layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 // behind the first
 layout(constant_id = 0) const uint kSolid = kThicknessWidth | kCompletesBorder | kTellsBacks;
 layout(constant_id = 1) const uint kDirections = 1;  // of the light
-// 1: `result` holds the visibility where occluders are thin, and takes the confidence: 1 less the distance to what
-// is visible for certain. This run takes the thickest occluders. A ray that leaves the image counts by its length, see
+// 1: `result` holds the visibility where occluders are thin, and takes the confidence: 1 less its distance to the
+// certain visibility. This run takes the thickest occluders. A ray that leaves the image counts by its length, see
 // kHalfKnown.
 layout(constant_id = 2) const uint kConfidence = 0;
 layout(scalar, push_constant) uniform Push { ShadowParams params; };

@@ -6,10 +6,10 @@
 // Out: colour; alpha as it was.
 //
 // beauty - mix S - D o (1 - tint). S is the sum of dark x light x colour, where dark = t (1 - shadow). D is the sum of
-// weight x (1 - dark) x light x colour, or the beauty - S: AO dims what shadows leave. o = mix alpha t min(gain (1 -
-// ao), 1 - least) is the occlusion, or 1 - ao where a matte's outside is darker than `least`. A pixel at an edge is
-// part background, which the AO of the surface must not dim: so alpha. A layer of light is of surfaces alone, so its
-// shadow is without. The difference form keeps all other light as it is, even where the passes do not sum to the beauty
+// weight x (1 - dark) x light x colour, or the beauty - S: AO dims the rest. o = mix alpha t min(gain (1 - ao), 1 -
+// least) is the occlusion, or 1 - ao where a matte's outside is darker than `least`. A pixel at an edge is part
+// background, which the AO of the surface must not dim: so alpha. A layer of light is of surfaces alone, so its shadow
+// is without. The difference form keeps all other light as it is, even where the passes do not sum to the beauty
 // exactly. t = exp(-density distance) is how much of the surface's light comes through the fog that the beauty shows
 // (Beer and Lambert's law): the fog before a surface is not in its corners.
 #version 450
@@ -40,7 +40,7 @@ float sane(float x) {
   return 0.0;
 }
 
-/// The light of a colour that AO may dim, and what shadows take.
+/// The light of a colour that AO may dim, and the light that shadows take.
 struct Dimmed {
   float ambient, shadowed;
 };

@@ -48,7 +48,7 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
     chain_ends(gpu, counted, links);
     told = &backs(gpu, counted, links);
   }
-  // The visibility, and with confidence what brackets it: with the thinnest occluders, then with the thickest.
+  // Of the visibility, and of the two that bracket it for the confidence: the thinnest occluders, then the thickest.
   struct Rule {
     GBuffer counted;
     Reach reach;
