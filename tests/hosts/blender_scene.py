@@ -1,17 +1,19 @@
 # Runs within Blender: uses the add-on as its operators, on a scene made here. blender_test.py starts it and looks at what is left.
 # SPDX-License-Identifier: BSD-3-Clause
-"""blender -b --factory-startup --python blender_scene.py -- ADDON FOLDER"""
+"""blender -b --factory-startup --python blender_scene.py -- ADDON PAGE FOLDER"""
 
 import importlib.util
 import json
 import math
 import os
+import re
+import subprocess
 import sys
 
 import bpy
 
 sys.dont_write_bytecode = True  # beside the add-on
-addon_path, folder = sys.argv[sys.argv.index("--") + 1:]
+addon_path, page, folder = sys.argv[sys.argv.index("--") + 1:]
 spec = importlib.util.spec_from_file_location("alcove", addon_path)
 alcove = importlib.util.module_from_spec(spec)
 sys.modules["alcove"] = alcove
@@ -133,6 +135,28 @@ scene.render.image_settings.file_format, scene.render.image_settings.color_depth
 scene.render.filepath, scene.render.use_compositing = os.path.join(folder, "relit.exr"), True
 bpy.ops.render.render(write_still=True)
 scene.alcove.sky = ""
+
+# A sun that was added, by the lines of docs/outputs.md.
+with open(os.path.join(folder, "lights.json"), "w", encoding="utf-8") as file:
+    json.dump({"lights": [{"name": "key", "kind": "sun", "direction": [0.5, -0.3, 0.8]}]}, file)
+shadows = os.path.join(folder, "shadows.exr")
+subprocess.run([os.environ["ALCOVE"], "run", os.path.join(folder, "frame.0003.exr"), "-o", shadows, "--camera", os.path.join(folder, "written.json"),
+                "--radius", "0.5", "--frames", "3", "--lights", os.path.join(folder, "lights.json"), "--aov", "ao,normal,shadow", "--set",
+                "compression=none", "-q"], check=True)
+image = scene.node_tree.nodes.new("CompositorNodeImage")
+image.image = bpy.data.images.load(shadows)
+scene.node_tree.nodes.active = image
+with open(page, encoding="utf-8") as file:
+    [lines] = [part for part in re.findall("```python\n(.*?)```", file.read(), re.S) if "shadow-key" in part]
+made = {}
+exec(compile(lines, page, "exec"), made)
+made["darkened"].node.inputs[1].default_value = (0.5, 0.25, 2, 1)
+end = next(node for node in scene.node_tree.nodes if node.bl_idname == "CompositorNodeComposite")
+scene.render.image_settings.exr_codec = "NONE"
+for name in ("relit", "darkened"):
+    scene.node_tree.links.new(made[name], end.inputs["Image"])
+    scene.render.filepath = os.path.join(folder, name + " by key.exr")
+    bpy.ops.render.render(write_still=True)
 
 
 def message_of(change):

@@ -5,11 +5,18 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+
+import numpy
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../support"))
+from exr import read_exr  # noqa: E402
 
 PROGRAM, SOURCE = os.path.abspath(sys.argv[1]), sys.argv[2]
 FOLDER = tempfile.mkdtemp(prefix="alcove-blender-")
@@ -31,7 +38,7 @@ class Blender(unittest.TestCase):
         here = os.path.dirname(os.path.abspath(__file__))
         done = subprocess.run(
             ["blender", "-b", "--factory-startup", "--python-exit-code", "9", "--python", os.path.join(here, "blender_scene.py"),
-             "--", os.path.join(SOURCE, "hosts/blender/alcove.py"), FOLDER],
+             "--", os.path.join(SOURCE, "hosts/blender/alcove.py"), os.path.join(SOURCE, "docs/outputs.md"), FOLDER],
             env=dict(os.environ, ALCOVE=PROGRAM), capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout + done.stderr
         with open(path("facts.json"), encoding="utf-8") as file:
@@ -83,6 +90,25 @@ class Blender(unittest.TestCase):
         alcove("run", path("frame.0003.exr"), "-o", path("lit.exr"), "--camera", path("written.json"), "--radius", "0.5", "--frames", "3",
                "--environment", path("sky.exr"), "-q")
         alcove("compare", path("relit.exr"), path("lit.exr"), "--channel", "R=relight.R,G=relight.G,B=relight.B", "--max-rmse", "0.001")
+
+    def test_the_nodes_of_the_page_light_by_a_sun_and_darken_its_pass(self):
+        shadows = read_exr(path("shadows.exr"))
+        seen, normal = shadows["shadow-key.Y"].astype(float), [shadows["normal." + axis].astype(float) for axis in "XYZ"]
+        cosine = sum(x * part for x, part in zip(numpy.array([0.5, -0.3, 0.8]) / 0.98 ** 0.5, normal))
+        self.assertGreater(numpy.count_nonzero((seen == 0) & (cosine > 0.1)), 50, "there is no shadow")
+        self.assertGreater(numpy.count_nonzero((seen == 1) & (cosine > 0.1)), 1000)
+        relit, darkened = read_exr(path("relit by key.exr")), read_exr(path("darkened by key.exr"))
+        with open(os.path.join(SOURCE, "docs/outputs.md"), encoding="utf-8") as file:
+            page = file.read()
+        [lit] = re.findall('temp_expr0 "(shadow_key.*?)"', page)
+        lit = eval(re.sub(r"\w+\.[XYZ]", lambda name: "planes['%s']" % name.group(), lit),  # Nuke's
+                   {"max": numpy.maximum, "planes": {"shadow_key.Y": seen, **{"normal." + axis: part for axis, part in zip("XYZ", normal)}}})
+        for number, (channel, color, factor) in enumerate(zip("RGB", (3, 2.8, 2.5), (0.5, 0.25, 2))):
+            light = color * seen * numpy.maximum(0, cosine)
+            numpy.testing.assert_allclose(relit[channel], light, atol=2e-3)
+            numpy.testing.assert_allclose(darkened[channel], factor * seen, atol=1e-3)
+            [scale] = re.findall(r'expr%d "(\S+) \* lit"' % number, page)
+            numpy.testing.assert_allclose(float(scale) * lit, light, atol=2e-3)
 
     def test_cameras_are_those_that_the_positions_tell(self):
         with open(path("written.json"), encoding="utf-8") as file:
