@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/options/row.h"
+#include "core/options/option_row.h"
 
 namespace alcove {
 

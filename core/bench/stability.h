@@ -63,7 +63,7 @@ std::string stability_text(const StabilityReport& report);
 /// {"device", "breakdown", "plain": [{"estimator", "rmse"}], "axes": [{"name", "unit", "points": [{"at", "notes"}],
 /// "curves": [{"estimator", "rmse", "breaks_at": [...], "said"}]}]}.
 std::string stability_json(const StabilityReport& report);
-/// A self-contained page without scripts.
+/// The page of core/measure/report.h, with a row for each point and estimator.
 std::string stability_page(const StabilityReport& report);
 
 }  // namespace alcove

@@ -39,89 +39,89 @@ GBuffer work_of(gpu::Recorder& gpu, const FrameInputs& frame, const FrameInputs&
 }
 
 /// The frame's own estimate, smoothed.
-Seen own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
-                    const EstimatorSettings& settings, const Wanted& wanted) {
+FrameVisibility own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
+                               const EstimatorSettings& settings, const Wanted& wanted) {
   const FrameInputs inputs = with_margin(frame);
-  Seen seen;
-  const GBuffer work = work_of(gpu, frame, inputs, surfaces, settings, seen.matte);
+  FrameVisibility visible;
+  const GBuffer work = work_of(gpu, frame, inputs, surfaces, settings, visible.matte);
   const uint order = moment_order(settings, wanted);
   const bool with_completed = wanted.completed && completes_anywhere(settings);
-  seen.is_quick = searches_quickly(settings, work, order, wanted.needs_curvature());
-  const gpu::Buffer* wide = seen.is_quick ? &margin(gpu, work) : nullptr;
+  visible.is_quick = searches_quickly(settings, work, order, wanted.needs_curvature());
+  const gpu::Buffer* wide = visible.is_quick ? &margin(gpu, work) : nullptr;
   const Sites chosen = sites(gpu, work, site_rule_of(settings, frame.turn), "", wide);
-  seen.estimate = seen.is_quick
-                      ? quick_horizon(gpu, work, chosen, *wide, inputs, settings)
-                      : estimate(gpu, work, chosen, inputs, settings, order, with_completed, wanted.needs_curvature());
-  seen.completion = completion(gpu, work, seen.estimate, chosen);
+  visible.estimate =
+      visible.is_quick ? quick_horizon(gpu, work, chosen, *wide, inputs, settings)
+                       : estimate(gpu, work, chosen, inputs, settings, order, with_completed, wanted.needs_curvature());
+  visible.completion = completion(gpu, work, visible.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
-  const Visibility noisy{seen.estimate.ao, nullptr, seen.estimate.moments};
-  const FilterRuns runs = dilate(gpu, work, seen.estimate.listed, denoiser);
+  const Visibility noisy{visible.estimate.ao, nullptr, visible.estimate.moments};
+  const FilterRuns runs = dilate(gpu, work, visible.estimate.listed, denoiser);
   const Visibility of_radii = smooth(gpu, work, noisy, chosen, denoiser, runs, order);
   const Visibility smoothed = combine(gpu, work, of_radii, wanted.needs_scales());
-  seen.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smoothed, runs));
-  if (wanted.has(&FrameOutputs::error)) seen.error = cut(gpu, frame, seen.estimate.error, "error");
-  seen.stages = {work, noisy.ao, chosen, smoothed.ao, seen.estimate.completed, seen.estimate.listed.kinds};
-  return seen;
+  visible.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smoothed, runs));
+  if (wanted.has(&FrameOutputs::error)) visible.error = cut(gpu, frame, visible.estimate.error, "error");
+  visible.stages = {work, noisy.ao, chosen, smoothed.ao, visible.estimate.completed, visible.estimate.listed.kinds};
+  return visible;
 }
 
 /// The mean of what many frames have estimated.
-Seen mean_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
-                     const EstimatorSettings& settings, const Wanted& wanted) {
+FrameVisibility mean_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
+                                const EstimatorSettings& settings, const Wanted& wanted) {
   const std::size_t radii = radii_of(settings).size();
   const std::size_t scales = wanted.needs_scales() && radii > 1 ? radii : 0;
-  Seen seen;
-  seen.matte = matte(gpu, frame);
+  FrameVisibility visible;
+  visible.matte = matte(gpu, frame);
   const Accumulation mean = accumulate(gpu, surfaces.frame, frame.estimates, settings, scales,
                                        moment_order(settings, wanted), wanted.needs_curvature());
-  seen.visibility = mean.visibility;
-  seen.count = mean.count;
-  seen.stages.count = mean.count;
-  return seen;
+  visible.visibility = mean.visibility;
+  visible.count = mean.count;
+  visible.stages.count = mean.count;
+  return visible;
 }
 
-Seen visibility_of(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
-                   const EstimatorSettings& settings, const Wanted& wanted) {
+FrameVisibility visibility_of(gpu::Recorder& gpu, const FrameInputs& frame, const Surfaces& surfaces,
+                              const EstimatorSettings& settings, const Wanted& wanted) {
   if (!wanted.visibility && !frame[RawPlane::beauty]) return {};
   return frame.estimates.values ? mean_visibility(gpu, frame, surfaces, settings, wanted)
                                 : own_visibility(gpu, frame, surfaces, settings, wanted);
 }
 
 /// The counts of the passes.
-FrameOutputs counts_of(const Seen& seen) {
-  const GBuffer& gbuffer = seen.surfaces.frame;
+FrameOutputs counts_of(const FrameVisibility& visible) {
+  const GBuffer& gbuffer = visible.surfaces.frame;
   return {.counts = gbuffer.counts,
           .layer_counts = gbuffer.layer_counts,
           .view_counts = gbuffer.view_counts,
-          .tiles = seen.estimate.listed.counts,
-          .sites = seen.estimate.listed.site_counts,
-          .squares = seen.estimate.squares,
-          .completion = seen.completion,
-          .completed = seen.estimate.completed,
-          .count = seen.count,
-          .is_quick = seen.is_quick};
+          .tiles = visible.estimate.listed.counts,
+          .sites = visible.estimate.listed.site_counts,
+          .squares = visible.estimate.squares,
+          .completion = visible.completion,
+          .completed = visible.estimate.completed,
+          .count = visible.count,
+          .is_quick = visible.is_quick};
 }
 
 /// The estimate that the frame hands to others.
-FrameOutputs handed_out(const Seen& seen) {
-  FrameOutputs out = counts_of(seen);
-  out.own = OwnEstimate{seen.surfaces.frame, seen.visibility};
+FrameOutputs handed_out(const FrameVisibility& visible) {
+  FrameOutputs out = counts_of(visible);
+  out.own = OwnEstimate{visible.surfaces.frame, visible.visibility};
   return out;
 }
 
 /// How far back the frame's pixels are solid, if its estimate has found that out for each of them.
-const gpu::Buffer* told_of(const Seen& seen) {
-  const gpu::Buffer* told = seen.estimate.told;
-  return told && told->bytes() == plane_bytes(seen.surfaces.wide.view) ? told : nullptr;
+const gpu::Buffer* told_of(const FrameVisibility& visible) {
+  const gpu::Buffer* told = visible.estimate.told;
+  return told && told->bytes() == plane_bytes(visible.surfaces.wide.view) ? told : nullptr;
 }
 
 /// The outputs with the shadows of lights, the coefficients of the reflected light, and that light.
-FrameOutputs with_light(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen,
+FrameOutputs with_light(gpu::Recorder& gpu, const FrameInputs& frame, const FrameVisibility& visible,
                         const EstimatorSettings& settings, const Wanted& wanted, FrameOutputs out) {
-  const GBuffer& gbuffer = seen.surfaces.frame;
-  const Visibility& visibility = seen.visibility;
+  const GBuffer& gbuffer = visible.surfaces.frame;
+  const Visibility& visibility = visible.visibility;
   if (wanted.has(&FrameOutputs::shadow))
     out.shadow = cut(gpu, frame,
-                     &shadow(gpu, seen.surfaces.wide, with_margin(frame), settings, told_of(seen),
+                     &shadow(gpu, visible.surfaces.wide, with_margin(frame), settings, told_of(visible),
                              wanted.has(&FrameOutputs::confidence)),
                      "shadow");
   if (wanted.has(&FrameOutputs::transfer))
@@ -134,18 +134,18 @@ FrameOutputs with_light(gpu::Recorder& gpu, const FrameInputs& frame, const Seen
 }
 
 /// All that is wanted.
-FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen, const EstimatorSettings& settings,
-                    const Wanted& wanted) {
-  const GBuffer& gbuffer = seen.surfaces.frame;
+FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const FrameVisibility& visible,
+                    const EstimatorSettings& settings, const Wanted& wanted) {
+  const GBuffer& gbuffer = visible.surfaces.frame;
   const bool has_open = moment_order(settings, wanted) > 0 &&
                         (wanted.has(&FrameOutputs::bent_normal) || wanted.has(&FrameOutputs::specular_occlusion));
-  const gpu::Buffer& open = bent_normal(gpu, gbuffer, has_open ? seen.visibility.moments : nullptr);
+  const gpu::Buffer& open = bent_normal(gpu, gbuffer, has_open ? visible.visibility.moments : nullptr);
   const Visibility visibility =
-      shape(gpu, gbuffer, seen.visibility, shaping_of(settings), frame[RawPlane::material_ao], seen.matte);
-  FrameOutputs out = with_light(gpu, frame, seen, settings, wanted, counts_of(seen));
-  out = curvature(gpu, gbuffer, seen.visibility, 1 + settings.further_radii.size(), wanted, seen.matte, out);
+      shape(gpu, gbuffer, visible.visibility, shaping_of(settings), frame[RawPlane::material_ao], visible.matte);
+  FrameOutputs out = with_light(gpu, frame, visible, settings, wanted, counts_of(visible));
+  out = curvature(gpu, gbuffer, visible.visibility, 1 + settings.further_radii.size(), wanted, visible.matte, out);
   out.ao = visibility.ao;
-  out.error = seen.error;
+  out.error = visible.error;
   if (wanted.has(&FrameOutputs::scales)) out.scales = visibility.scales ? visibility.scales : visibility.ao;
   if (wanted.has(&FrameOutputs::normal))
     out.normal = &directions(gpu, gbuffer, *gbuffer.normal, "normal planes", frame.aov_from_view);
@@ -154,14 +154,15 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& se
   if (wanted.has(&FrameOutputs::depth)) out.depth = gbuffer.depth;
   if (wanted.has(&FrameOutputs::hidden)) out.hidden = &hidden_planes(gpu, gbuffer, layering_of(settings));
   if (wanted.has(&FrameOutputs::confidence))
-    out.confidence = cut(gpu, frame, &confidence(gpu, seen.surfaces.wide, with_margin(frame), settings), "confidence");
+    out.confidence =
+        cut(gpu, frame, &confidence(gpu, visible.surfaces.wide, with_margin(frame), settings), "confidence");
   if (wanted.has(&FrameOutputs::specular_occlusion))
     out.specular_occlusion = &specular_occlusion(gpu, gbuffer, open, *visibility.ao, settings.roughness);
   if (wanted.multi_bounce) out.color_ao = &multi_bounce(gpu, gbuffer, *visibility.ao, frame);
   out = reduce(gpu, frame, wanted.filter, out);
   const gpu::Buffer* ao = out.color_ao ? out.color_ao : out.ao;
   out.composite = composite(gpu, gbuffer, ao, out.shadow, frame, wanted.look, settings.least);
-  for (const auto* view : wanted.debug_views) out.debug.push_back(debug(gpu, *view, gbuffer, seen.stages, frame));
+  for (const auto* view : wanted.debug_views) out.debug.push_back(debug(gpu, *view, gbuffer, visible.stages, frame));
   return out;
 }
 
@@ -181,23 +182,24 @@ FrameOutputs downloaded(gpu::Recorder& gpu, const FrameOutputs& out) {
 
 }  // namespace
 
-Seen see(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings, const Wanted& wanted) {
+FrameVisibility frame_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings,
+                                 const Wanted& wanted) {
   if (is_open_sky(frame, settings, wanted)) return {};
   const Surfaces surfaces = surfaces_of(gpu, frame, settings);
-  Seen seen = visibility_of(gpu, frame, surfaces, settings, wanted);
-  seen.surfaces = surfaces;
-  return seen;
+  FrameVisibility visible = visibility_of(gpu, frame, surfaces, settings, wanted);
+  visible.surfaces = surfaces;
+  return visible;
 }
 
-FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen,
+FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const FrameVisibility& visible,
                         const EstimatorSettings& settings, const Wanted& wanted) {
   if (is_open_sky(frame, settings, wanted)) return open_sky(gpu, frame, settings);
-  return downloaded(gpu, wanted.only_own ? handed_out(seen) : shaped(gpu, frame, seen, settings, wanted));
+  return downloaded(gpu, wanted.only_own ? handed_out(visible) : shaped(gpu, frame, visible, settings, wanted));
 }
 
 FrameOutputs run_chain(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings,
                        const Wanted& wanted) {
-  return results_of(gpu, frame, see(gpu, frame, settings, wanted), settings, wanted);
+  return results_of(gpu, frame, frame_visibility(gpu, frame, settings, wanted), settings, wanted);
 }
 
 }  // namespace alcove

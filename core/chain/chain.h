@@ -19,7 +19,7 @@ struct Surfaces {
 
 /// The surfaces of a frame, the visibility of its pixels, and the stages before it; null: not asked for. The buffers
 /// keep their contents while the recorder records results alone.
-struct Seen {
+struct FrameVisibility {
   Surfaces surfaces;
   Visibility visibility;  // before any shaping
   Matte matte;
@@ -32,11 +32,12 @@ struct Seen {
 };
 
 /// Records the passes up to the visibility. settings.radius must be set where it is needed.
-Seen see(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings, const Wanted& wanted);
+FrameVisibility frame_visibility(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings,
+                                 const Wanted& wanted);
 
-/// Records the remaining passes, in the same recording or in later ones. Only shaping and the composite's look may
-/// differ from the settings of see(). Repairs count each time.
-FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const Seen& seen,
+/// Records the remaining passes, in the same recording or in later ones. The settings may differ from those of
+/// frame_visibility() in the shaping and the composite's look alone. Repairs count each time.
+FrameOutputs results_of(gpu::Recorder& gpu, const FrameInputs& frame, const FrameVisibility& visible,
                         const EstimatorSettings& settings, const Wanted& wanted);
 
 /// Records the passes for the wanted outputs of one frame, and the composite if the frame has a beauty.

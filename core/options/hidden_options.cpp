@@ -8,8 +8,8 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/frame/raw_plane.h"
+#include "core/options/option_conflicts.h"
 #include "core/options/options.h"
-#include "core/options/reasons.h"
 
 namespace alcove {
 namespace {

@@ -11,8 +11,8 @@
 #include "core/frame/camera/camera.h"
 #include "core/frame/find/input_rules.h"
 #include "core/frame/raw_plane.h"
+#include "core/options/option_conflicts.h"
 #include "core/options/options.h"
-#include "core/options/reasons.h"
 
 namespace alcove {
 namespace {

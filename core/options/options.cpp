@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/options/reasons.h"
+#include "core/options/option_conflicts.h"
 
 namespace alcove {
 namespace {

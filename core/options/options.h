@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/options/row.h"
+#include "core/options/option_row.h"
 
 namespace alcove {
 

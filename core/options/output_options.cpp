@@ -5,8 +5,8 @@
 #include "core/base/text.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
+#include "core/options/option_conflicts.h"
 #include "core/options/options.h"
-#include "core/options/reasons.h"
 
 namespace alcove {
 namespace {

@@ -19,12 +19,14 @@
 #include "core/formats/sheet.h"
 #include "core/options/options.h"
 #include "core/run/frame_run.h"
+#include "core/run/frame_tally.h"
 #include "core/run/lanes.h"
 #include "core/run/memory.h"
 #include "core/run/pipeline.h"
 #include "core/run/resume.h"
 #include "core/run/run_files.h"
 #include "core/run/run_preview.h"
+#include "core/run/shot_frames.h"
 
 namespace alcove {
 namespace {

@@ -1,19 +1,16 @@
-// Estimates frames for those around them, and packs estimates as kernels take them.
+// Finds cuts between estimates, and packs estimates as kernels take them.
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/estimates.h"
+
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <utility>
+#include <span>
 
-#include "core/base/image.h"
 #include "core/base/text.h"
-#include "core/chain/chain.h"
-#include "core/chain/estimate/estimate.h"
-#include "core/frame/settle/settle.h"
-#include "core/run/frame_run.h"
-#include "core/run/memory.h"
-#include "core/run/shot.h"
+#include "kernels/base/reprojection.h"
 
 namespace alcove {
 namespace {
@@ -69,15 +66,16 @@ void look(const EstimatedFrame& from, const EstimatedFrame& to, Agreement& seen)
            (2 * j + 1) * from.view.size.y / (2 * kGridRows), seen);
 }
 
-/// Whether each frame sees past more of what the other one shows than it sees the same: sets that lie at the same place
-/// of the world, before and behind a cut. Frames that see nothing of each other are not told of: neither harms the
-/// other. Looks at a grid of pixels of both.
-bool is_cut_between(const EstimatedFrame& a, const EstimatedFrame& b) {
+}  // namespace
+
+bool is_cut_between(const EstimatedFrame& a, const EstimatedFrame& b) {  // on a grid of pixels of both
   Agreement seen;
   look(a, b, seen);
   look(b, a, seen);
   return seen.past > seen.same;
 }
+
+namespace {
 
 // Slots.
 
@@ -180,35 +178,6 @@ EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, con
   return result;
 }
 
-// One frame, whole or in tiles: it is read and estimated, but neither filtered nor written.
-
-namespace {
-
-/// The settings of a frame that hands out its estimate alone: all of it, whatever is wanted of the frame itself.
-Settings of_estimate(Settings settings) {
-  InputSettings& input = settings.input;
-  for (std::string* file :
-       {&input.matte, &input.matte_channel, &input.matte_object, &input.material_ao, &input.material_ao_channel})
-    file->clear();
-  input.roi.reset();
-  settings.output.composite.clear();
-  settings.output.debug.clear();
-  settings.estimator.noise = Noise::animated;
-  return settings;
-}
-
-/// Copies the results over a part of a window into the planes of the whole frame.
-struct PartCopy {
-  const Window &computed, &part, &whole;
-
-  template <class T>
-  void operator()(const gpu::Buffer* planes, std::vector<T>& all) const {
-    if (planes) put_in(planes->as<const T>(), computed, part, whole, all);
-  }
-};
-
-}  // namespace
-
 const EstimatedFrame& NeighbourEstimates::own(int frame) const {
   return **std::ranges::find_if(of, [&](const auto& estimated) { return estimated->frame == frame; });
 }
@@ -220,80 +189,6 @@ std::string text_of(const NeighbourEstimates& taken) {
   std::ranges::sort(frames);
   const std::string missing = taken.missing.empty() ? "" : "; missing " + frames_text(taken.missing);
   return "frames " + frames_text(frames) + missing;
-}
-
-NeighbourEstimates SharedFrames::estimates_of(const EstimateContext& where, int frame, PreparationCost& cost) {
-  const FramesAround window = plan_.accumulated(frame);
-  NeighbourEstimates taken{
-      {}, estimated_.of(window.there, [&](int other) { return estimate(where, other, cost); }), window.missing};
-  {
-    const std::lock_guard lock(mutex_);
-    if (auto read = read_.extract(frame)) taken.read = std::move(read.mapped());
-  }
-  const EstimatedFrame& own = taken.own(frame);
-  std::erase_if(taken.of, [&](const auto& other) { return other->frame != frame && is_cut_between(own, *other); });
-  return taken;
-}
-
-EstimatedFrame SharedFrames::estimate(const EstimateContext& where, int frame, PreparationCost& cost) {
-  const Settings settings = of_estimate(plan_.at(frame));
-  FrameSource source = open_frame(settings, frame);
-  if (settled_) settle_like(source, *settled_);
-  require_place(source, frame, "--accumulate");
-  const Window whole = source.reading.data;
-  EstimatedFrame result;
-  result.frame = frame;
-  result.others = neighbours_of(where.gpu, source, frame, cost);
-  FrameTally tally(result.report);
-  Wanted wanted{settings.output};
-  wanted.only_own = wanted.visibility = true;
-  ReadPlanes read;
-  std::vector<float> scales, moments;  // over the whole frame
-  const auto compute = [&](const Window& window, const Window& part) {
-    if (where.begin) where.begin(window);
-    FrameInputs inputs = load_frame(where.gpu, source, window, settings, plan_.slot_of(frame), &read);
-    inputs.others = result.others.seen;
-    inputs.turn = plan_.slot_of(frame);
-    if (part == whole) read = kept_planes(inputs);
-    const FrameOutputs outputs = run_chain(where.gpu, inputs, settings.estimator, wanted);
-    where.gpu.run();
-    cost.passes.insert(cost.passes.end(), where.gpu.passes().begin(), where.gpu.passes().end());
-    tally.add_outputs(outputs, window, false);
-    const OwnEstimate& own = outputs.own.value();
-    result.depth_precision = own.gbuffer.depth_precision;
-    const PartCopy copy{window, part, whole};
-    copy(own.gbuffer.depth, result.depth);
-    copy(own.gbuffer.normal, result.normal);
-    copy(own.visibility.ao, result.values);
-    copy(own.visibility.scales, scales);
-    copy(own.visibility.moments, moments);
-  };
-  const WindowLimits limits{memory_with_others(plan_, source, settings), where.budget,
-                            longest_side(settings.estimator)};
-  if (limits.allow(whole)) {
-    compute(whole, whole);
-  } else {
-    const WindowLimits of_parts = limits.in_parts(source, settings);
-    read_for_parts(source, settings, read, of_parts.budget.bytes - of_parts.kept);
-    Surroundings surroundings(source, settings, read[RawPlane::depth]);
-    for (const auto& row : tiles_of(whole, surroundings, of_parts, source))
-      for (const auto& tile : row) compute(surroundings.around(tile), tile);
-  }
-  for (const auto* planes : {&scales, &moments})
-    result.values.insert(result.values.end(), planes->begin(), planes->end());
-  result.others.seen.clear();
-  result.camera = source.reading.camera;
-  result.view = view_of(source.reading, whole);
-  const auto moving = moving_by_vectors(where.gpu, frame, cost, 0);
-  for (std::size_t i = 0; moving && i < moving->size(); i++) {
-    if (!(*moving)[i]) continue;
-    result.depth[i] = -result.depth[i];
-    result.has_moving = true;
-  }
-  cost.rows_read += source.rows_read;
-  const std::lock_guard lock(mutex_);
-  if (std::ranges::find(left_, frame) != left_.end()) read_.insert_or_assign(frame, std::move(read));
-  return result;
 }
 
 }  // namespace alcove

@@ -1,238 +1,26 @@
-// The steps of a frame, the rows of tiles of a large one, and the sums and sentences of its report.
+// The steps of a frame, and the rows of tiles of a large one.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/frame_run.h"
 
 #include <algorithm>
 #include <new>
-#include <numeric>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/image.h"
-#include "core/chain/estimate/estimate.h"
+#include "core/base/system.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
-#include "core/frame/pixels/detectors.h"
 #include "core/frame/settle/settle.h"
-#include "core/run/memory.h"
+#include "core/run/frame_tally.h"
 #include "core/run/run_files.h"
-#include "kernels/hidden/hidden.h"
+#include "core/run/tiles.h"
 
 namespace alcove {
-
-void FrameTally::begin(const Window& computed) {
-  report_.pixels_at_once = std::max<std::uint64_t>(report_.pixels_at_once, computed.pixels());
-}
-
-void FrameTally::add_inputs(const FrameSource& source, const Window& computed, const FrameInputs& inputs,
-                            const Window& written) {
-  const auto depth = inputs[RawPlane::depth]->as<float>();
-  sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, depth, computed, written);
-  if (inputs[RawPlane::behind])
-    behind_.add(source.reading, depth, inputs[RawPlane::behind]->as<float>(), computed, written);
-  if (const auto* beauty = inputs[RawPlane::beauty]; beauty && planes_in(*beauty, inputs.view) == 4) {
-    has_alpha_ = true;
-    has_coverage_ = has_coverage_ || std::ranges::any_of(beauty->as<float>().subspan(3 * computed.pixels()),
-                                                         [](float alpha) { return alpha > 0; });
-  }
-}
-
-void FrameTally::add_others(const PreparationCost& cost) {
-  rows_of_others_ += cost.rows_read;
-  for (const auto& pass : cost.passes) {
-    const std::string name = "others " + pass.name;
-    auto found = std::ranges::find(report_.passes, name, &gpu::PassTime::name);
-    if (found == report_.passes.end()) found = report_.passes.insert(found, {name});
-    add(pass, *found);
-  }
-  before_ = report_.passes.size();
-}
-
-void FrameTally::add_estimate(const FrameReport& estimate, const Neighbours& others) {
-  report_.tiles = estimate.tiles;
-  report_.estimates = estimate.estimates;
-  is_quick_ = is_quick_ || estimate.search == word_of(SliceSearch::quick);
-  report_.occlusion = estimate.occlusion;
-  if (!others.seen.empty()) return;  // the frame itself counts them
-  report_.hidden = estimate.hidden;
-  report_.moved = estimate.moved;
-  report_.unconfirmed = estimate.unconfirmed;
-}
-
-void FrameTally::add_passes(std::span<const gpu::PassTime> passes) {
-  // Parts of a frame run the same passes, but that some leave out what the first one has found for all.
-  std::size_t next = before_;
-  for (const auto& pass : passes) {
-    const auto begin = report_.passes.begin() + std::ptrdiff_t(next);
-    auto found = std::find_if(begin, report_.passes.end(), [&](const auto& sum) { return sum.name == pass.name; });
-    if (found == report_.passes.end()) found = report_.passes.insert(begin, {pass.name});
-    add(pass, *found);
-    next = std::size_t(found - report_.passes.begin()) + 1;
-  }
-}
-
-void FrameTally::add(const gpu::PassTime& pass, gpu::PassTime& sum) {
-  sum.ms += pass.ms;
-  sum.bytes_read += pass.bytes_read;
-  sum.bytes_written += pass.bytes_written;
-  report_.compute_ms += pass.ms;
-}
-
-void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same) {
-  const auto counts = outputs.counts->as<FrameCounts>()[0];
-  counts_.sky += counts.sky;
-  counts_.repaired_depth += counts.repaired_depth;
-  counts_.repaired_normals += counts.repaired_normals;
-  counts_.turned_normals += counts.turned_normals;
-  counts_.repaired_material += counts.repaired_material;
-  counts_.repaired_beauty += counts.repaired_beauty;
-  report_.pixels += computed.pixels();
-  has_ao_ = outputs.ao;
-  is_quick_ = is_quick_ || outputs.is_quick;
-
-  if (outputs.layer_counts) {
-    const auto layers = outputs.layer_counts->as<LayerCounts>()[0];
-    auto& hidden = report_.hidden ? *report_.hidden : report_.hidden.emplace();
-    hidden.surfaces += layers.surfaces;
-    hidden.dropped += layers.dropped;
-  }
-  if (outputs.squares)
-    for (const vec2& tile : outputs.squares->as<const vec2>()) {
-      report_.error_squares += tile.x;
-      report_.error_pixels += tile.y;
-    }
-  if (outputs.completion) {
-    auto& occlusion = report_.occlusion ? *report_.occlusion : report_.occlusion.emplace();
-    for (const vec2& tile : outputs.completion->as<const vec2>()) {
-      occlusion.by_completed += tile.x;
-      occlusion.whole += tile.y;
-    }
-  }
-  if (outputs.count)
-    for (const float count : outputs.count->as<const float>().first(computed.pixels()))
-      report_.accumulated += double(count);
-  if (outputs.view_counts) {
-    const ViewCounts views = outputs.view_counts->as<ViewCounts>()[0];
-    report_.moved += views.moved;
-    report_.unconfirmed += views.unconfirmed;
-  }
-  if (outputs.tiles) {
-    const auto tiles = outputs.tiles->as<TileCounts>()[0];
-    report_.tiles.sky += tiles.sky;
-    report_.tiles.kept += tiles.kept + (is_same ? tiles.listed : 0);
-    report_.tiles.computed += is_same ? 0 : tiles.listed;
-  }
-  if (outputs.sites) {
-    const SiteCounts& sites = outputs.sites->as<SiteCounts>()[0];
-    auto& estimates = report_.estimates ? *report_.estimates : report_.estimates.emplace();
-    for (std::size_t k = 0; k < kLattices && !is_same; k++) estimates[k] += sites.of_lattice[k];
-    // A quick search does not count its sites by lattice.
-    if (outputs.is_quick && !is_same) estimates.back() += sites.listed;
-  }
-}
-
-/// The search along slices that made the estimate, which the settings may only ask for; empty: there is none.
-static std::string search_of(const EstimatorSettings& settings, bool is_quick) {
-  if (!searches_slices(settings)) return "";
-  if (settings.tolerance > 0) return word_of(SliceSearch::exact);
-  return word_of(settings.search == SliceSearch::quick && !is_quick ? SliceSearch::steps : settings.search);
-}
-
-void FrameTally::finish(const FrameSource& source, const Settings& settings) {
-  if (report_.pixels == 0) report_.pixels = source.reading.data.pixels();
-  report_.rows_read = source.rows_read + rows_of_others_;
-  report_.sky_pixels = counts_.sky;
-  report_.repaired_pixels =
-      counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
-  report_.notes = notes_on(source, settings.input);
-  if (counts_.sky == source.reading.data.pixels())
-    add_new(report_.notes,
-            {{NoteCode::no_surfaces, no_surfaces_text(source.channels[RawPlane::depth].front().channel)}});
-  add_new(report_.notes, behind_.notes(source));
-  add_new(report_.notes, deep_notes(source));
-  if (has_ao_) {
-    report_.search = search_of(settings.estimator, is_quick_);
-    const std::vector<double> radii = radii_of(settings.estimator);
-    add_new(report_.notes,
-            sample_.notes(radii.front(), radii.back(), source.reading.data.width, source.reading.data.height));
-    report_.samples_per_pixel =
-        samples_of(settings.estimator, estimates_of(settings.estimator)) / double(report_.pixels);
-    // An estimator that completes nothing, and sky, are no reason to leave the share out: it is 0.
-    if (!settings.output.stats.empty() && !report_.occlusion) report_.occlusion.emplace();
-  }
-  note_repairs(source);
-}
-
-double FrameTally::estimates_of(const EstimatorSettings& settings) const {
-  if (report_.estimates) return double(std::accumulate(report_.estimates->begin(), report_.estimates->end(), 0ull));
-  const double factor = double(settings.resolution);
-  return double(report_.pixels - report_.sky_pixels) / (factor * factor);
-}
-
-/// Says that pixels may have no normal because the file has none there.
-static std::string window_of_normals(const FrameSource& source) {
-  if (source.channels[RawPlane::normal].empty()) return "";
-  const Window& data = source.part_of(source.channels[RawPlane::normal][0]).data;
-  if (common_part(data, source.reading.data) == source.reading.data) return "";
-  return fmt::format(" (those of {} cover {} only, and the depth {})",
-                     source.files[source.channels[RawPlane::normal][0].file].path(), to_string(data),
-                     to_string(source.reading.data));
-}
-
-void FrameTally::note_repairs(const FrameSource& source) {
-  auto& notes = report_.notes;
-  if (counts_.repaired_depth)
-    notes.push_back(
-        {NoteCode::repaired_depth,
-         fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth),
-         source.note_file(RawPlane::depth)});
-  if (counts_.repaired_normals)
-    notes.push_back({NoteCode::repaired_normals,
-                     fmt::format("{} pixels had no usable normal{}, and got one from depth: give all surfaces normals "
-                                 "(--normal), or if these pixels are sky, its depth (--sky)",
-                                 counts_.repaired_normals, window_of_normals(source)),
-                     source.note_file(RawPlane::normal)});
-  if (counts_.turned_normals)
-    notes.push_back({NoteCode::turned_normals,
-                     fmt::format("the normals of {} pixels faced away from the eye, as on mirrored things and the "
-                                 "backs of cards, and were turned round",
-                                 counts_.turned_normals),
-                     source.note_file(RawPlane::normal)});
-  if (counts_.repaired_material)
-    notes.push_back(
-        {NoteCode::repaired_material_ao,
-         fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material),
-         source.note_file(RawPlane::material_ao)});
-  if (counts_.repaired_beauty)
-    notes.push_back({NoteCode::repaired_beauty,
-                     fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
-                                 counts_.repaired_beauty),
-                     source.note_file(RawPlane::beauty)});
-  if (has_alpha_ && !has_coverage_ && counts_.sky < report_.pixels)
-    notes.push_back({NoteCode::transparent_beauty,
-                     "the beauty's alpha is 0 in all pixels, so the composite is the unchanged beauty: give --beauty a "
-                     "picture without alpha, or with the surfaces' alpha",
-                     source.note_file(RawPlane::beauty)});
-}
-
-Notes FrameTally::notes_on(const FrameSource& source, const InputSettings& settings) {
-  Notes notes = source.notes;
-  add_new(notes, source.suspicious);
-  if (source.channels[RawPlane::normal].empty() && wants_normals(settings))
-    notes.push_back(
-        {NoteCode::no_normals,
-         "there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)"});
-  if (!source.channels[RawPlane::beauty].empty() && dims_beauty(source.reading.ambient) && settings.ambient.empty())
-    notes.push_back({NoteCode::no_indirect_light,
-                     "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims "
-                     "direct light too; --set ambient names its ambient light, or beauty for all of it",
-                     source.note_file(RawPlane::beauty)});
-  return notes;
-}
-
-// The frame.
 
 namespace {
 
@@ -245,20 +33,43 @@ double milliseconds_of(std::span<const gpu::PassTime> passes) {
 /// The run ends before this frame does.
 struct Dropped {};
 
+/// The settings of a frame that hands out its estimate alone: all of it, whatever is wanted of the frame itself.
+Settings of_estimate(Settings settings) {
+  InputSettings& input = settings.input;
+  for (std::string* file :
+       {&input.matte, &input.matte_channel, &input.matte_object, &input.material_ao, &input.material_ao_channel})
+    file->clear();
+  input.roi.reset();
+  settings.output.composite.clear();
+  settings.output.debug.clear();
+  settings.estimator.noise = Noise::animated;
+  return settings;
+}
+
+/// A window to compute, and the part of it whose results count.
+struct FramePart {
+  Window computed, part;
+};
+/// Rows of them, from the top.
+using PartRows = std::vector<std::vector<FramePart>>;
+
+/// Copies the results over a part into the planes of the whole frame.
+struct PartCopy {
+  const FramePart& of;
+  const Window& whole;
+
+  template <class T>
+  void operator()(const gpu::Buffer* planes, std::vector<T>& all) const {
+    if (planes) put_in(planes->as<const T>(), of.computed, of.part, whole, all);
+  }
+};
+
+/// One frame on a lane: for its files, or for the estimate that other frames use.
 class FrameRun {
  public:
   FrameRun(Lane& lane, const RunContext& run, const MemoryBudget& budget, int frame, const PartWatch& watch,
            FrameReport& report)
-      : gpu_(lane.gpu),
-        last_(lane.last),
-        slots_(lane.estimates),
-        run_(run),
-        budget_(budget),
-        frame_(frame),
-        watch_(watch),
-        settings_(run.plan.at(frame)),
-        report_(report),
-        tally_(report) {}
+      : FrameRun(lane, run, budget, frame, watch, report, run.plan.at(frame), run.planes, nullptr) {}
 
   void run() {
     const Stopwatch total;
@@ -268,26 +79,114 @@ class FrameRun {
     const WindowLimits limits{memory_of_looks(source), budget_, longest_side(settings_.estimator)};
     require_room_for_preview(source, limits);
     take_others(source);
-    if (!run_.planes && !source.region && limits.allow(source.reading.data))
-      run_whole(source, source.reading.data);
+    const PartRows rows = cut(source, limits, [&](const WindowLimits& of_parts, const Window& computed) {
+      refuse_pictures(source, of_parts, computed);
+      refuse_by_notes(source);
+    });
+    if (why_in_parts_.empty())
+      run_whole(source, rows[0][0].computed);
     else
-      run_parts(source, limits.in_parts(source, settings_));
+      run_tiles(source, rows);
     if (report_.parts > 1) note_parts(source);
     report_.total_ms = total.ms();
   }
 
+  /// Estimates a frame for the one that this is, which counts its windows.
+  EstimatedFrame estimate_of(int frame, PreparationCost& cost) {
+    FrameReport report;
+    const PartWatch unwatched = [](int, int, double) {};
+    FrameRun other(lane_, run_, budget_, frame, unwatched, report, of_estimate(run_.plan.at(frame)), nullptr, &tally_);
+    EstimatedFrame result = other.estimate(cost);
+    result.report = std::move(report);
+    return result;
+  }
+
  private:
+  /// `planes`: of the frame, from run to run; null: they are read. `taker`: counts an estimate's windows; null: the
+  /// frame is computed for its files.
+  FrameRun(Lane& lane, const RunContext& run, const MemoryBudget& budget, int frame, const PartWatch& watch,
+           FrameReport& report, const Settings& settings, ReadPlanes* planes, FrameTally* taker)
+      : lane_(lane),
+        run_(run),
+        budget_(budget),
+        frame_(frame),
+        watch_(watch),
+        settings_(settings),
+        planes_(planes),
+        report_(report),
+        tally_(report, taker) {}
+
+  /// Computes the estimate of the whole frame, whose results are not filtered by a matte and not written.
+  EstimatedFrame estimate(PreparationCost& cost) {
+    FrameSource source = opened();
+    require_place(source, frame_, "--accumulate");
+    const Window whole = source.reading.data;
+    others_ = run_.shot->views().of(gpu_, source, frame_, cost);
+    EstimatedFrame result;
+    result.frame = frame_;
+    result.camera = source.reading.camera;
+    result.view = view_of(source.reading, whole);
+    Wanted wanted{settings_.output};
+    wanted.only_own = wanted.visibility = true;
+    std::vector<float> scales, moments;  // over the whole frame
+    const WindowLimits limits{memory_with_others(run_.plan, source, settings_), budget_,
+                              longest_side(settings_.estimator)};
+    for (const auto& row : cut(source, limits))
+      for (const FramePart& part : row) {
+        throw_if_stopped();
+        FrameInputs inputs = read(source, part.computed, run_.plan.slot_of(frame_));
+        inputs.turn = inputs.frame;
+        if (part.part == whole) read_ = kept_planes(inputs);
+        const FrameOutputs outputs = run_chain(gpu_, inputs, settings_.estimator, wanted);
+        run_passes();
+        tally_.add_outputs(outputs, part.computed, false);
+        const OwnEstimate& own = outputs.own.value();
+        result.depth_precision = own.gbuffer.depth_precision;
+        const PartCopy copy{part, whole};
+        copy(own.gbuffer.depth, result.depth);
+        copy(own.gbuffer.normal, result.normal);
+        copy(own.visibility.ao, result.values);
+        copy(own.visibility.scales, scales);
+        copy(own.visibility.moments, moments);
+      }
+    for (const auto* planes : {&scales, &moments})
+      result.values.insert(result.values.end(), planes->begin(), planes->end());
+    mark_moving(result, cost);
+    cost.rows_read += source.rows_read;
+    cost.passes.insert(cost.passes.end(), report_.passes.begin(), report_.passes.end());
+    others_.seen.clear();
+    result.others = std::move(others_);
+    run_.shot->keep_planes(frame_, std::move(read_));
+    return result;
+  }
+
+  /// Changes the sign of the depth of pixels that move by their vectors.
+  void mark_moving(EstimatedFrame& estimated, PreparationCost& cost) {
+    const auto moving = run_.shot->views().moving_by_vectors(gpu_, frame_, cost, 0);
+    for (std::size_t i = 0; moving && i < moving->size(); i++) {
+      if (!(*moving)[i]) continue;
+      estimated.depth[i] = -estimated.depth[i];
+      estimated.has_moving = true;
+    }
+  }
+
   /// Ends the frame here where the run is to stop.
   void throw_if_stopped() const {
     if (run_.stop && run_.stop()) throw Dropped{};
   }
 
-  /// Reads the headers.
-  FrameSource open() {
-    const Stopwatch reading;
+  /// Reads the headers, and takes over the reading of the sequence.
+  FrameSource opened() {
     FrameSource source = run_.look.open(settings_, frame_);
     if (run_.settled && settle_like_or_alone(source, *run_.settled, settings_.input, budget_.bytes))
       take_over_notes(source, *run_.settled);
+    return source;
+  }
+
+  /// The same, and what is known then.
+  FrameSource open() {
+    const Stopwatch reading;
+    FrameSource source = opened();
     report_.read_ms += reading.ms();
     refuse_by_notes(source);
     if (const auto& lights = settings_.output.read_lights) lights_ = lights->in_view(source.reading.camera, frame_);
@@ -323,15 +222,31 @@ class FrameRun {
     refuse_warnings(report_.notes, settings_, report_.input);
   }
 
-  /// Computes what depends on a part of the frame, or the frame in tiles: all of them from planes that are read once.
-  void run_parts(FrameSource& source, const WindowLimits& limits) {
+  /// Cuts the frame into the windows that it is computed in: one, or tiles, all of them from planes that are read once.
+  /// `before_tiles` may refuse a frame whose window has no room.
+  PartRows cut(FrameSource& source, const WindowLimits& limits,
+               const std::function<void(const WindowLimits&, const Window&)>& before_tiles = {}) {
+    const Window& written = written_of(source);
+    if (!planes_ && !source.region && limits.allow(source.reading.data))
+      return {{FramePart{source.reading.data, written}}};
     const Stopwatch reading;
-    read_for_parts(source, settings_, read_, limits.budget.bytes - limits.kept);
+    const WindowLimits of_parts = limits.in_parts(source, settings_);
+    read_for_parts(source, settings_, read_, of_parts.budget.bytes - of_parts.kept);
     Surroundings surroundings(source, settings_, read_[RawPlane::depth]);
-    const Window computed = surroundings.around(written_of(source));
+    const Window computed = surroundings.around(written);
+    if (of_parts.allow(computed)) {
+      report_.read_ms += reading.ms();
+      return {{FramePart{computed, written}}};
+    }
+    why_in_parts_ = of_parts.why_not(computed);
+    if (before_tiles) before_tiles(of_parts, computed);
+    PartRows rows;
+    for (const auto& row : tiles_of(written, surroundings, of_parts, source)) {
+      auto& parts = rows.emplace_back();
+      for (const auto& tile : row) parts.push_back({surroundings.around(tile), tile});
+    }
     report_.read_ms += reading.ms();
-    if (!limits.allow(computed)) return run_tiles(source, limits, surroundings);
-    run_whole(source, computed);
+    return rows;
   }
 
   /// Whether the frame's own pass looks at surfaces of others: not where its estimate holds all that it takes of them.
@@ -346,13 +261,9 @@ class FrameRun {
     if (!run_.shot) return;
     const Stopwatch reading;
     PreparationCost cost;
-    // Where the device has no memory for a part of an estimate, smaller ones are computed as of the frame itself.
-    const auto begin = [this](const Window& computed) {
-      throw_if_stopped();
-      tally_.begin(computed);
-    };
-    if (run_.takes_means) estimates_ = run_.shot->estimates_of({gpu_, budget_, begin}, frame_, cost);
-    if (needs_others()) others_ = run_.shot->neighbours_of(gpu_, source, frame_, cost);
+    if (run_.takes_means)
+      estimates_ = run_.shot->estimates_of(frame_, [&](int other) { return estimate_of(other, cost); });
+    if (needs_others()) others_ = run_.shot->views().of(gpu_, source, frame_, cost);
     tally_.add_others(cost);
     if (run_.takes_means) take_estimates();
     if (!others_.frames.empty() || !others_.missing.empty()) report_.frames_around = others_.frames;
@@ -365,17 +276,23 @@ class FrameRun {
     const EstimatedFrame& own = estimates_.own(frame_);
     if (others_.seen.empty()) others_ = own.others;
     tally_.add_estimate(own.report, others_);
-    in_slots_ = slots_.filled(gpu_, run_.plan, estimates_, frame_, budget_.buffer_bytes);
+    in_slots_ = lane_.estimates.filled(gpu_, run_.plan, estimates_, frame_, budget_.buffer_bytes);
     read_ = std::move(estimates_.read);
   }
 
-  /// Reads a window.
-  FrameInputs load(FrameSource& source, const Window& window) {
+  /// Reads a window. `number`: keys the noise.
+  FrameInputs read(FrameSource& source, const Window& window, int number) {
     tally_.begin(window);
     watch_(++part_, parts_, 0);
-    const Stopwatch reading;
-    FrameInputs inputs = load_frame(gpu_, source, window, settings_, frame_, &read_);
+    FrameInputs inputs = load_frame(gpu_, source, window, settings_, number, &read_);
     inputs.others = others_.seen;
+    return inputs;
+  }
+
+  /// Reads a window for the frame's files.
+  FrameInputs load(FrameSource& source, const Window& window) {
+    const Stopwatch reading;
+    FrameInputs inputs = read(source, window, frame_);
     inputs.lights = lights_;
     inputs.estimates = in_slots_;
     inputs.estimates.corner = {window.x - source.reading.data.x, window.y - source.reading.data.y};
@@ -424,14 +341,14 @@ class FrameRun {
   void run_looks(FrameSource& source, const Window& computed) {
     FrameInputs inputs = load(source, computed);
     last_.forget();
-    const Seen seen = see(gpu_, inputs, settings_.estimator, settings_.output);
+    const FrameVisibility visible = frame_visibility(gpu_, inputs, settings_.estimator, settings_.output);
     run_passes();
     LookTime time{report_.compute_ms};  // with what other frames took
     for (std::size_t i = 0; i < run_.looks.size(); i++) {
       throw_if_stopped();
       const Settings& look = run_.looks[i];
       if (const auto& lights = look.output.read_lights) inputs.lights = lights->in_view(source.reading.camera, frame_);
-      const FrameOutputs outputs = results_of(gpu_, inputs, seen, look.estimator, look.output);
+      const FrameOutputs outputs = results_of(gpu_, inputs, visible, look.estimator, look.output);
       time.own_ms = run_passes();
       // What is noted is the same of each.
       if (i == 0) {
@@ -482,21 +399,14 @@ class FrameRun {
     refuse_warnings(report_.notes, settings_, report_.input);
   }
 
-  void run_tiles(FrameSource& source, const WindowLimits& limits, Surroundings& surroundings) {
-    const Window computed = surroundings.around(written_of(source));
-    why_in_parts_ = limits.why_not(computed);
-    refuse_pictures(source, limits, computed);
-    refuse_by_notes(source);
-    const Stopwatch cutting;
-    const auto tiles = tiles_of(written_of(source), surroundings, limits, source);
-    report_.read_ms += cutting.ms();
+  void run_tiles(FrameSource& source, const PartRows& rows) {
     make_folders(files_of(settings_, FileRole::output), settings_.output);
     FrameWriter writer(source, settings_, provenance());
     report_.parts = 0;
     parts_ = 0;
-    for (const auto& row : tiles) parts_ += int(row.size());
-    for (const auto& row : tiles) {
-      const auto planes = compute_row(source, surroundings, row);
+    for (const auto& row : rows) parts_ += int(row.size());
+    for (const auto& row : rows) {
+      const auto planes = compute_row(source, row);
       const Stopwatch writing;
       writer.write(std::vector<std::span<const float>>(planes.begin(), planes.end()));
       report_.write_ms += writing.ms();
@@ -533,18 +443,16 @@ class FrameRun {
     const char* const whose = run_.take_look                     ? "a wedge needs it whole: choose a region with --roi"
                               : settings_.output.preview.empty() ? "--set debug needs it whole: leave it out"
                                                                  : "--preview needs it whole: leave it out";
-    if (!source.region && !run_.planes) limits.kept = 0;  // all of it is read into its buffers
+    if (!source.region && !planes_) limits.kept = 0;  // all of it is read into its buffers
     limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {}", report_.input, whose), computed);
   }
 
   /// The planes of the results over one row of tiles.
-  std::vector<std::vector<float>> compute_row(FrameSource& source, Surroundings& surroundings,
-                                              const std::vector<Window>& row) {
-    const Window whole{row.front().x, row.front().y, row.back().x + row.back().width - row.front().x,
-                       row.front().height};
+  std::vector<std::vector<float>> compute_row(FrameSource& source, const std::vector<FramePart>& row) {
+    const Window &first = row.front().part, &last = row.back().part;
+    const Window whole{first.x, first.y, last.x + last.width - first.x, first.height};
     std::vector<std::vector<float>> planes;
-    for (const auto& tile : row) {
-      const Window computed = surroundings.around(tile);
+    for (const auto& [computed, tile] : row) {
       const FrameOutputs outputs = compute(source, computed, false);
       const auto results = result_planes(outputs, computed, settings_.output);
       planes.resize(results.size());
@@ -554,9 +462,9 @@ class FrameRun {
     return planes;
   }
 
-  gpu::Recorder& gpu_;
-  LastFrame& last_;
-  EstimateSlots& slots_;
+  Lane& lane_;
+  gpu::Recorder& gpu_ = lane_.gpu;
+  LastFrame& last_ = lane_.last;
   const RunContext& run_;
   const MemoryBudget& budget_;
   int frame_;
@@ -566,9 +474,10 @@ class FrameRun {
   Settings settings_;
   Neighbours others_;             // that the frame takes
   NeighbourEstimates estimates_;  // the same
+  ReadPlanes* const planes_;      // see RunContext
   ReadPlanes own_planes_;
   // of the whole frame, for its parts; without planes these come from the files
-  ReadPlanes& read_ = run_.planes ? *run_.planes : own_planes_;
+  ReadPlanes& read_ = planes_ ? *planes_ : own_planes_;
   EstimateSet in_slots_;  // these for all parts of the frame
   FrameReport& report_;
   FrameTally tally_;
@@ -624,6 +533,14 @@ FrameReport run_on(Lane& lane, const RunContext& run, const MemoryBudget& budget
 }
 
 }  // namespace
+
+EstimatedFrame estimate_frame(Lane& lane, const RunContext& run, const MemoryBudget& budget, int frame,
+                              PreparationCost& cost) {
+  FrameReport report;
+  return FrameRun(
+             lane, run, budget, frame, [](int, int, double) {}, report)
+      .estimate_of(frame, cost);
+}
 
 FrameReport run_frame(Lanes& lanes, const RunContext& run, const MemoryBudget& budget, int frame,
                       const PartWatch& watch) {

@@ -1,68 +1,23 @@
-// One frame of a run: read, computed and written, whole or in tiles; and the sums over its parts.
+// One frame of a run: read, computed and written, whole or in tiles.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <functional>
-#include <span>
+#include <vector>
 
-#include "core/base/system.h"
 #include "core/chain/chain.h"
 #include "core/formats/color.h"
-#include "core/frame/find/behind.h"
 #include "core/frame/find/frame_source.h"
-#include "core/frame/pixels/radius.h"
 #include "core/run/frame_files.h"
 #include "core/run/lanes.h"
+#include "core/run/memory.h"
 #include "core/run/plan.h"
 #include "core/run/resume.h"
 #include "core/run/run_preview.h"
 #include "core/run/run_report.h"
 #include "core/run/shot.h"
-#include "core/run/tiles.h"
 
 namespace alcove {
-
-/// Counts over all windows of one frame. Pixels that windows share count in each.
-class FrameTally {
- public:
-  explicit FrameTally(FrameReport& report) : report_(report) {}
-
-  /// A window is about to be computed.
-  void begin(const Window& computed);
-  /// The planes read for that window; `written`: the window that is written of the frame.
-  void add_inputs(const FrameSource& source, const Window& computed, const FrameInputs& inputs, const Window& written);
-  /// The cost of preparing others comes before the passes of the frame.
-  void add_others(const PreparationCost& cost);
-  /// Counts of this frame's estimate, if frames are averaged; `others`: of the other frames that it uses.
-  void add_estimate(const FrameReport& estimate, const Neighbours& others);
-  void add_passes(std::span<const gpu::PassTime> passes);
-  /// is_same: all results were kept from the frame before.
-  void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
-
-  /// The notes on the frame before it is computed.
-  static Notes notes_on(const FrameSource& source, const InputSettings& settings);
-
-  /// Writes the sums and the notes into the report. Fails with ErrorKind::input where the pixels show
-  /// that a layer of hidden surfaces cannot be one.
-  void finish(const FrameSource& source, const Settings& settings);
-
- private:
-  /// The number of pixels with an estimate; if each has its own, of pixels that show surfaces.
-  double estimates_of(const EstimatorSettings& settings) const;
-  void note_repairs(const FrameSource& source);
-  void add(const gpu::PassTime& pass, gpu::PassTime& sum);
-
-  FrameReport& report_;
-  FrameCounts counts_{};
-  DepthSample sample_;
-  BehindSample behind_;
-  std::uint64_t rows_of_others_ = 0;
-  std::size_t before_ = 0;  // passes that prepared others
-  bool has_ao_ = false, is_quick_ = false;
-  bool has_alpha_ = false, has_coverage_ = false;  // of the beauty; coverage: an alpha above 0
-};
-
-// The frame.
 
 /// The device time of a look; the sum is that of a run with it alone.
 struct LookTime {
@@ -99,6 +54,11 @@ FrameReport report_of(const FramePlan& plan, int frame);
 
 /// Called with the part that is computed, the number of parts, and the share of that part that is done, 0 to 1.
 using PartWatch = std::function<void(int part, int parts, double done)>;
+
+/// Estimates a frame for those around it. Fails with ErrorKind::input as open_frame() does, and without the position of
+/// its camera.
+EstimatedFrame estimate_frame(Lane& lane, const RunContext& run, const MemoryBudget& budget, int frame,
+                              PreparationCost& cost);
 
 /// Reads, computes and writes one frame on a lane, within the room. Never throws: the report has the error.
 FrameReport run_frame(Lanes& lanes, const RunContext& run, const MemoryBudget& budget, int frame,

@@ -8,7 +8,7 @@
 
 #include "core/chain/reuse.h"
 #include "core/gpu/recorder.h"
-#include "core/run/shot.h"
+#include "core/run/estimates.h"
 
 namespace alcove {
 

@@ -16,7 +16,7 @@
 #include "core/frame/pixels/ramps.h"
 #include "core/gpu/kernel.h"
 #include "core/run/frame_files.h"
-#include "core/run/shot.h"
+#include "core/run/shot_frames.h"
 #include "kernels/estimate/estimate.h"
 #include "kernels/estimate/exact.h"
 #include "kernels/time/accumulate.h"

@@ -16,7 +16,7 @@
 #include "core/options/options.h"
 #include "core/run/frame_files.h"
 #include "core/run/run_files.h"
-#include "core/run/shot.h"
+#include "core/run/shot_frames.h"
 
 namespace alcove {
 namespace {

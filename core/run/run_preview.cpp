@@ -19,7 +19,7 @@
 #include "core/run/memory.h"
 #include "core/run/resume.h"
 #include "core/run/run_files.h"
-#include "core/run/shot.h"
+#include "core/run/shot_frames.h"
 #include "core/run/tiles.h"
 
 namespace alcove {
@@ -107,21 +107,19 @@ const FramePlan& RunPreview::plan() {
   return *plan_;
 }
 
-/// The inputs of a frame, changed so that all else can be looked at where it lacks a camera or its world_to_camera.
-InputSettings RunPreview::input_of(int frame) {
-  InputSettings input = plan().at(frame).input;
-  if (leaves_normals_) input.normal = "none";
-  return lacks_camera_ ? with_some_camera(input) : input;
-}
-
 FrameSource& RunPreview::opened(int frame) {
   const auto found = opened_.find(frame);
   if (found != opened_.end()) return found->second;
-  const Settings settings = plan().at(frame);
-  FrameSource source =
-      lacks_camera_ || leaves_normals_ ? find_frame(input_of(frame), false, frame) : open_frame(settings, frame);
-  source.open.camera = lacks_camera_;
-  return opened_.emplace(frame, std::move(source)).first->second;
+  return opened_.emplace(frame, open_frame(plan().at(frame), frame)).first->second;
+}
+
+/// Opens a frame for all that its depth tells, whatever its outputs need.
+FrameSource RunPreview::with(const StandIns& stand_ins, int frame) {
+  InputSettings input = plan().at(frame).input;
+  if (stand_ins.normals) input.normal = "none";
+  FrameSource source = find_frame(stand_ins.camera ? with_some_camera(input) : input, false, frame);
+  source.open.camera = stand_ins.camera;
+  return source;
 }
 
 FrameSource RunPreview::open(const Settings& settings, int frame) {
@@ -151,56 +149,59 @@ bool RunPreview::has_camera(std::string& why_not) {
 
 /// The radii that a frame tells, of those settings; none where all is sky. Depth and camera alone decide: a fault of
 /// the beauty or of an output is found when the frame is computed.
-std::vector<double> RunPreview::radii_of(int frame, const EstimatorSettings& estimator) {
-  const InputSettings input = input_of(frame);
-  const auto proposed = [&](FrameSource& source) {
-    if (!source.evidence) settle_by_rows(source, input);
+std::vector<double> RunPreview::radii_of(int frame, const EstimatorSettings& estimator, const StandIns& stand_ins) {
+  const auto told_by = [&](FrameSource& source) {
+    if (!source.evidence) settle_by_rows(source, plan().at(frame).input);
     return radii_by_depth(estimator, source.reading.camera, source.evidence->median_depth);
   };
-  try {
-    return proposed(opened(frame));
-  } catch (const Error&) {
-    opened_.erase(frame);  // which may be settled in part
-    FrameSource source = find_frame(input, false, frame);
-    source.open.camera = lacks_camera_;
-    return proposed(source);
-  }
+  if (!stand_ins.any()) try {
+      return told_by(opened(frame));
+    } catch (const Error&) {
+      opened_.erase(frame);  // which may be settled in part
+    }
+  FrameSource source = with(stand_ins, frame);
+  return told_by(source);
 }
 
-/// The radii that the first frame tells that shows a surface, and why others could not be looked at.
-std::vector<double> RunPreview::radii_of_first(std::optional<Error>& error, const EstimatorSettings& estimator) {
+RunPreview::DepthRadii RunPreview::radii_of_first(const EstimatorSettings& estimator, const StandIns& stand_ins) {
+  DepthRadii found;
   for (const int frame : plan().evidence()) {
     try {
-      if (auto radii = radii_of(frame, estimator); !radii.empty()) return radii;
-    } catch (const NoWorldToCamera& failure) {
-      lacks_matrix_ = true;
-      if (!error) error = failure;
+      found.radii = radii_of(frame, estimator, stand_ins);
+      if (!found.radii.empty()) return found;
     } catch (const Error& failure) {
-      if (!error) error = failure;
+      if (dynamic_cast<const NoWorldToCamera*>(&failure)) found.lacks_matrix = true;
+      if (!found.error) found.error = failure;
     }
   }
-  return {};
-}
-
-/// The radius that is proposed where none is given.
-std::optional<double> RunPreview::proposed_radius(std::optional<Error>& error) {
-  EstimatorSettings automatic;
-  automatic.radius_auto = true;
-  const auto radii = radii_of_first(error, automatic);
-  return radii.empty() ? std::nullopt : std::optional(radii.front());
+  return found;
 }
 
 /// Opens the first frame for what its channels need of a camera.
 void RunPreview::look_at_first(MissingOptions& missing) {
   if (plan().evidence().empty()) return;
+  const int frame = plan().evidence().front();
   try {
-    const FrameSource& source = opened(plan().evidence().front());
+    const FrameSource source = missing.camera ? with({.camera = true}, frame) : open_frame(plan().at(frame), frame);
     missing.turns_normals = missing.camera && expects_world_normals(source, settings_.input);
   } catch (const NoWorldToCamera&) {
-    missing.lacks_matrix = leaves_normals_ = true;
+    missing.lacks_matrix = true;
   } catch (const Error& error) {
     if (missing.camera) missing.no_channels = error;
   }
+}
+
+/// Finds the radius that is proposed where none is given.
+void RunPreview::propose_radius(MissingOptions& missing) {
+  EstimatorSettings automatic;
+  automatic.radius_auto = true;
+  DepthRadii found = radii_of_first(automatic, {missing.camera, missing.lacks_matrix});
+  if (found.lacks_matrix) {  // by the pixels
+    missing.lacks_matrix = true;
+    found = radii_of_first(automatic, {missing.camera, missing.lacks_matrix});
+  }
+  missing.unreadable = found.error;
+  if (!found.radii.empty()) missing.proposed_radius = found.radii.front();
 }
 
 MissingOptions RunPreview::missing_options() {
@@ -213,15 +214,9 @@ MissingOptions RunPreview::missing_options() {
   if (missing.input || !(missing.radius || missing.output || !has_option)) return missing;
   try {
     notes_on_number(plan());  // or the command that is proposed would be refused
-    missing.camera = lacks_camera_ = !has_camera(missing.no_camera);
+    missing.camera = !has_camera(missing.no_camera);
     look_at_first(missing);
-    if (missing.radius) missing.proposed_radius = proposed_radius(missing.unreadable);
-    if (lacks_matrix_) {
-      missing.lacks_matrix = leaves_normals_ = true;
-      missing.unreadable.reset();
-      opened_.clear();
-      missing.proposed_radius = proposed_radius(missing.unreadable);
-    }
+    if (missing.radius) propose_radius(missing);
   } catch (const Error& error) {
     // A name that no command could have comes first, since it would be a part of the one that is proposed.
     std::error_code none;
@@ -251,8 +246,7 @@ std::vector<std::string> MissingOptions::sentences() const {
 void RunPreview::take_radii_of_depth(Notes& notes) {
   const FramePlan& frames = plan();
   notes_on_number(frames);  // fails early if the frame number is ambiguous
-  std::optional<Error> error;
-  const auto radii = radii_of_first(error, settings_.estimator);
+  const auto& [radii, error, lacks_matrix] = radii_of_first(settings_.estimator, {});
   if (radii.empty() && error) throw *error;
   const EstimatorSettings& said = settings_.estimator;
   const std::string option = said.radius_auto ? "--radius auto" : fmt::format("--radius {:.4g}%", 100 * *said.radius);

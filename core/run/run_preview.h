@@ -58,21 +58,30 @@ class RunPreview {
   FrameSource open(const Settings& settings, int frame);
 
  private:
+  /// A camera, and normals reconstructed from depth, for a look at a frame that lacks its own.
+  struct StandIns {
+    bool camera = false, normals = false;
+
+    bool any() const { return camera || normals; }
+  };
+  struct DepthRadii {
+    std::vector<double> radii;   // of the first frame that shows a surface
+    std::optional<Error> error;  // of the first frame that could not be looked at
+    bool lacks_matrix = false;   // normals of some frame need a world_to_camera, and there is none
+  };
+
   FrameSource& opened(int frame);
-  InputSettings input_of(int frame);
+  FrameSource with(const StandIns& stand_ins, int frame);
   bool has_camera(std::string& why_not);
   void look_at_first(MissingOptions& missing);
-  std::vector<double> radii_of(int frame, const EstimatorSettings& estimator);
-  std::vector<double> radii_of_first(std::optional<Error>& error, const EstimatorSettings& estimator);
-  std::optional<double> proposed_radius(std::optional<Error>& error);
+  std::vector<double> radii_of(int frame, const EstimatorSettings& estimator, const StandIns& stand_ins);
+  DepthRadii radii_of_first(const EstimatorSettings& estimator, const StandIns& stand_ins);
+  void propose_radius(MissingOptions& missing);
   void take_lights();
   void take_radii_of_depth(Notes& notes);
 
   Settings settings_;
   std::optional<FramePlan> plan_;
-  bool lacks_camera_ = false;    // frames are opened with a stand-in
-  bool lacks_matrix_ = false;    // normals need a world_to_camera by the pixels, and there is none
-  bool leaves_normals_ = false;  // frames are opened without normals, for want of a matrix
   std::map<int, FrameSource> opened_;
 };
 

@@ -22,6 +22,7 @@
 #include "core/run/memory.h"
 #include "core/run/pipeline.h"
 #include "core/run/run_preview.h"
+#include "core/run/shot_frames.h"
 
 namespace alcove {
 namespace {

@@ -136,8 +136,7 @@ double lit_share(const Rendering& rendering, const Scene& scene, const Light& li
 TEST(Shadow, of_wires_a_pixel_wide_is_there) {
   Scene scene;
   scene.primitives.emplace_back(kGround);
-  for (int i = -3; i <= 3; i++)
-    scene.add(parallelepiped({0.3 * i, 0, 0}, {0.03, 0, 0}, {0, 0.005, 0}, {0, 0, 1}));
+  for (int i = -3; i <= 3; i++) scene.add(parallelepiped({0.3 * i, 0, 0}, {0.03, 0, 0}, {0, 0.005, 0}, {0, 0, 1}));
   const Shot shot = Shot::perspective({0, -3, 1.5}, {0, 0, 0.3}, 45, 160, 120);
   const Rendering rendering = render(scene, shot);
   const Light light = sun({0.4, -0.9, 0.5});  // nearly along the eye's rays, so a step changes depth by much

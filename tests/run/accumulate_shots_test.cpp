@@ -1,10 +1,7 @@
 // --accumulate where frames differ: turned cameras, other windows, damaged files, and a shot that grows; how many
 // estimates are kept; and runs that stop.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/run/frame_files.h"
-#include "core/run/memory.h"
-#include "core/run/plan.h"
-#include "core/run/shot.h"
+#include "core/run/frame_run.h"
 #include "tests/support/device.h"
 #include "tests/support/walked_shot.h"
 
@@ -14,6 +11,26 @@ namespace {
 using namespace test;
 
 const MemoryBudget kLargeBudget{.bytes = 1 << 30, .buffer_bytes = 1 << 30};
+
+/// Frames of a shot whose estimates are taken one after the other.
+struct TakenShot {
+  TakenShot(const FramePlan& frames, std::span<const int> order) : plan(frames), shot(frames, nullptr, order) {}
+
+  NeighbourEstimates estimates_of(int frame) {
+    PreparationCost cost;
+    return shot.estimates_of(frame, [&](int other) { return estimate_frame(lane, run, kLargeBudget, other, cost); });
+  }
+  EstimateSet filled(const NeighbourEstimates& taken, int frame) {
+    return lane.estimates.filled(lane.gpu, plan, taken, frame, kLargeBudget.buffer_bytes);
+  }
+
+  const FramePlan& plan;
+  SharedFrames shot;
+  RunPreview look{plan.settings()};
+  InputIdentities identities{plan};
+  RunContext run{look, plan, identities, nullptr, nullptr, &shot, true, {}};
+  Lane lane{device()};
+};
 
 class AccumulatedShots : public WalkedShot {
  protected:
@@ -104,16 +121,14 @@ TEST_F(AccumulatedShots, no_more_estimates_are_kept_than_are_counted_whatever_th
   const std::uint64_t bytes = (3 + 4) * sizeof(float) * source.reading.data.pixels();
   std::vector<std::weak_ptr<const EstimatedFrame>> all;
   const auto most_kept = [&](std::span<const int> frames, std::size_t lanes) {
-    SharedFrames shot(plan, nullptr, frames);
-    gpu::Recorder gpu(device());
-    EstimateSlots slots;
+    TakenShot taking(plan, frames);
+    SharedFrames& shot = taking.shot;
     std::size_t most = 0;
     for (std::size_t i = 0; i < frames.size(); i++) {
-      PreparationCost cost;
       shot.begin(frames[i]);
-      const NeighbourEstimates taken = shot.estimates_of({gpu, kLargeBudget}, frames[i], cost);
+      const NeighbourEstimates taken = taking.estimates_of(frames[i]);
       EXPECT_EQ(taken.of.size(), 3u);
-      slots.filled(gpu, plan, taken, frames[i], kLargeBudget.buffer_bytes);
+      taking.filled(taken, frames[i]);
       all.insert(all.end(), taken.of.begin(), taken.of.end());
       most = std::max(most, shot.estimated_count());
       if (i + 1 >= lanes) shot.done(frames[i + 1 - lanes]);
@@ -142,15 +157,12 @@ TEST_F(AccumulatedShots, where_fewer_frames_count_as_many_are_listed) {
   Settings settings = settings_of_shot();
   settings.input.accumulate = 2;
   const FramePlan plan(settings);
-  SharedFrames shot(plan, nullptr, plan.frames());
-  gpu::Recorder gpu(device());
-  PreparationCost cost;
-  EstimateSlots slots;
-  NeighbourEstimates taken = shot.estimates_of({gpu, kLargeBudget}, 3, cost);
+  TakenShot taking(plan, plan.frames());
+  NeighbourEstimates taken = taking.estimates_of(3);
   for (const uint count : {4u, 3u, 1u}) {
     const auto is_other = [](const auto& estimated) { return estimated->frame != 3; };
     while (taken.of.size() > count + 1) taken.of.erase(std::ranges::find_if(taken.of, is_other));
-    const EstimateSet set = slots.filled(gpu, plan, taken, 3, kLargeBudget.buffer_bytes);
+    const EstimateSet set = taking.filled(taken, 3);
     ASSERT_EQ(set.groups.size(), 1u);
     EXPECT_EQ(set.groups[0].count, count);
     EXPECT_EQ(set.groups[0].listed, 4u);
@@ -172,13 +184,12 @@ TEST_F(AccumulatedShots, no_more_of_what_estimates_see_is_kept_than_is_counted) 
   settings.input.motion.clear();
   settings.input.around = 1;
   const FramePlan plan(settings);
-  SharedFrames shot(plan, nullptr, plan.frames());
-  gpu::Recorder gpu(device());
+  TakenShot taking(plan, plan.frames());
+  SharedFrames& shot = taking.shot;
   for (const int frame : plan.frames()) {
-    PreparationCost cost;
     shot.begin(frame);
-    shot.estimates_of({gpu, kLargeBudget}, frame, cost);
-    EXPECT_LE(shot.seen_count(), counted()) << frame;
+    taking.estimates_of(frame);
+    EXPECT_LE(shot.views().count(), counted()) << frame;
     shot.done(frame);
   }
 }

@@ -5,6 +5,7 @@
 #include "core/run/memory.h"
 #include "core/run/plan.h"
 #include "core/run/resume.h"
+#include "core/run/shot_frames.h"
 #include "tests/support/device.h"
 #include "tests/support/openexr.h"
 #include "tests/support/walked_shot.h"
@@ -191,12 +192,12 @@ TEST_F(Shots, keep_no_more_frames_than_their_windows) {
       PreparationCost cost;
       FrameSource target = open_frame(plan.at(frame), frame);
       shared.begin(frame);
-      shared.neighbours_of(gpu, target, frame, cost);
-      EXPECT_LE(shared.seen_count(), std::size_t(2 * farthest_seen(2) + 1)) << order << " " << frame;
-      EXPECT_GE(shared.seen_count(), 5u) << order << " " << frame;
+      shared.views().of(gpu, target, frame, cost);
+      EXPECT_LE(shared.views().count(), std::size_t(2 * farthest_seen(2) + 1)) << order << " " << frame;
+      EXPECT_GE(shared.views().count(), 5u) << order << " " << frame;
       shared.done(frame);
     }
-    EXPECT_EQ(shared.seen_count(), 0u);
+    EXPECT_EQ(shared.views().count(), 0u);
   }
 }
 

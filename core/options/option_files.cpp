@@ -1,6 +1,6 @@
 // INPUT, and rows of the table of options.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/options/files.h"
+#include "core/options/option_files.h"
 
 #include "core/options/options.h"
 

@@ -1,6 +1,6 @@
 // The names of options, and how their values are read.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/options/row.h"
+#include "core/options/option_row.h"
 
 #include <algorithm>
 #include <cmath>

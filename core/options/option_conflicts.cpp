@@ -1,6 +1,6 @@
 // Each looks at the settings that count, and says what of them is in the way.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/options/reasons.h"
+#include "core/options/option_conflicts.h"
 
 #include <fmt/format.h>
 

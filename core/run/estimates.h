@@ -1,0 +1,68 @@
+// The estimates of the frames around one, whose mean the frame is, and their form in upload buffers.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/chain/base/frame_inputs.h"
+#include "core/gpu/recorder.h"
+#include "core/run/frame_files.h"
+#include "core/run/neighbours.h"
+#include "core/run/plan.h"
+#include "core/run/run_report.h"
+
+namespace alcove {
+
+/// The estimate of one frame, in host memory: planes over all of it.
+struct EstimatedFrame {
+  int frame = 0;
+  Camera camera;
+  View view{};
+  vec3 depth_precision{};             // of planar depth: see DepthPrecision
+  std::vector<float> depth;           // see NeighbourFrame
+  bool has_moving = false;            // some depth is below 0
+  std::vector<std::uint32_t> normal;  // the same
+  std::vector<float> values;          // planes: see EstimateSet
+  FrameReport report;                 // times and counts of its estimate
+  Neighbours others;                  // the names of the frames and views that show its hidden surfaces
+};
+
+/// Whether each frame sees past more of what the other one shows than it sees the same: sets that lie at the same place
+/// of the world, before and behind a cut. None between frames that see nothing of each other: neither harms the other.
+bool is_cut_between(const EstimatedFrame& a, const EstimatedFrame& b);
+
+/// The estimates whose mean a frame is, its own among them.
+struct NeighbourEstimates {
+  ReadPlanes read;  // of the frame itself; empty: not kept
+  std::vector<std::shared_ptr<const EstimatedFrame>> of;
+  std::vector<int> missing;  // frames without a file
+
+  /// The estimate of the frame itself.
+  const EstimatedFrame& own(int frame) const;
+};
+
+/// The text for a header; empty without estimates: "frames 3-7; missing 6".
+std::string text_of(const NeighbourEstimates& taken);
+
+/// The upload buffers of a lane for estimates. Slots keep their contents between frames.
+class EstimateSlots {
+ public:
+  /// Gives the estimates for a frame, or for any number of its parts. No buffer is larger than `most_bytes`.
+  EstimateSet filled(gpu::Recorder& gpu, const FramePlan& plan, const NeighbourEstimates& taken, int frame,
+                     std::uint64_t most_bytes);
+
+ private:
+  using Estimated = std::weak_ptr<const EstimatedFrame>;  // identifies an estimate without keeping it
+  struct Group {
+    const std::byte* buffer = nullptr;  // the address at the last call
+    std::size_t stride = 0;             // words of a slot
+    std::vector<Estimated> held;        // by slot
+  };
+  std::vector<Group> groups_;
+};
+
+}  // namespace alcove

@@ -1,0 +1,230 @@
+// Counts, and the notes that follow from them.
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/run/frame_tally.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "core/chain/estimate/estimate.h"
+#include "core/chain/results/outputs.h"
+#include "core/frame/pixels/detectors.h"
+#include "kernels/hidden/hidden.h"
+
+namespace alcove {
+
+void FrameTally::begin(const Window& computed) {
+  report_.pixels_at_once = std::max<std::uint64_t>(report_.pixels_at_once, computed.pixels());
+  if (taker_) taker_->begin(computed);
+}
+
+void FrameTally::add_inputs(const FrameSource& source, const Window& computed, const FrameInputs& inputs,
+                            const Window& written) {
+  const auto depth = inputs[RawPlane::depth]->as<float>();
+  sample_.add(inputs.view, inputs.depth_map, inputs.depth_precision, depth, computed, written);
+  if (inputs[RawPlane::behind])
+    behind_.add(source.reading, depth, inputs[RawPlane::behind]->as<float>(), computed, written);
+  if (const auto* beauty = inputs[RawPlane::beauty]; beauty && planes_in(*beauty, inputs.view) == 4) {
+    has_alpha_ = true;
+    has_coverage_ = has_coverage_ || std::ranges::any_of(beauty->as<float>().subspan(3 * computed.pixels()),
+                                                         [](float alpha) { return alpha > 0; });
+  }
+}
+
+void FrameTally::add_others(const PreparationCost& cost) {
+  rows_of_others_ += cost.rows_read;
+  for (const auto& pass : cost.passes) {
+    const std::string name = "others " + pass.name;
+    auto found = std::ranges::find(report_.passes, name, &gpu::PassTime::name);
+    if (found == report_.passes.end()) found = report_.passes.insert(found, {name});
+    add(pass, *found);
+  }
+  before_ = report_.passes.size();
+}
+
+void FrameTally::add_estimate(const FrameReport& estimate, const Neighbours& others) {
+  report_.tiles = estimate.tiles;
+  report_.estimates = estimate.estimates;
+  is_quick_ = is_quick_ || estimate.search == word_of(SliceSearch::quick);
+  report_.occlusion = estimate.occlusion;
+  if (!others.seen.empty()) return;  // the frame itself counts them
+  report_.hidden = estimate.hidden;
+  report_.moved = estimate.moved;
+  report_.unconfirmed = estimate.unconfirmed;
+}
+
+void FrameTally::add_passes(std::span<const gpu::PassTime> passes) {
+  // Parts of a frame run the same passes, but that some leave out what the first one has found for all.
+  std::size_t next = before_;
+  for (const auto& pass : passes) {
+    const auto begin = report_.passes.begin() + std::ptrdiff_t(next);
+    auto found = std::find_if(begin, report_.passes.end(), [&](const auto& sum) { return sum.name == pass.name; });
+    if (found == report_.passes.end()) found = report_.passes.insert(begin, {pass.name});
+    add(pass, *found);
+    next = std::size_t(found - report_.passes.begin()) + 1;
+  }
+}
+
+void FrameTally::add(const gpu::PassTime& pass, gpu::PassTime& sum) {
+  sum.ms += pass.ms;
+  sum.bytes_read += pass.bytes_read;
+  sum.bytes_written += pass.bytes_written;
+  report_.compute_ms += pass.ms;
+}
+
+void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same) {
+  const auto counts = outputs.counts->as<FrameCounts>()[0];
+  counts_.sky += counts.sky;
+  counts_.repaired_depth += counts.repaired_depth;
+  counts_.repaired_normals += counts.repaired_normals;
+  counts_.turned_normals += counts.turned_normals;
+  counts_.repaired_material += counts.repaired_material;
+  counts_.repaired_beauty += counts.repaired_beauty;
+  report_.pixels += computed.pixels();
+  has_ao_ = outputs.ao;
+  is_quick_ = is_quick_ || outputs.is_quick;
+
+  if (outputs.layer_counts) {
+    const auto layers = outputs.layer_counts->as<LayerCounts>()[0];
+    auto& hidden = report_.hidden ? *report_.hidden : report_.hidden.emplace();
+    hidden.surfaces += layers.surfaces;
+    hidden.dropped += layers.dropped;
+  }
+  if (outputs.squares)
+    for (const vec2& tile : outputs.squares->as<const vec2>()) {
+      report_.error_squares += tile.x;
+      report_.error_pixels += tile.y;
+    }
+  if (outputs.completion) {
+    auto& occlusion = report_.occlusion ? *report_.occlusion : report_.occlusion.emplace();
+    for (const vec2& tile : outputs.completion->as<const vec2>()) {
+      occlusion.by_completed += tile.x;
+      occlusion.whole += tile.y;
+    }
+  }
+  if (outputs.count)
+    for (const float count : outputs.count->as<const float>().first(computed.pixels()))
+      report_.accumulated += double(count);
+  if (outputs.view_counts) {
+    const ViewCounts views = outputs.view_counts->as<ViewCounts>()[0];
+    report_.moved += views.moved;
+    report_.unconfirmed += views.unconfirmed;
+  }
+  if (outputs.tiles) {
+    const auto tiles = outputs.tiles->as<TileCounts>()[0];
+    report_.tiles.sky += tiles.sky;
+    report_.tiles.kept += tiles.kept + (is_same ? tiles.listed : 0);
+    report_.tiles.computed += is_same ? 0 : tiles.listed;
+  }
+  if (outputs.sites) {
+    const SiteCounts& sites = outputs.sites->as<SiteCounts>()[0];
+    auto& estimates = report_.estimates ? *report_.estimates : report_.estimates.emplace();
+    for (std::size_t k = 0; k < kLattices && !is_same; k++) estimates[k] += sites.of_lattice[k];
+    // A quick search does not count its sites by lattice.
+    if (outputs.is_quick && !is_same) estimates.back() += sites.listed;
+  }
+}
+
+/// The search along slices that made the estimate, which the settings may only ask for; empty: there is none.
+static std::string search_of(const EstimatorSettings& settings, bool is_quick) {
+  if (!searches_slices(settings)) return "";
+  if (settings.tolerance > 0) return word_of(SliceSearch::exact);
+  return word_of(settings.search == SliceSearch::quick && !is_quick ? SliceSearch::steps : settings.search);
+}
+
+void FrameTally::finish(const FrameSource& source, const Settings& settings) {
+  if (report_.pixels == 0) report_.pixels = source.reading.data.pixels();
+  report_.rows_read = source.rows_read + rows_of_others_;
+  report_.sky_pixels = counts_.sky;
+  report_.repaired_pixels =
+      counts_.repaired_depth + counts_.repaired_normals + counts_.repaired_material + counts_.repaired_beauty;
+  report_.notes = notes_on(source, settings.input);
+  if (counts_.sky == source.reading.data.pixels())
+    add_new(report_.notes,
+            {{NoteCode::no_surfaces, no_surfaces_text(source.channels[RawPlane::depth].front().channel)}});
+  add_new(report_.notes, behind_.notes(source));
+  add_new(report_.notes, deep_notes(source));
+  if (has_ao_) {
+    report_.search = search_of(settings.estimator, is_quick_);
+    const std::vector<double> radii = radii_of(settings.estimator);
+    add_new(report_.notes,
+            sample_.notes(radii.front(), radii.back(), source.reading.data.width, source.reading.data.height));
+    report_.samples_per_pixel =
+        samples_of(settings.estimator, estimates_of(settings.estimator)) / double(report_.pixels);
+    // An estimator that completes nothing, and sky, are no reason to leave the share out: it is 0.
+    if (!settings.output.stats.empty() && !report_.occlusion) report_.occlusion.emplace();
+  }
+  note_repairs(source);
+}
+
+double FrameTally::estimates_of(const EstimatorSettings& settings) const {
+  if (report_.estimates) return double(std::accumulate(report_.estimates->begin(), report_.estimates->end(), 0ull));
+  const double factor = double(settings.resolution);
+  return double(report_.pixels - report_.sky_pixels) / (factor * factor);
+}
+
+/// Says that pixels may have no normal because the file has none there.
+static std::string window_of_normals(const FrameSource& source) {
+  if (source.channels[RawPlane::normal].empty()) return "";
+  const Window& data = source.part_of(source.channels[RawPlane::normal][0]).data;
+  if (common_part(data, source.reading.data) == source.reading.data) return "";
+  return fmt::format(" (those of {} cover {} only, and the depth {})",
+                     source.files[source.channels[RawPlane::normal][0].file].path(), to_string(data),
+                     to_string(source.reading.data));
+}
+
+void FrameTally::note_repairs(const FrameSource& source) {
+  auto& notes = report_.notes;
+  if (counts_.repaired_depth)
+    notes.push_back(
+        {NoteCode::repaired_depth,
+         fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth),
+         source.note_file(RawPlane::depth)});
+  if (counts_.repaired_normals)
+    notes.push_back({NoteCode::repaired_normals,
+                     fmt::format("{} pixels had no usable normal{}, and got one from depth: give all surfaces normals "
+                                 "(--normal), or if these pixels are sky, its depth (--sky)",
+                                 counts_.repaired_normals, window_of_normals(source)),
+                     source.note_file(RawPlane::normal)});
+  if (counts_.turned_normals)
+    notes.push_back({NoteCode::turned_normals,
+                     fmt::format("the normals of {} pixels faced away from the eye, as on mirrored things and the "
+                                 "backs of cards, and were turned round",
+                                 counts_.turned_normals),
+                     source.note_file(RawPlane::normal)});
+  if (counts_.repaired_material)
+    notes.push_back(
+        {NoteCode::repaired_material_ao,
+         fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material),
+         source.note_file(RawPlane::material_ao)});
+  if (counts_.repaired_beauty)
+    notes.push_back({NoteCode::repaired_beauty,
+                     fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
+                                 counts_.repaired_beauty),
+                     source.note_file(RawPlane::beauty)});
+  if (has_alpha_ && !has_coverage_ && counts_.sky < report_.pixels)
+    notes.push_back({NoteCode::transparent_beauty,
+                     "the beauty's alpha is 0 in all pixels, so the composite is the unchanged beauty: give --beauty a "
+                     "picture without alpha, or with the surfaces' alpha",
+                     source.note_file(RawPlane::beauty)});
+}
+
+Notes FrameTally::notes_on(const FrameSource& source, const InputSettings& settings) {
+  Notes notes = source.notes;
+  add_new(notes, source.suspicious);
+  if (source.channels[RawPlane::normal].empty() && wants_normals(settings))
+    notes.push_back(
+        {NoteCode::no_normals,
+         "there is no normal channel; normals were reconstructed from depth (--normal, --normal-channels)"});
+  if (!source.channels[RawPlane::beauty].empty() && dims_beauty(source.reading.ambient) && settings.ambient.empty())
+    notes.push_back({NoteCode::no_indirect_light,
+                     "the frame has no indirect diffuse part: the composite is the whole beauty times AO, which dims "
+                     "direct light too; --set ambient names its ambient light, or beauty for all of it",
+                     source.note_file(RawPlane::beauty)});
+  return notes;
+}
+
+}  // namespace alcove

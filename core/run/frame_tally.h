@@ -1,0 +1,60 @@
+// The sums over the parts of a frame, and the sentences of its report.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/chain/chain.h"
+#include "core/frame/find/behind.h"
+#include "core/frame/find/frame_source.h"
+#include "core/frame/pixels/radius.h"
+#include "core/run/neighbours.h"
+#include "core/run/run_report.h"
+
+namespace alcove {
+
+/// Counts over all windows of one frame. Pixels that windows share count in each.
+class FrameTally {
+ public:
+  /// `taker`: of the frame that an estimate is computed for; its windows count there, too.
+  explicit FrameTally(FrameReport& report, FrameTally* taker = nullptr) : report_(report), taker_(taker) {}
+
+  /// A window is about to be computed.
+  void begin(const Window& computed);
+  /// The planes read for that window; `written`: the window that is written of the frame.
+  void add_inputs(const FrameSource& source, const Window& computed, const FrameInputs& inputs, const Window& written);
+  /// The cost of preparing others comes before the passes of the frame.
+  void add_others(const PreparationCost& cost);
+  /// Counts of this frame's estimate, if frames are averaged; `others`: of the other frames that it uses.
+  void add_estimate(const FrameReport& estimate, const Neighbours& others);
+  void add_passes(std::span<const gpu::PassTime> passes);
+  /// is_same: all results were kept from the frame before.
+  void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
+
+  /// The notes on the frame before it is computed.
+  static Notes notes_on(const FrameSource& source, const InputSettings& settings);
+
+  /// Writes the sums and the notes into the report. Fails with ErrorKind::input where the pixels show
+  /// that a layer of hidden surfaces cannot be one.
+  void finish(const FrameSource& source, const Settings& settings);
+
+ private:
+  /// The number of pixels with an estimate; if each has its own, of pixels that show surfaces.
+  double estimates_of(const EstimatorSettings& settings) const;
+  void note_repairs(const FrameSource& source);
+  void add(const gpu::PassTime& pass, gpu::PassTime& sum);
+
+  FrameReport& report_;
+  FrameTally* const taker_;
+  FrameCounts counts_{};
+  DepthSample sample_;
+  BehindSample behind_;
+  std::uint64_t rows_of_others_ = 0;
+  std::size_t before_ = 0;  // passes that prepared others
+  bool has_ao_ = false, is_quick_ = false;
+  bool has_alpha_ = false, has_coverage_ = false;  // of the beauty; coverage: an alpha above 0
+};
+
+}  // namespace alcove

@@ -1,0 +1,102 @@
+// Surfaces of a frame that other frames and views show. Every frame is prepared once for all that use it.
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/shared_cache.h"
+#include "core/chain/base/frame_inputs.h"
+#include "core/frame/find/frame_source.h"
+#include "core/gpu/recorder.h"
+#include "core/run/plan.h"
+
+namespace alcove {
+
+/// The first surface that one view of a frame sees, in host memory.
+struct NeighbourView {
+  Camera camera;
+  Window data, display;
+  View view{};
+  vec3 depth_precision{};
+  std::vector<float> depth;           // planar; kSkyDepth for sky
+  std::vector<std::uint32_t> normal;  // packed, in its own view space
+  std::uint64_t hash = 0;             // of both planes
+};
+
+/// Pixels of a frame that other frames must not use, since they move.
+struct Movement {
+  std::vector<std::uint32_t> flags;  // of each pixel, see OtherView::moving
+  std::uint64_t hash = 0;            // of them
+};
+
+/// Surfaces that a frame takes from others.
+struct Neighbours {
+  std::vector<OtherView> seen;
+  std::vector<int> frames, missing;  // neighbouring frames that it uses, and those without a file
+  std::vector<std::string> views;    // other views of its own instant
+};
+
+/// The text for a header; empty without others: "frames 3-5, 7; missing 6; views right".
+std::string text_of(const Neighbours& others);
+
+/// Passes run and rows read for other frames.
+struct PreparationCost {
+  std::uint64_t rows_read = 0;
+  std::vector<gpu::PassTime> passes = {};
+};
+
+/// Fails with ErrorKind::input if the position of a frame's camera is unknown.
+void require_place(const FrameSource& source, int frame, const char* option);
+
+/// Prepared frames of a shot and the movement in them, for all threads of a run. The results depend neither on the
+/// thread that asks nor on the order.
+class NeighbourViews {
+ public:
+  /// All frames are read as `settled` is; null: each by itself.
+  NeighbourViews(const FramePlan& plan, const FrameSource* settled) : plan_(plan), settled_(settled) {}
+
+  /// Gives the surfaces that others show of a frame, in upload buffers of the recorder, which is idle before and after.
+  /// Fails with ErrorKind::input, naming the file, if one cannot be read or has no position of its camera.
+  Neighbours of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparationCost& cost);
+
+  /// Marks pixels that move by their motion vectors, and up to `around` pixels beside each, with 1, all others with 0.
+  /// None if the settings name no vectors, and at the end of a shot that they lead out of. Fails if no interpretation
+  /// of the vectors matches the cameras.
+  std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparationCost& cost,
+                                                             int around);
+
+  /// Drops all frames that are not kept.
+  void keep(const std::function<bool(int)>& is_kept);
+
+  /// The number of frames that are kept now.
+  std::size_t count() const { return seen_.count(); }
+
+ private:
+  using SharedView = SharedCache<NeighbourView>::Value;
+  struct ViewWithMovement {
+    SharedView seen;
+    SharedCache<Movement>::Value moving;
+  };
+
+  std::vector<ViewWithMovement> frames_around(gpu::Recorder& gpu, const FrameSource& target, int frame,
+                                              Neighbours& others, PreparationCost& cost);
+  std::vector<ViewWithMovement> other_views(gpu::Recorder& gpu, const FrameSource& target, int frame,
+                                            Neighbours& others, PreparationCost& cost) const;
+  std::vector<SharedView> seen(gpu::Recorder& gpu, const std::vector<int>& frames, PreparationCost& cost);
+  Movement movement_of(gpu::Recorder& gpu, int frame, PreparationCost& cost);
+  /// `option`: the one that asks for other frames, for messages.
+  NeighbourView prepare(gpu::Recorder& gpu, const InputSettings& settings, int frame, const char* option,
+                        PreparationCost& cost) const;
+
+  const FramePlan& plan_;
+  const FrameSource* settled_;
+  SharedCache<NeighbourView> seen_;
+  SharedCache<Movement> moving_;
+};
+
+}  // namespace alcove
