@@ -25,13 +25,15 @@ Command command_named(const std::string& name) {
 std::string text_of(const std::string& what) {
   if (what == "man") return man_page();
   if (what == "bash") return bash_completion();
+  if (what == "zsh") return zsh_completion();
+  if (what == "fish") return fish_completion();
   std::vector<std::string> names;
   if (what == "preset-names")
     names = preset_names();
   else if (what == "device-names")
     for (const auto& device : gpu::list_devices()) names.push_back(std::to_string(device.index));
   else
-    fail(ErrorKind::usage, "--generate {}: there are man, bash, preset-names and device-names", what);
+    fail(ErrorKind::usage, "--generate {}: there are man, bash, zsh, fish, preset-names and device-names", what);
   return fmt::format("{}\n", fmt::join(names, "\n"));
 }
 
@@ -40,7 +42,7 @@ std::string text_of(const std::string& what) {
 int generate(const std::vector<std::string>& arguments) {
   const bool is_page = arguments.size() == 2 && arguments[0] == "man";
   if (arguments.size() != 1 && !is_page)
-    fail(ErrorKind::usage, "--generate takes man [COMMAND] or bash, not {} words", arguments.size());
+    fail(ErrorKind::usage, "--generate takes man [COMMAND], bash, zsh or fish, not {} words", arguments.size());
   fmt::print("{}", is_page ? man_page_of(command_named(arguments[1])) : text_of(arguments[0]));
   return 0;
 }

@@ -9,8 +9,8 @@
 
 namespace alcove {
 
-/// WHAT is `man`, with the name of a command behind it or without, or `bash`; or, for the completions, `preset-names`
-/// or `device-names`, a line each. Gives the exit code. Fails with ErrorKind::usage.
+/// WHAT is `man`, with the name of a command behind it or without, `bash`, `zsh` or `fish`; or, for the completions,
+/// `preset-names` or `device-names`, a line each. Gives the exit code. Fails with ErrorKind::usage.
 int generate(const std::vector<std::string>& arguments);
 
 /// A command's rows: its places, its help, and its options.
@@ -24,5 +24,7 @@ std::string man_page();
 std::string man_page_of(const Command& command);
 
 std::string bash_completion();
+std::string zsh_completion();
+std::string fish_completion();
 
 }  // namespace alcove

@@ -37,7 +37,7 @@ wanted() {
   printf '%s\n' bin/alcove lib/alcove/libalcove_image_io.so
   wanted_library
   wanted_dev
-  printf 'share/%s\n' bash-completion/completions/alcove man/man1/alcove.1.gz
+  printf 'share/%s\n' bash-completion/completions/alcove fish/vendor_completions.d/alcove.fish zsh/vendor-completions/_alcove man/man1/alcove.1.gz
   "$build/alcove" --help | sed -n 's,^  \([a-z][a-z]*\)   .*,share/man/man1/alcove-\1.1.gz,p'
   printf 'share/alcove/hosts/%s\n' blender/alcove.py nuke/alcove_nuke.py nuke/menu.py comfyui/__init__.py \
     python/pyproject.toml python/alcove/__init__.py python/alcove/_arrays.py python/alcove/py.typed

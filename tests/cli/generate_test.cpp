@@ -67,8 +67,8 @@ class Generated : public testing::Test {
 #define SKIP_WITHOUT(program) \
   if (lacks(program)) GTEST_SKIP() << program << " is not installed"
 
-TEST_F(Generated, each_flag_of_the_help_is_in_the_man_page_and_in_the_completions) {
-  const std::string bash = generated({"bash"});
+TEST_F(Generated, each_flag_of_the_help_is_in_the_man_page_and_in_all_completions) {
+  const std::string bash = generated({"bash"}), zsh = generated({"zsh"}), fish = generated({"fish"});
   for (const auto& command : kCommands) {
     const Names flags = flags_of(command);
     ASSERT_GE(flags.size(), 2) << command;
@@ -76,9 +76,15 @@ TEST_F(Generated, each_flag_of_the_help_is_in_the_man_page_and_in_the_completion
     // The lists of each command begin with its name.
     const std::string in_bash = bash.substr(bash.find("      " + command + ") words=\"-h "));
     const std::string of_bash = in_bash.substr(0, in_bash.find("\" ;;")) + " ";
+    const std::string in_zsh = zsh.substr(zsh.find("    " + command + ")\n"));
+    const std::string of_zsh = in_zsh.substr(0, in_zsh.find(" ;;\n"));
     for (const auto& flag : flags) {
       EXPECT_THAT(page, HasSubstr("\\fB" + replaced(flag, "-", "\\-") + "\\fR")) << command;
       EXPECT_THAT(of_bash.substr(of_bash.find('"')), ContainsRegex("[\" ]" + flag + " ")) << command;
+      EXPECT_THAT(of_zsh, ContainsRegex("[)*]" + flag + "[+=]?\\[")) << command;
+      const std::string of_fish = flag.starts_with("--") ? " -l " + flag.substr(2) : " -s " + flag.substr(1);
+      EXPECT_THAT(lines_of(fish), Contains(AllOf(StartsWith("complete -c alcove -n '__alcove_command " + command + "'"),
+                                                 HasSubstr(of_fish + " "))));
     }
   }
 }
@@ -128,8 +134,61 @@ TEST_F(Generated, bash_completes_commands_options_words_and_names) {
   EXPECT_THAT(completed("alcove run --fov \"\""), ElementsAre("")) << "a number";
 }
 
+TEST_F(Generated, zsh_completes) {
+  SKIP_WITHOUT("zsh");
+  kept("_alcove", generated({"zsh"}));
+  EXPECT_EQ(said("zsh -n " + (folder / "_alcove")), "");
+  // zsh completes only for a terminal: a shell of its own gets the keys, and shows at its end what the line has become.
+  const auto completed = [&](const std::string& typed) {
+    const std::string script =
+        kept("try.zsh",
+             "zmodload zsh/zpty\nzpty shell 'PS1=\"> \" TERM=dumb zsh -f -i'\n"
+             "zpty -w shell 'fpath=(" +
+                 folder.path() +
+                 " $fpath); autoload -U compinit; compinit -u -D; '"
+                 "'show() { print -r -- \"LINE<$BUFFER>\"; zle kill-buffer; }; zle -N show; bindkey \"^X\" show; "
+                 "bindkey \"^I\" complete-word; print REA''DY'\n"
+                 "zpty -r -m shell out '*READY*'\n"
+                 "zpty -w -n shell '" +
+                 typed +
+                 "'$'\\t\\x18'\n"
+                 "zpty -r -m shell out '*LINE<*>*'\nprint -r -- \"$out\"\n");
+    const std::string shown = said("timeout 60 zsh -f " + script);
+    const std::size_t begin = shown.rfind("LINE<");
+    return begin == shown.npos ? shown : shown.substr(begin + 5, shown.find('>', begin) - begin - 5);
+  };
+  for (const auto& [words, line] : {std::pair("alcove pres", "alcove presets"),
+                                    {"alcove run --normal-sp", "alcove run --normal-space"},
+                                    {"alcove run --normal-space w", "alcove run --normal-space world"},
+                                    {"alcove frame.exr --rad", "alcove frame.exr --radius"},
+                                    {"alcove run --preset produ", "alcove run --preset production"},
+                                    {"alcove compare --max-r", "alcove compare --max-rmse"}})
+    EXPECT_THAT(completed(words), StartsWith(line));
+}
+
+TEST_F(Generated, fish_completes) {
+  SKIP_WITHOUT("fish");
+  const std::string script = kept("alcove.fish", generated({"fish"}));
+  EXPECT_EQ(said("fish -n " + script), "");
+  const auto completed = [&](const std::string& line) {
+    Names words;
+    for (const auto& found :
+         lines_of(said("HOME=" + folder.path() + " fish -c 'source " + script + "; complete -C \"" + line + "\"'")))
+      words.push_back(found.substr(0, found.find('\t')));
+    return words;
+  };
+  EXPECT_THAT(completed("alcove "), IsSupersetOf(kCommands));
+  // Others follow that only have these letters, in that order, since fish 4.
+  EXPECT_EQ(completed("alcove run --rad").at(0), "--radius");
+  EXPECT_EQ(completed("alcove frame.exr --rad").at(0), "--radius");
+  EXPECT_THAT(completed("alcove run --normal-space "), ElementsAre("auto", "view", "world"));
+  EXPECT_THAT(completed("alcove run --preset produ"), ElementsAre("production"));
+  EXPECT_THAT(completed("alcove help doc"), ElementsAre("doctor"));
+  EXPECT_EQ(completed("alcove compare --max-r").at(0), "--max-rmse");
+}
+
 TEST_F(Generated, other_words_are_refused) {
-  for (const char* more : {"", "html", "zsh", "man rnu", "bash run", "man run more"})
+  for (const char* more : {"", "html", "man rnu", "bash run", "man run more"})
     expect_refused(run_program(joined({"--generate"}, typed(more))), 2, {});
 }
 
