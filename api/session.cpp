@@ -241,14 +241,11 @@ void Session::close_device() {
 }
 
 void Session::open_device(const DeviceSettings& settings) {
-  const std::string choice =
-      fmt::format("{} {} {} {}", settings.device, settings.require_gpu, settings.validate, settings.no_pipeline_cache);
+  const std::string choice = fmt::format("{} {} {}", settings.device, settings.require_gpu, settings.validate);
   if (device_ && choice == device_choice_) return;
   close_device();
-  device_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{.choice = settings.device,
-                                                             .require_gpu = settings.require_gpu,
-                                                             .validate = settings.validate,
-                                                             .pipeline_cache = !settings.no_pipeline_cache});
+  device_ = std::make_unique<gpu::Device>(gpu::DeviceOptions{
+      .choice = settings.device, .require_gpu = settings.require_gpu, .validate = settings.validate});
   gpu_ = std::make_unique<gpu::Recorder>(*device_);
   device_choice_ = choice;
   device_name_ = device_->info().name;

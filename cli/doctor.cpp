@@ -19,7 +19,6 @@
 #include "core/bench/device_check.h"
 #include "core/formats/image_io.h"
 #include "core/gpu/device_info.h"
-#include "core/gpu/pipeline_cache.h"
 #include "core/options/options.h"
 
 namespace alcove {
@@ -55,25 +54,6 @@ std::string preset_text(Facts& facts) {
   }
 }
 
-/// The folder of compiled kernels, with how much it holds, or why nothing is kept.
-std::string cache_text() {
-  const std::string folder = gpu::cache_folder();
-  if (folder.empty()) return "none: neither XDG_CACHE_HOME nor HOME is set (on Windows LOCALAPPDATA)";
-  std::uintmax_t bytes = 0;
-  int files = 0;
-  std::error_code error;
-  for (fs::directory_iterator file(folder, error), end; !error && file != end; file.increment(error)) {
-    const std::uintmax_t size = file->file_size(error);
-    if (error) continue;
-    bytes += size;
-    files++;
-  }
-  const std::string held = fmt::format("{}, {} files, {:.1f} MiB", folder, files, double(bytes) / kMebibyte);
-  std::error_code refused;
-  if (fs::exists(folder, error)) refused = may_make_files_in(folder);
-  return held + (refused ? fmt::format("; it cannot be written: {}", refused.message()) : "");
-}
-
 std::string picture_text() {
   const std::string why = why_no_image_io();
   return why.empty() ? "TIFF and others can be read" : "EXR, DDS and PNG only: " + why;
@@ -82,8 +62,7 @@ std::string picture_text() {
 /// The variables that change what a run does, those that are set.
 std::string environment_text() {
   std::vector<std::string> names = gpu::driver_variables(), set;
-  names.insert(names.end(),
-               {"ALCOVE_PRESETS", "ALCOVE_PRESET_PATH", "OCIO", "XDG_CACHE_HOME", "TMPDIR", "SLURM_JOB_ID"});
+  names.insert(names.end(), {"ALCOVE_PRESETS", "ALCOVE_PRESET_PATH", "OCIO", "TMPDIR", "SLURM_JOB_ID"});
   for (const auto& name : names)
     if (const char* value = std::getenv(name.c_str())) set.push_back(fmt::format("{}={}", name, value));
   return set.empty() ? "nothing of note" : fmt::format("{}", fmt::join(set, " "));
@@ -144,7 +123,6 @@ Facts gather(bool checks_devices) {
   tell("memory", memory_text());
   tell("program", program_folder());
   tell("presets", preset_text(facts));
-  tell("compiled kernels", cache_text());
   tell("other pictures", picture_text());
   tell("environment", environment_text());
   try {

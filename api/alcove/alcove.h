@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 //
-// The library reads no files except presets, which are compiled in. It writes none except the driver's compiled kernels
-// in the XDG cache folder ("no-pipeline-cache" turns that off). It leaves locale, environment and signals alone, and
-// prints nothing unless "validate" asks for it. Handles are independent: one thread at a time may use a handle, and
-// several threads may use one each. A forked process cannot use the handles of its parent. A handle keeps its device,
-// kernels and buffers, so only the first run takes some tenths of a second more.
+// The library reads no files except presets, which are compiled in, and writes none; drivers keep compiled kernels in
+// caches of their own. It leaves locale, environment and signals alone, and prints nothing unless "validate" asks for
+// it. Handles are independent: one thread at a time may use a handle, and several threads may use one each. A forked
+// process cannot use the handles of its parent. A handle keeps its device, kernels and buffers, so only the first run
+// takes some tenths of a second more.
 //
 // Conventions are those of the program: view space is right-handed, x right, y up, and the camera looks along -z; depth
 // is positive; AO is visibility, 1 = open. A pixel is sky if its depth is 0, infinite, NaN, or at least the option

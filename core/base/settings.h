@@ -246,7 +246,6 @@ struct DeviceSettings {
   std::string device = "auto";  // auto | cpu | index | name | UUID
   bool require_gpu = false;
   bool validate = false;
-  bool no_pipeline_cache = false;
   int threads = 0;           // of the CPU device and of the codecs; 0: one per core
   std::uint64_t memory = 0;  // bytes that the process may take; 0: half of the free memory
   // bytes that frames get however small `memory` is; not an option: tests cut small frames into tiles by it

@@ -168,12 +168,6 @@ void* symbol_of(const char* library, const char* symbol, std::string& why) {
   return address;
 }
 
-std::string cache_home() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache == '/') return cache;
-  if (const char* home = std::getenv("HOME"); home && *home == '/') return std::string(home) + "/.cache";
-  return "";
-}
-
 std::string config_home() {
   const char *config = std::getenv("XDG_CONFIG_HOME"), *home = std::getenv("HOME");
   return config && *config ? config : home ? std::string(home) + "/.config" : "";

@@ -83,10 +83,8 @@ std::uint64_t free_memory();
 
 // Files and folders.
 
-/// The folder in which programs keep a user's caches: that of the XDG base directory specification, on Windows
-/// %LOCALAPPDATA%; empty if the environment names none.
-std::string cache_home();
-/// The folder of a user's settings, likewise; on Windows %APPDATA%.
+/// The folder of a user's settings: that of the XDG base directory specification, on Windows %APPDATA%; empty if the
+/// environment names none.
 std::string config_home();
 
 /// The file that a path leads to, as a text that every name of it gives and no other file has, through links of both

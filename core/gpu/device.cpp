@@ -306,7 +306,6 @@ Device::Device(const DeviceOptions& options) : options_(options) {
     info_ = chosen.info;
     read_properties();
     create_device();
-    load_pipeline_cache();
   } catch (...) {
     release();
     throw;
@@ -317,14 +316,12 @@ Device::~Device() { release(); }
 
 void Device::release() {
   if (hangs_) {  // what waits for it, or takes away what it uses, hangs too
-    new auto(std::make_pair(std::move(kernels_), std::move(pipeline_cache_)));
+    new auto(std::move(kernels_));
     return;
   }
   if (device_) {
     vkDeviceWaitIdle(device_);
-    save_pipeline_cache();
     kernels_.clear();
-    pipeline_cache_ = {};
     vkDestroyDevice(device_, nullptr);
   }
   if (messenger_) {
@@ -377,7 +374,6 @@ void Device::read_properties() {
   most_texels_ = properties.limits.maxTexelBufferElements;
   block_alignment_ = std::max(properties.limits.minStorageBufferOffsetAlignment,
                               properties.limits.minTexelBufferOffsetAlignment);  // both are powers of 2
-  cache_owner_ = {properties.vendorID, properties.deviceID, std::to_array(properties.pipelineCacheUUID)};
 }
 
 void Device::create_device() {
@@ -406,34 +402,6 @@ void Device::create_device() {
   info.ppEnabledExtensionNames = extensions.data();
   check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-}
-
-void Device::load_pipeline_cache() {
-  std::string data;
-  if (options_.pipeline_cache) data = read_cache(cache_file(cache_owner_), cache_owner_);
-  loaded_cache_bytes_ = data.size();
-  VkPipelineCacheCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
-  info.initialDataSize = data.size();
-  info.pInitialData = data.data();
-  VkPipelineCache cache = VK_NULL_HANDLE;
-  check(vkCreatePipelineCache(device_, &info, nullptr, &cache), "vkCreatePipelineCache");
-  pipeline_cache_ = {device_, cache};
-}
-
-void Device::save_pipeline_cache() noexcept {
-  if (!options_.pipeline_cache || !pipeline_cache_) return;
-  try {
-    std::size_t bytes = 0;
-    if (vkGetPipelineCacheData(device_, pipeline_cache_, &bytes, nullptr) != VK_SUCCESS) return;
-    const std::string path = cache_file(cache_owner_);
-    if (path.empty() || bytes == 0 || bytes == loaded_cache_bytes_) return;
-    std::vector<char> data(bytes);
-    if (vkGetPipelineCacheData(device_, pipeline_cache_, &bytes, data.data()) != VK_SUCCESS) return;
-    write_cache(path, std::span(data).first(bytes));
-  } catch (const std::exception&) {
-    // This runs in a destructor, perhaps because memory ran out. Without the cache, only the next start takes longer.
-  }
 }
 
 double Device::submission_ms() const {

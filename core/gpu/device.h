@@ -19,7 +19,6 @@
 
 #include "core/base/error.h"
 #include "core/gpu/device_info.h"
-#include "core/gpu/pipeline_cache.h"
 
 namespace alcove::gpu {
 
@@ -145,7 +144,6 @@ class Device {
   /// Whether it was lost so. Memory that it may still use must never be freed.
   bool hangs() const { return hangs_; }
   std::uint32_t queue_family() const { return queue_family_; }
-  VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   /// The most storage buffers of a kernel.
   std::uint32_t most_blocks() const { return most_blocks_; }
@@ -159,8 +157,6 @@ class Device {
   void create_instance();
   void read_properties();
   void create_device();
-  void load_pipeline_cache();
-  void save_pipeline_cache() noexcept;
   void release();
 
   DeviceOptions options_;
@@ -181,9 +177,6 @@ class Device {
   std::atomic<std::uint32_t> allocations_ = 0;
   std::atomic<std::uint64_t> finished_ = 0;  // submissions
   std::atomic<bool> hangs_ = false;
-  CacheOwner cache_owner_;
-  DeviceHandle<VkPipelineCache, vkDestroyPipelineCache> pipeline_cache_;
-  std::size_t loaded_cache_bytes_ = 0;
   std::mutex mutex_;  // of the queue and the kernels
   struct Slot {
     std::once_flag made;

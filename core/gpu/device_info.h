@@ -44,7 +44,6 @@ struct DeviceOptions {
   std::string choice = "auto";  // auto | cpu | an index | a name or a part of it | a UUID
   bool require_gpu = false;     // a CPU device is an error
   bool validate = false;        // load the validation layer; its messages are counted and printed to stderr
-  bool pipeline_cache = true;   // keep compiled pipelines in the XDG cache folder
   // false: always copy through staging buffers, as with a device whose memory the host cannot map
   bool map_memory = true;
   // Whether kernels read buffers of texels where they can; nullopt: if the driver is much faster with them.

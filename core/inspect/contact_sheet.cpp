@@ -38,8 +38,7 @@ void write_contact_sheet(const Settings& settings, int number) {
   require_ending(path, "--preview", ".png", "PNG");
   require_writable(path, "--preview");
   const HostFrame frame = read_host_frame(settings.input, number);
-  gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate,
-                      !settings.device.no_pipeline_cache});
+  gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate});
   gpu::Recorder gpu(device);
   const FrameInputs inputs = upload(gpu, frame);
   EstimatorSettings estimator = settings.estimator;

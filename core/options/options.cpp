@@ -83,7 +83,6 @@ void add_device_rows(std::vector<SettingRow>& rows) {
               "where to compute; auto: the first GPU, else the CPU");
   device.flag("require-gpu", &S::require_gpu, "computing on the CPU is an error");
   device.flag("--validate", &S::validate, "load the Vulkan validation layer; any message is an error");
-  device.flag("no-pipeline-cache", &S::no_pipeline_cache, "keep no compiled kernels in the XDG cache folder");
   process.own(
       {"--memory", "SIZE", "bytes, or with K, M, G", "", "memory of the whole process; else half of the free memory"},
       [](const S& s) { return text_of_memory(s.memory); },

@@ -46,7 +46,7 @@ class RunDevice {
   RunDevice(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames)
       : settings_(plan.settings()), plan_(plan), settled_(settled), frames_(frames) {
     const DeviceSettings& d = settings_.device;
-    lanes_.emplace(gpu::DeviceOptions{d.device, d.require_gpu, d.validate, !d.no_pipeline_cache}, share_cores());
+    lanes_.emplace(gpu::DeviceOptions{d.device, d.require_gpu, d.validate}, share_cores());
     RunMemory memory = memory_for_frames(settings_, info());
     if (settled_) {
       require_room_for_others(memory, plan_, *settled_, settings_, frames_);

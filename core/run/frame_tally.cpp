@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/chain/estimate/estimate.h"
@@ -75,57 +77,90 @@ void FrameTally::add(const gpu::PassTime& pass, gpu::PassTime& sum) {
   report_.compute_ms += pass.ms;
 }
 
+namespace {
+
+/// The counts that a pass has left in a buffer; zeros without one.
+template <class T>
+T counts_in(const gpu::Buffer* buffer) {
+  return buffer ? buffer->as<T>()[0] : T{};
+}
+
+/// The sums of pairs over tiles.
+std::pair<double, double> sums_in(const gpu::Buffer& pairs) {
+  std::pair<double, double> sums{0, 0};
+  for (const vec2& pair : pairs.as<const vec2>()) {
+    sums.first += pair.x;
+    sums.second += pair.y;
+  }
+  return sums;
+}
+
+/// The member of a report that is there from its first count on.
+template <class T>
+T& counted(std::optional<T>& member) {
+  return member ? *member : member.emplace();
+}
+
+}  // namespace
+
 void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same) {
-  const auto counts = outputs.counts->as<FrameCounts>()[0];
+  report_.pixels += computed.pixels();
+  has_ao_ = outputs.ao;
+  is_quick_ = is_quick_ || outputs.is_quick;
+  add_surfaces(outputs);
+  add_errors(outputs, computed);
+  add_work(outputs, is_same);
+}
+
+void FrameTally::add_surfaces(const FrameOutputs& outputs) {
+  const auto counts = counts_in<FrameCounts>(outputs.counts);
   counts_.sky += counts.sky;
   counts_.repaired_depth += counts.repaired_depth;
   counts_.repaired_normals += counts.repaired_normals;
   counts_.turned_normals += counts.turned_normals;
   counts_.repaired_material += counts.repaired_material;
   counts_.repaired_beauty += counts.repaired_beauty;
-  report_.pixels += computed.pixels();
-  has_ao_ = outputs.ao;
-  is_quick_ = is_quick_ || outputs.is_quick;
+  const auto views = counts_in<ViewCounts>(outputs.view_counts);
+  report_.moved += views.moved;
+  report_.unconfirmed += views.unconfirmed;
+  if (!outputs.layer_counts) return;
+  const auto layers = counts_in<LayerCounts>(outputs.layer_counts);
+  auto& hidden = counted(report_.hidden);
+  hidden.surfaces += layers.surfaces;
+  hidden.dropped += layers.dropped;
+}
 
-  if (outputs.layer_counts) {
-    const auto layers = outputs.layer_counts->as<LayerCounts>()[0];
-    auto& hidden = report_.hidden ? *report_.hidden : report_.hidden.emplace();
-    hidden.surfaces += layers.surfaces;
-    hidden.dropped += layers.dropped;
+/// Adds errors, the share of completed surfaces, and the number of averaged frames.
+void FrameTally::add_errors(const FrameOutputs& outputs, const Window& computed) {
+  if (outputs.squares) {
+    const auto [squares, pixels] = sums_in(*outputs.squares);
+    report_.error_squares += squares;
+    report_.error_pixels += pixels;
   }
-  if (outputs.squares)
-    for (const vec2& tile : outputs.squares->as<const vec2>()) {
-      report_.error_squares += tile.x;
-      report_.error_pixels += tile.y;
-    }
   if (outputs.completion) {
-    auto& occlusion = report_.occlusion ? *report_.occlusion : report_.occlusion.emplace();
-    for (const vec2& tile : outputs.completion->as<const vec2>()) {
-      occlusion.by_completed += tile.x;
-      occlusion.whole += tile.y;
-    }
+    const auto [by_completed, whole] = sums_in(*outputs.completion);
+    auto& occlusion = counted(report_.occlusion);
+    occlusion.by_completed += by_completed;
+    occlusion.whole += whole;
   }
   if (outputs.count)
     for (const float count : outputs.count->as<const float>().first(computed.pixels()))
       report_.accumulated += double(count);
-  if (outputs.view_counts) {
-    const ViewCounts views = outputs.view_counts->as<ViewCounts>()[0];
-    report_.moved += views.moved;
-    report_.unconfirmed += views.unconfirmed;
-  }
-  if (outputs.tiles) {
-    const auto tiles = outputs.tiles->as<TileCounts>()[0];
-    report_.tiles.sky += tiles.sky;
-    report_.tiles.kept += tiles.kept + (is_same ? tiles.listed : 0);
-    report_.tiles.computed += is_same ? 0 : tiles.listed;
-  }
-  if (outputs.sites) {
-    const SiteCounts& sites = outputs.sites->as<SiteCounts>()[0];
-    auto& estimates = report_.estimates ? *report_.estimates : report_.estimates.emplace();
-    for (std::size_t k = 0; k < kLattices && !is_same; k++) estimates[k] += sites.of_lattice[k];
-    // A quick search does not count its sites by lattice.
-    if (outputs.is_quick && !is_same) estimates.back() += sites.listed;
-  }
+}
+
+/// Adds tiles and estimates; is_same: none was computed.
+void FrameTally::add_work(const FrameOutputs& outputs, bool is_same) {
+  const auto tiles = counts_in<TileCounts>(outputs.tiles);
+  report_.tiles.sky += tiles.sky;
+  report_.tiles.kept += tiles.kept + (is_same ? tiles.listed : 0);
+  report_.tiles.computed += is_same ? 0 : tiles.listed;
+  if (!outputs.sites) return;
+  auto& estimates = counted(report_.estimates);
+  if (is_same) return;
+  const auto sites = counts_in<SiteCounts>(outputs.sites);
+  for (std::size_t k = 0; k < kLattices; k++) estimates[k] += sites.of_lattice[k];
+  // A quick search does not count its sites by lattice.
+  if (outputs.is_quick) estimates.back() += sites.listed;
 }
 
 /// The search along slices that made the estimate, which the settings may only ask for; empty: there is none.

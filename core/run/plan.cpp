@@ -130,8 +130,13 @@ std::vector<int> FramePlan::all_frames() const {
   return {number.value_or(0)};
 }
 
+bool FramePlan::has_contact_sheet() const {
+  const auto is_preview = [](const Pattern& pattern) { return pattern.row->key() == "preview"; };
+  return all_.size() > 1 && !settings_.output.preview.empty() && std::ranges::none_of(patterns_, is_preview);
+}
+
 /// Frames that differ in nothing but their number would be the same one, and files without one the last frame's.
-void FramePlan::refuse_shared_files() {
+void FramePlan::refuse_shared_files() const {
   if (all_.size() < 2) return;
   constexpr const char* kMend = "put a place for the frame number into its name, such as %04d";
   if (!first_input())
@@ -148,7 +153,6 @@ void FramePlan::refuse_shared_files() {
     if (part)
       fail(ErrorKind::usage, "{} {}: a contact sheet shows all {} frames, and {} leaves some out: {}", option, path,
            all_.size(), part, kMend);
-    has_contact_sheet_ = true;
   }
 }
 

@@ -73,7 +73,7 @@ class FramePlan {
   /// The settings with the files of one frame.
   Settings at(int frame) const;
   /// Whether the frames of a sequence share one --preview, the contact sheet.
-  bool has_contact_sheet() const { return has_contact_sheet_; }
+  bool has_contact_sheet() const;
   /// Gives all frames these radii, in scene units, instead of --radius auto or a percentage.
   void set_radii(const std::vector<double>& radii);
   /// Gives all frames the lights that their file lists.
@@ -98,7 +98,7 @@ class FramePlan {
   void find_patterns(FileRole role);
   const Pattern* first_input() const;
   std::vector<int> all_frames() const;
-  void refuse_shared_files();
+  void refuse_shared_files() const;
   void find_evidence();
   void find_inputs(const std::vector<int>& own);
   bool has_inputs(int frame) const;
@@ -107,7 +107,7 @@ class FramePlan {
 
   Settings settings_;
   std::vector<Pattern> patterns_;
-  bool is_sequence_ = false, has_contact_sheet_ = false;
+  bool is_sequence_ = false;
   std::vector<int> all_, frames_, missing_, evidence_, holes_, shot_;
   std::set<int> absent_;  // of the shot
 };

@@ -240,7 +240,7 @@ class WedgeMaker {
   std::vector<WedgeLook>& looks_;
   const bool has_page_;
   const DeviceSettings& device_ = looks_.front().settings.device;
-  Lanes lanes_{{device_.device, device_.require_gpu, device_.validate, !device_.no_pipeline_cache}, 1};
+  Lanes lanes_{{device_.device, device_.require_gpu, device_.validate}, 1};
   const std::vector<std::vector<std::size_t>> groups_ = groups_of(looks_);
   std::deque<RunPreview> firsts_;  // of each look
   RunMemory memory_;

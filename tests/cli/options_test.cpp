@@ -158,8 +158,8 @@ TEST_F(Options, that_change_no_pixels_are_these_and_not_in_the_digest) {
               ElementsAre("--strict", "--set allow", "--frames", "--set output-offset", "--chunk", "--set missing",
                           "--keep-going", "--set warnings-as-errors", "--resume", "--set overwrite", "--no-skip",
                           "--output", "--composite", "--preview", "--set debug", "--set compression", "--set no-mkdir",
-                          "--set ocio", "--device", "--set require-gpu", "--validate", "--set no-pipeline-cache",
-                          "--memory", "--threads", "--stats", "--progress", "--log-json", "--verbose", "--quiet"))
+                          "--set ocio", "--device", "--set require-gpu", "--validate", "--memory", "--threads",
+                          "--stats", "--progress", "--log-json", "--verbose", "--quiet"))
       << "whoever adds to this list says that the pixels come out the same";
 }
 

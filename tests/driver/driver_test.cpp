@@ -4,7 +4,6 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include "core/chain/chain.h"
-#include "core/gpu/pipeline_cache.h"
 #include "core/run/lanes.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
@@ -27,7 +26,6 @@ class Driver : public testing::Test {
     gpu::DeviceOptions options = device().options();
     options.choice = "llvmpipe";
     options.guard_bytes = 0;
-    options.pipeline_cache = false;
     return options;
   }
 
@@ -336,115 +334,6 @@ TEST_F(Driver, that_hangs_is_lost_and_not_waited_for_unless_it_is_a_cpu) {
     EXPECT_THAT(error.what(), HasSubstr("has finished nothing for 0 s"));
   }
   EXPECT_EQ(fake.idle_waits, 0);
-}
-
-// The pipeline cache.
-
-/// Bytes as they lie in a vkGetPipelineCacheData result of this owner.
-std::string cache_of(const gpu::CacheOwner& owner, const std::string& rest) {
-  const std::uint32_t words[] = {32, 1, owner.vendor, owner.device};
-  std::string data(reinterpret_cast<const char*>(words), sizeof(words));
-  data.append(reinterpret_cast<const char*>(owner.uuid.data()), owner.uuid.size());
-  return data + rest;
-}
-
-std::string checked(const std::string& file, const gpu::CacheOwner& owner) {
-  const auto data = gpu::checked_cache(file, owner);
-  return {data.begin(), data.end()};
-}
-
-TEST(PipelineCache, is_used_when_it_is_whole_and_the_drivers_own) {
-  const gpu::CacheOwner owner{0x10de, 0x2330, {1, 2, 3}};
-  const std::string data = cache_of(owner, "compiled kernels");
-  const std::string file = gpu::packed_cache(data);
-  ASSERT_EQ(checked(file, owner), data);
-  for (std::size_t bytes = 0; bytes < file.size(); bytes++)
-    EXPECT_EQ(checked(file.substr(0, bytes), owner), "") << bytes;
-  EXPECT_EQ(checked(file + '\0', owner), "");
-  for (std::size_t bit = 0; bit < 8 * file.size(); bit++) {
-    std::string flipped = file;
-    flipped[bit / 8] = char(flipped[bit / 8] ^ (1 << bit % 8));
-    EXPECT_EQ(checked(flipped, owner), "") << bit;
-  }
-  EXPECT_EQ(checked(data, owner), "") << "a file without our header";
-}
-
-TEST(PipelineCache, of_another_device_or_driver_is_not_used) {
-  const gpu::CacheOwner owner{0x10de, 0x2330, {1, 2, 3}};
-  for (const gpu::CacheOwner& other :
-       {gpu::CacheOwner{0x1002, 0x2330, {1, 2, 3}}, {0x10de, 0x2331, {1, 2, 3}}, {0x10de, 0x2330, {1, 2, 4}}}) {
-    EXPECT_EQ(checked(gpu::packed_cache(cache_of(other, "compiled kernels")), owner), "");
-    EXPECT_NE(gpu::cache_file(other), gpu::cache_file(owner));
-  }
-  std::string other_version = cache_of(owner, "");
-  other_version[4] = 2;
-  EXPECT_EQ(checked(gpu::packed_cache(other_version), owner), "");
-  EXPECT_EQ(checked(gpu::packed_cache(cache_of(owner, "").substr(0, 31)), owner), "");
-}
-
-/// Has a folder of its own for caches.
-class CacheFolder : public Driver {
- protected:
-  CacheFolder() { setenv("XDG_CACHE_HOME", folder.path().c_str(), 1); }
-  ~CacheFolder() override {
-    if (before)
-      setenv("XDG_CACHE_HOME", before->c_str(), 1);
-    else
-      unsetenv("XDG_CACHE_HOME");
-  }
-
-  /// Computes something, and returns what the driver was given as its cache.
-  std::string given() {
-    gpu::DeviceOptions caching = options();
-    caching.pipeline_cache = true;
-    ao_on(caching, settings_of(0.4));
-    return fake.caches.back();
-  }
-
-  std::string file() const {
-    const auto names = names_in(folder / "alcove");
-    EXPECT_THAT(names, SizeIs(1));
-    return folder / "alcove/" + names.at(0);
-  }
-
-  const std::optional<std::string> before =
-      std::getenv("XDG_CACHE_HOME") ? std::optional<std::string>(std::getenv("XDG_CACHE_HOME")) : std::nullopt;
-  TemporaryFolder folder;
-};
-
-TEST_F(CacheFolder, gives_the_driver_what_it_gave_and_nothing_else) {
-  EXPECT_EQ(given(), "");
-  const std::string whole = read_bytes(file());
-  const std::string data = given();
-  EXPECT_GE(data.size(), 32);
-  EXPECT_TRUE(whole.ends_with(data));
-  std::string flipped = whole;
-  flipped[flipped.size() / 2] ^= 1;
-  std::string foreign = data;
-  foreign[16] ^= 1;
-  for (const std::string& bad :
-       {std::string(), whole.substr(0, whole.size() / 2), flipped, data, gpu::packed_cache(foreign)}) {
-    write_bytes(file(), bad);
-    EXPECT_EQ(given(), "") << bad.size();
-    EXPECT_TRUE(read_bytes(file()) == whole) << "a bad cache is written anew";
-  }
-}
-
-TEST_F(CacheFolder, a_cache_that_cannot_be_read_is_an_empty_one) {
-  given();
-  const std::string path = file();
-  fs::remove(path);
-  fs::create_directory(path);
-  EXPECT_EQ(given(), "");
-  fs::remove(path);
-  fs::create_symlink("/proc/self/mem", path);  // nothing can be read at its beginning
-  EXPECT_EQ(given(), "");
-}
-
-TEST_F(CacheFolder, a_cache_beyond_all_memory_is_not_kept) {
-  fake.has_endless_cache = true;
-  given();  // or else the destructor of the device ends the program
-  EXPECT_FALSE(fs::exists(folder / "alcove"));
 }
 
 // Whole runs.

@@ -149,19 +149,6 @@ VkResult vkCreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* i
   return NEXT(vkCreateShaderModule)(device, info, callbacks, module);
 }
 
-VkResult vkCreatePipelineCache(VkDevice device, const VkPipelineCacheCreateInfo* info,
-                               const VkAllocationCallbacks* callbacks, VkPipelineCache* cache) {
-  const std::lock_guard lock(mutex);
-  fake().caches.emplace_back(static_cast<const char*>(info->pInitialData), info->initialDataSize);
-  return NEXT(vkCreatePipelineCache)(device, info, callbacks, cache);
-}
-
-VkResult vkGetPipelineCacheData(VkDevice device, VkPipelineCache cache, size_t* bytes, void* data) {
-  if (!fake().has_endless_cache) return NEXT(vkGetPipelineCacheData)(device, cache, bytes, data);
-  *bytes = std::numeric_limits<size_t>::max() / 4;
-  return VK_SUCCESS;
-}
-
 VkResult vkWaitForFences(VkDevice device, uint32_t count, const VkFence* fences, VkBool32 all, uint64_t nanoseconds) {
   if (!fake().hangs) return NEXT(vkWaitForFences)(device, count, fences, all, nanoseconds);
   NEXT(vkWaitForFences)(device, count, fences, all, std::numeric_limits<uint64_t>::max());  // lavapipe's do not hang

@@ -22,7 +22,6 @@ struct FakeDriver {
   bool hangs = false;                  // no submission ends
   int failing_submission = 0;          // from now on; 0: none
   bool lists_no_extensions = false;    // of its device: the call fails
-  bool has_endless_cache = false;      // the size of its pipeline cache is beyond any memory
 
   // What it was told.
   std::uint32_t instance_flags = 0;
@@ -30,7 +29,6 @@ struct FakeDriver {
   bool is_robust = false;
   std::vector<std::uint32_t> mapped_types = {};          // types of memory that were mapped
   std::vector<std::vector<std::uint32_t>> modules = {};  // SPIR-V
-  std::vector<std::string> caches = {};                  // data of pipeline caches
   int idle_waits = 0, submissions = 0, allocations = 0, live_allocations = 0, live_instances = 0;
 };
 

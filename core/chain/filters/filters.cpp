@@ -191,63 +191,64 @@ FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& ti
   return listed;
 }
 
-gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Denoiser& denoiser,
-                     const std::string& prefix, const FilterRuns& runs) {
-  if (denoiser.weights.empty()) return planes;
-  const auto radius = uint(denoiser.weights.size() - 1);
-  DenoiseParams params = filter_params<DenoiseParams>(gbuffer, denoiser);
+namespace {
+
+/// Runs a filter along rows, and then along columns. `more`: bindings of its own; `constants`: along an axis, those by
+/// which it differs from others.
+template <class Params, class Constants>
+gpu::Buffer& in_rows_and_columns(gpu::Recorder& gpu, const char* kernel, Params params, const GBuffer& gbuffer,
+                                 gpu::Buffer& planes, const std::string& prefix, const FilterRuns& runs,
+                                 const std::vector<gpu::Binding>& more, const Constants& constants) {
   gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
   gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
   const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
     params.axis = axis;
-    gpu.dispatch("denoise", params,
-                 {{"Ao", from},
-                  {"Depth", gbuffer.depth},
-                  {"Normal", gbuffer.normal},
-                  {"Result", to},
-                  {"List", gpu::Optional(listed.runs)},
-                  {"Counts", gpu::Optional(listed.counts)}},
-                 runs_extent(gbuffer, axis, listed),
-                 {radius, denoiser.depth_sigma > 0 ? 1u : 0u, listed.runs ? 1u : 0u, planes_in(planes, gbuffer.view)});
+    std::vector<gpu::Binding> bindings{{"Ao", from},
+                                       {"Depth", gbuffer.depth},
+                                       {"Normal", gbuffer.normal},
+                                       {"Result", to},
+                                       {"List", gpu::Optional(listed.runs)},
+                                       {"Counts", gpu::Optional(listed.counts)}};
+    bindings.insert(bindings.end(), more.begin(), more.end());
+    gpu.dispatch(kernel, params, bindings, runs_extent(gbuffer, axis, listed), constants(axis, listed));
   };
   along({1, 0}, runs.rows, planes, rows);
   along({0, 1}, runs.columns, rows, result);
   return result;
 }
 
+}  // namespace
+
+gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Denoiser& denoiser,
+                     const std::string& prefix, const FilterRuns& runs) {
+  if (denoiser.weights.empty()) return planes;
+  const auto radius = uint(denoiser.weights.size() - 1);
+  return in_rows_and_columns(gpu, "denoise", filter_params<DenoiseParams>(gbuffer, denoiser), gbuffer, planes, prefix,
+                             runs, {}, [&](ivec2, const RunList& listed) {
+                               return std::vector<uint>{radius, denoiser.depth_sigma > 0 ? 1u : 0u,
+                                                        listed.runs ? 1u : 0u, planes_in(planes, gbuffer.view)};
+                             });
+}
+
 gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
                          const Denoiser& denoiser, const std::string& prefix, const FilterRuns& runs, uint moments) {
   const auto radius = uint(denoiser.weights.size() - 1);
-  InterpolateParams params = filter_params<InterpolateParams>(gbuffer, denoiser);
-  const gpu::Buffer& written =
-      gpu.buffer(prefix + "written rows",
-                 sizeof(uint) * groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32));
+  const std::size_t written_runs =
+      groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32);
+  const gpu::Buffer& written = gpu.buffer(prefix + "written rows", sizeof(uint) * written_runs);
   gpu.clear(written);
+  InterpolateParams params = filter_params<InterpolateParams>(gbuffer, denoiser);
   params.most = float(denoiser.radius);
   params.reach = pixels_of(gbuffer, denoiser.within.front());
   params.grid = sites.grid;
   const uint mode =
       (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.looks_up ? kInterpolateLooksUp : 0);
-  gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
-  gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
-  const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
-    params.axis = axis;
-    gpu.dispatch("interpolate", params,
-                 {{"Ao", from},
-                  {"Depth", gbuffer.depth},
-                  {"Normal", gbuffer.normal},
-                  {"Result", to},
-                  {"List", gpu::Optional(listed.runs)},
-                  {"Counts", gpu::Optional(listed.counts)},
-                  {"Runs", written},
-                  {"Blocks", sites.words}},
-                 runs_extent(gbuffer, axis, listed),
-                 {radius, mode | (axis.y ? kInterpolateColumns : 0) | (listed.runs ? kInterpolateListed : 0),
-                  planes_in(planes, gbuffer.view), moments});
-  };
-  along({1, 0}, runs.rows, planes, rows);
-  along({0, 1}, runs.columns, rows, result);
-  return result;
+  return in_rows_and_columns(gpu, "interpolate", params, gbuffer, planes, prefix, runs,
+                             {{"Runs", written}, {"Blocks", sites.words}}, [&](ivec2 axis, const RunList& listed) {
+                               const uint along =
+                                   (axis.y ? kInterpolateColumns : 0) | (listed.runs ? kInterpolateListed : 0);
+                               return std::vector<uint>{radius, mode | along, planes_in(planes, gbuffer.view), moments};
+                             });
 }
 
 const gpu::Buffer& fit_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& planes, const Sites& sites,
