@@ -168,7 +168,7 @@ TEST_F(HiddenRun, what_is_not_of_the_same_pixels_or_depth_is_refused_with_both_f
       {"plate metres",
        {"before the first surface on 100 %", "0.01 times", "--set behind-channel", "--depth-kind", "--depth-scale",
         frame}},
-      {"ray", {"if it is along the ray", "is read as planar", "--depth-kind"}},
+      {"ray", {"if read as along the ray", "is read as planar", "--depth-kind"}},
       {"other", {"before the first surface on 60 %", "--behind", "--set behind-channel", frame}}};
   for (const auto& [names, texts] : rows)
     expect_refused(3, behind(names), joined({folder / (typed(names).back() + ".exr")}, texts));
