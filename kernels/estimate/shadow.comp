@@ -9,7 +9,8 @@
 //  2. A pixel's surface is before the ray or behind it, as seen by the eye. It is moved into the slice of ray and eye
 //     parallel to the receiver's tangent plane (slice.glsl), so that no plane shadows itself. The walk ends at the
 //     image of the lamp, of the farthest place that may block, or at the border.
-//  3. A surface that is before the ray in one pixel and behind it in the next blocks it.
+//  3. A surface that is before the ray in one pixel and behind it in the next blocks it. So does one that begins in a
+//     pixel, if the ray goes from before it to behind it within the pixel: a wire may have no other.
 //  4. Behind a surface with edges before the ray, the ray is blocked within the surface's solid: to the known back; or
 //     as far as the pixel tells; or as far as the run of its pixels is wide (slice.glsl), or as the user says.
 //  5. Farther behind a surface than any solid may be deep a run begins anew. So blocks of pixels that are all behind
@@ -48,8 +49,8 @@ const bool kBeyondBorder = (kSolid & kCompletesBorder) != 0u;
 const bool kHasBacks = (kSolid & kTellsBacks) != 0u;
 
 /// A run is so many times as thick as it is wide, and so many pixels' widths more; less where it is known what lies
-/// behind it.
-const float kThicknessPerWidth = 1.25, kKnownThicknessPerWidth = 0.6, kMorePixels = 1.0;
+/// behind it, and behind the first surface, where many runs are backs that no front was found for.
+const float kThicknessPerWidth = 0.8, kKnownThicknessPerWidth = 0.4, kHiddenThicknessPerWidth = 0.3, kMorePixels = 1.0;
 
 /// Beyond the border nothing goes on farther than this: as tangent, and with parallel rays in radii. Farther away it is
 /// more often wrong than right.
@@ -101,6 +102,9 @@ float ahead(Receiver r, Ray ray, float change, float z) {
 }
 bool is_before(Receiver r, Ray ray, float change, float z) { return ahead(r, ray, change, z) <= ray.most; }
 
+/// How much change there is within half a step. The more change, the more is before the ray.
+float half_step(Ray ray) { return 0.5 * abs(dot(ray.change, ray.step_px)); }
+
 /// By how much depth the ray is behind a surface; kSkyDepth: it does not come there.
 float depth_behind(Receiver r, Ray ray, float change, float z) {
   const float facing = r.perspective ? ray.facing - change : ray.facing;
@@ -133,7 +137,7 @@ Stretch stretch_from(Receiver r, Ray ray, int first) {
   const int last = min(first + max(int(min(room.x, room.y)), 0), ray.steps);
   const vec2 depths = nearest[block.y * ((params.view.size.x + kNearestStep - 1) / kNearestStep) + block.x];
   const float change = dot(ray.change, ray.step_px), rounding = 1e-5 * (ray.facing + abs(change) * float(last));
-  const float aside = 0.5 * max(abs(ray.change.x), abs(ray.change.y)) + rounding;
+  const float aside = 0.5 * (max(abs(ray.change.x), abs(ray.change.y)) + abs(change)) + rounding;
   const float most = max(change * float(first), change * float(last)) + aside;
   const float least = min(change * float(first), change * float(last)) - aside;
   const bool is_behind = ahead(r, ray, most, depths.x) > 1.00001 * ray.most;
@@ -173,13 +177,16 @@ float surface_at(int index, int i) {
 
 ivec2 pixel_of_step(Receiver r, Ray ray, int k) { return r.pixel + ivec2(round(ray.step_px * float(k))); }
 
-/// Whether a surface is before the ray, and clear of the receiver's tangent plane.
-bool is_clear_before(Receiver r, Ray ray, Reach reach, vec2 beside, float z, int k) {
+/// Whether a surface is clear of the receiver's tangent plane.
+bool is_clear(Receiver r, Reach reach, vec2 beside, float z, int k) {
   const float scale = r.perspective ? z : 1.0, height = height_of(r, beside, z, scale);
   const vec3 place = offset_to(r, beside, z, scale);
-  const bool is_clear = both(height > r.least_height + scale * (reach.least_rise * float(k)),
-                             is_elevated(height, reach.per_elevation, dot(place, place)));
-  return both(z < kSkyDepth, both(is_clear, is_before(r, ray, dot(ray.change, beside), z)));
+  const bool is_high = both(height > r.least_height + scale * (reach.least_rise * float(k)),
+                            is_elevated(height, reach.per_elevation, dot(place, place)));
+  return both(z < kSkyDepth, is_high);
+}
+bool is_clear_before(Receiver r, Ray ray, Reach reach, vec2 beside, float z, int k) {
+  return both(is_clear(r, reach, beside, z, k), is_before(r, ray, dot(ray.change, beside), z));
 }
 
 /// The surfaces of a step that is passed over.
@@ -200,7 +207,8 @@ void pass(Receiver r, Ray ray, Reach reach, int k, inout Last last[kSurfaces]) {
 uint side_of(Receiver r, Ray ray, int k) {
   const ivec2 pixel = pixel_of_step(r, ray, k);
   const float change = dot(ray.change, vec2(pixel - r.pixel)), z = occluder_depth[index_of(params.view, pixel)];
-  return !is_before(r, ray, change, z) ? kBehindRay : is_deep(r, ray, change, z) ? kFarBefore : kNoSide;
+  if (!is_before(r, ray, change + half_step(ray), z)) return kBehindRay;
+  return is_deep(r, ray, change, z) ? kFarBefore : kNoSide;
 }
 
 /// Takes the surfaces of a step. Gives whether one of them blocks the ray.
@@ -216,12 +224,15 @@ bool take_step(Receiver r, Ray ray, Reach reach, uint outline, int k, inout Last
   for (int i = 0; i < kSurfaces; i++) {
     const float z = abs(surface), scale = r.perspective ? z : 1.0;
     const vec3 place = offset_to(r, beside, z, scale);
-    const bool before = is_clear_before(r, ray, reach, beside, z, k);
+    const bool clear = is_clear(r, reach, beside, z, k), before = both(clear, is_before(r, ray, change, z));
     Last from = last[0];
     for (int j = 1; j < kSurfaces; j++)
       if (abs(last[j].z - z) < abs(from.z - z)) from = last[j];
     const bool goes_on = are_one(r, z, from.z);
     blocked = both(goes_on, before != from.before) ? true : blocked;  // 3.
+    const float within = half_step(ray);
+    const bool crosses = is_before(r, ray, change - within, z) != is_before(r, ray, change + within, z);
+    blocked = both(both(!goes_on, crosses), both(clear, surface > 0.0)) ? true : blocked;
     // 4.
     const float next = i + 1 < kSurfaces ? surface_at(index, i + 1) : kSkyDepth;
     const float behind = depth_behind(r, ray, change, z);
@@ -233,7 +244,9 @@ bool take_step(Receiver r, Ray ray, Reach reach, uint outline, int k, inout Last
     here[i] = Last(z, before, begins ? place : from.start, deep ? kSkyDepth : least, both(is_round, !deep));
     const float told = both(is_round, mirrored >= 0.0) ? mirrored : unpack_depth(word);
     const bool is_within_told = both(is_told, behind <= told * params.view.tangent_per_pixel.x * scale);
-    const float per_width = next < kSkyDepth ? kKnownThicknessPerWidth : kThicknessPerWidth;
+    const float per_width = i > 0              ? kHiddenThicknessPerWidth
+                            : next < kSkyDepth ? kKnownThicknessPerWidth
+                                               : kThicknessPerWidth;
     const bool is_within_run =
         kThickness == kThicknessEndless || here[i].least <= thickness_of(r, here[i], place, z, per_width);
     const bool is_within = next < 0.0 ? behind <= -next - z : is_within_told ? true : is_within_run;

@@ -120,6 +120,32 @@ TEST(Shadow, of_a_box_stays_closed_at_a_radius_below_a_pixel) {
   }
 }
 
+/// The lit part of the pixels in the shadow, without those beside light.
+double lit_share(const Rendering& rendering, const Scene& scene, const Light& light, const std::vector<float>& shadow) {
+  int count = 0, lit = 0;
+  for (std::size_t i = 0; i < shadow.size(); i++) {
+    const Hit& hit = rendering.hits[i];
+    if (hit.primitive != 0 || is_lit(scene, hit, light)) continue;
+    count++;
+    lit += shadow[i] > 0.5F;
+  }
+  EXPECT_GT(count, 100);
+  return double(lit) / count;
+}
+
+// A pixel alone may hold the place where the ray comes from before a surface to behind it.
+TEST(Shadow, of_wires_a_pixel_wide_is_there) {
+  Scene scene;
+  scene.primitives.emplace_back(kGround);
+  for (int i = -3; i <= 3; i++) scene.add(parallelepiped({0.3 * i, 0, 0}, {0.03, 0, 0}, {0, 0.005, 0}, {0, 0, 1}));
+  const Shot shot = Shot::perspective({0, -3, 1.5}, {0, 0, 0.3}, 45, 160, 120);
+  const Rendering rendering = render(scene, shot);
+  const Light light = sun({0.4, -0.9, 0.5});  // nearly along the eye's rays, so a step changes depth by much
+  const auto shadow = shadows(rendering.frame, {seen_by(shot, light)}, settings_of(0.5));
+  // Wires of less than two pixels have holes, and rays pass between two pixels.
+  EXPECT_LE(lit_share(rendering, scene, light, shadow), 0.2);
+}
+
 TEST(Shadow, of_a_soft_sun_is_the_part_of_it_that_is_seen) {
   const Scene scene = box_on_floor();
   const Shot shot = Shot::perspective({0, -3, 3}, {0, -0.5, 0}, 45, 160, 120);
