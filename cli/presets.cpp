@@ -81,7 +81,7 @@ std::vector<std::string> files_of_name(const std::string& name) {
 /// program. Another word is a file beside the preset, or at a whole path.
 std::string base_file(const std::string& file, std::string name) {
   if (files_of_name(name).empty()) {
-    const std::string beside = (fs::path(file).parent_path() / name).string();
+    const std::string beside = path_from(fs::path(file).parent_path().string(), name);
     if (is_file(beside)) return beside;
     const auto names = preset_names();
     const auto known = std::ranges::find(names, lower_case(name), lower_case);
@@ -111,7 +111,7 @@ void find_beside(const fs::path& preset, OptionValue& value) {
   for (auto& word : value.words) {
     if (!value.row->names_file(word)) continue;
     refuse_token_of_folder(*value.row, word, preset.parent_path().string());
-    word = (preset.parent_path() / word).string();
+    word = path_from(preset.parent_path().string(), word);
   }
 }
 
@@ -190,7 +190,7 @@ PresetChain read_chain(const std::string& name) {
 }
 
 void refuse_token_of_folder(const SettingRow& row, const std::string& word, const std::string& folder) {
-  if (fs::path(word).is_absolute() || is_file((fs::path(folder) / word).string())) return;
+  if (fs::path(word).is_absolute() || is_file(path_from(folder, word))) return;
   if (const auto pattern = frame_pattern((fs::path(folder) / "_").string()))
     fail(
         ErrorKind::usage,
@@ -201,8 +201,10 @@ void refuse_token_of_folder(const SettingRow& row, const std::string& word, cons
 
 std::string project_file(const std::string& input) {
   std::error_code error;
+  fs::path at = fs::absolute(input, error);
   // In /show/../a.exr, /show is no folder above it.
-  for (fs::path at = fs::absolute(input, error).lexically_normal(); at != at.parent_path(); at = at.parent_path())
+  if (!is_on_share(at.string())) at = at.lexically_normal();
+  for (; at != at.parent_path(); at = at.parent_path())
     if (const std::string file = (at.parent_path() / "alcove.toml").string(); is_file(file)) return file;
   fail(ErrorKind::usage, "--project: there is no alcove.toml beside {} or in a folder above it", visible(input));
 }

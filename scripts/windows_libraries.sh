@@ -15,8 +15,10 @@ header_packages="libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libvulkan-d
 compiled_packages="libz-mingw-w64-dev"
 # The C and C++ libraries of the compiler, parts of which become parts of the program.
 runtime_packages="g++-mingw-w64-x86-64-posix mingw-w64-x86-64-dev"
+# An upgrade of this machine's own packages of them, such as a security update, builds the libraries again.
+own_packages="libpng-dev libdeflate-dev libimath-dev libopenexr-dev libfmt-dev libxxhash-dev"
 # Complete for these packages and this script.
-state=$(cat "$0" "$toolchain" <(dpkg-query -W $header_packages $compiled_packages $runtime_packages) | sha256sum)
+state=$(cat "$0" "$toolchain" <(dpkg-query -W $own_packages $header_packages $compiled_packages $runtime_packages) | sha256sum)
 [ "$(cat "$folder/complete" 2>/dev/null)" != "$state" ] || exit 0
 rm -rf "$folder"
 sources=$folder/sources

@@ -122,6 +122,23 @@ same listed/one.exr draft.exr "a list of frames"
 printf 'camera = %s\nradius = 0.35\npreset = "draft"\n' "'$(path "$camera")'" >preset.toml
 windows run "$frame" -q --preset 'Z:'"${folder//\//\\}"'\preset.toml' -o preset.exr
 passed "drive letters and \\ in a list of frames and in a preset"
+cp "$frame" a,b.exr
+windows inspect a,b.exr | grep -qF 'run "a,b.exr"' || fail "PowerShell would cut a name at its comma"
+passed "a name with a comma is quoted"
+mkdir -p "$WINEPREFIX/dosdevices/unc/server" show/shots
+ln -s "$folder" "$WINEPREFIX/dosdevices/unc/server/share"
+share='\\server\share'
+cp "$frame" show/shots/a.exr
+line=$(printf 'camera = %s\nradius = 0.35\n' "'$share${camera#"$folder"}'")
+printf '[[frame]]\nname = "one"\ninput = %s\n%s' "'$share\show/shots/a.exr'" "$line" >share.toml
+windows run "$(path "$folder")\\share.toml" -q --preset draft -o "$share\\shared\\{name}.exr"
+same shared/one.exr draft.exr "a list of frames on a share"
+printf '%s\npreset = "draft"\n' "$line" >show/alcove.toml
+windows run "$share\\show\\shots\\a.exr" -q --project -o shared.exr
+same shared.exr draft.exr "the preset of a project on a share"
+windows run frame.exr -q --preset "$(path "$folder")\\show\\alcove.toml" -o named.exr
+same named.exr draft.exr "a preset that names a share"
+passed "\\\\server\\share in a list of frames, in a preset and with --project"
 
 step "a sequence"
 mkdir seq
@@ -249,6 +266,14 @@ same locked.exr draft.exr "the locked file"
 passed "a locked file is named, and stays as it was"
 expect 4 "could not make a temporary file" ao windows --preset draft -o 'Z:\sys\kernel\ao.exr'
 passed "a folder that cannot be written is named"
+mkdir late
+for i in 1 2; do cp "$frame" late/in.000$i.exr; done
+: >late/out.0002.exr
+chmod a-w late/out.0002.exr
+expect 4 "out.0002.exr: is read-only" windows run 'late\in.####.exr' --camera "$camera" --radius 0.35 -o 'late\out.####.exr'
+[ ! -e late/out.0001.exr ] || fail "a run begins that cannot replace its last file"
+expect 4 "Windows keeps this name for a device" ao windows --preset draft -o 'late\Aux.exr'
+passed "a read-only file, and a device's name, are refused before the run"
 mkdir case
 expect 2 "case" ao windows --preset draft -o 'case\AO.exr' --stats 'case\ao.exr'
 passed "names that differ in case only are one file"

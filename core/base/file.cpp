@@ -28,9 +28,11 @@ std::string unfinished_name(const std::string& folder) {
   return (fs::path(folder) / fmt::format(".alcove-{}-{:08x}.tmp", process_id(), std::random_device()())).string();
 }
 
+constexpr bool kIsWindows = fs::path::preferred_separator == '\\';
+
 /// Windows takes names for one that differ in case only, or in dots and blanks at their end.
 std::string plain_name(std::string name) {
-  if (fs::path::preferred_separator == '/') return name;
+  if (!kIsWindows) return name;
   name.erase(name.find_last_not_of(". ") + 1);
   return lower_case(name);
 }
@@ -114,6 +116,10 @@ void require_writable(const std::string& path, const char* option) {
   const auto status = fs::status(path, error);
   if (fs::exists(status) && !fs::is_regular_file(status))
     fail(ErrorKind::output, "{}: is no regular file; {} names the file to write", path, option);
+  if (kIsWindows && fs::exists(status) && (status.permissions() & fs::perms::owner_write) == fs::perms::none)
+    fail(ErrorKind::output, "{}: is read-only, so that Windows does not replace it ({})", path, option);
+  if (fs::absolute(fs::path(path).filename(), error).string().starts_with(R"(\\.\)"))  // aux.exr, nul ...
+    fail(ErrorKind::output, "{}: Windows keeps this name for a device; {} names the file to write", path, option);
 }
 
 void require_makeable(const std::string& path, const char* option) {
@@ -207,6 +213,12 @@ std::string folder_of(const std::string& path) {
 
 std::string folder_prefix(const std::string& path) {
   return path.substr(0, path.size() - fs::path(path).filename().string().size());
+}
+
+bool is_on_share(const std::string& path) { return kIsWindows && path.find_first_not_of("/\\") == 2; }
+
+std::string path_from(const std::string& folder, const std::string& path) {
+  return is_on_share(path) ? path : (fs::path(folder) / path).string();
 }
 
 }  // namespace alcove

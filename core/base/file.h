@@ -93,5 +93,9 @@ int remove_unfinished(const std::string& folder);
 std::string folder_of(const std::string& path);
 /// The part of a path before the file's name, as it is spelled, with the separator; "" if it names no folder.
 std::string folder_prefix(const std::string& path);
+/// Whether a path is on a share of Windows, "\\server\share\...". GCC 12 looks for it on the folder's drive.
+bool is_on_share(const std::string& path);
+/// A path that a text in a folder names: from there, unless it is whole.
+std::string path_from(const std::string& folder, const std::string& path);
 
 }  // namespace alcove

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/text.h"
 
 namespace alcove {
@@ -14,29 +15,29 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The files of a key that has one or two; none where it is not there.
-std::vector<std::string> files_of(const TomlTable& table, const char* key, const fs::path& folder) {
+std::vector<std::string> files_of(const TomlTable& table, const char* key, const std::string& folder) {
   std::vector<std::string> paths;
   if (!table.values.contains(key)) return paths;
   const auto* list = table.values[key].as_array();
-  if (!list) return {(folder / table.text(key)).string()};
+  if (!list) return {path_from(folder, table.text(key))};
   for (const auto& entry : *list) {
     const auto name = entry.value<std::string>();
     if (!name || name->empty()) table.refuse(key, "must be one file or two");
-    paths.push_back((folder / *name).string());
+    paths.push_back(path_from(folder, *name));
   }
   if (paths.empty() || paths.size() > 2) table.refuse(key, "must be one file or two");
   return paths;
 }
 
-std::string file_of(const TomlTable& table, const char* key, const fs::path& folder) {
-  return table.values.contains(key) ? (folder / table.text(key)).string() : "";
+std::string file_of(const TomlTable& table, const char* key, const std::string& folder) {
+  return table.values.contains(key) ? path_from(folder, table.text(key)) : "";
 }
 
-ListedFrame frame_of(const TomlTable& table, const fs::path& folder) {
+ListedFrame frame_of(const TomlTable& table, const std::string& folder) {
   std::set<std::string> known{"name", "input", "camera", "radius", "truth", "reference", "cpu-reference"};
   for (const auto& row : kLimitTable) known.insert(row.key());
   table.require_keys(known);
-  ListedFrame frame{table.text("name"), (folder / table.text("input")).string()};
+  ListedFrame frame{table.text("name"), path_from(folder, table.text("input"))};
   frame.camera = file_of(table, "camera", folder);
   if (table.values.contains("radius")) frame.radius = table.positive("radius");
   frame.truth = files_of(table, "truth", folder);

@@ -45,11 +45,12 @@ int descriptor_of(HANDLE handle) { return int(reinterpret_cast<std::intptr_t>(ha
 /// A handle that is closed at the end.
 using Handle = std::unique_ptr<void, decltype([](HANDLE handle) { ::CloseHandle(handle); })>;
 
-/// Opens a file or a folder that exists, for others as free as if it were not open; null if that fails.
-Handle open_shared(const std::string& path, DWORD access) {
+/// Opens a file, or a folder that exists, for others as free as if it were not open; null if that fails.
+Handle open_shared(const std::string& path, DWORD access, DWORD manner = OPEN_EXISTING,
+                   DWORD flags = FILE_FLAG_BACKUP_SEMANTICS) {
   const HANDLE handle =
-      ::CreateFileW(wide(path).c_str(), access, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
-                    OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, nullptr);
+      ::CreateFileW(wide(path).c_str(), access, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr, manner,
+                    flags, nullptr);
   return Handle(handle == INVALID_HANDLE_VALUE ? nullptr : handle);
 }
 
@@ -83,8 +84,6 @@ BOOL WINAPI remember_event(DWORD event) {
   ::Sleep(INFINITE);
   return TRUE;
 }
-
-UINT code_page_before = 0;
 
 }  // namespace
 
@@ -143,8 +142,8 @@ void prepare_streams() {
   for (FILE* stream : {stdin, stdout, stderr}) ::_setmode(::_fileno(stream), _O_BINARY);
   _fmode = _O_BINARY;
   // Terminals show UTF-8 for as long as the program runs.
-  code_page_before = ::GetConsoleOutputCP();
-  if (code_page_before && ::SetConsoleOutputCP(CP_UTF8)) std::atexit([] { ::SetConsoleOutputCP(code_page_before); });
+  static const UINT before = ::GetConsoleOutputCP();
+  if (before && ::SetConsoleOutputCP(CP_UTF8)) std::atexit([] { ::SetConsoleOutputCP(before); });
 }
 
 bool errors_go_to_terminal() {
@@ -185,11 +184,8 @@ std::string config_home() { return folder_of_variable(L"APPDATA"); }
 std::string file_id(const std::string& path) {
   const Handle file = open_shared(path, 0);
   FILE_ID_INFO id{};
-  if (file && ::GetFileInformationByHandleEx(file.get(), FileIdInfo, &id, sizeof(id))) {
-    std::string text = std::to_string(id.VolumeSerialNumber) + ":";
-    for (const auto part : id.FileId.Identifier) text += std::to_string(part) + ".";
-    return text;
-  }
+  if (file && ::GetFileInformationByHandleEx(file.get(), FileIdInfo, &id, sizeof(id)))
+    return {reinterpret_cast<const char*>(&id), sizeof(id)};
   BY_HANDLE_FILE_INFORMATION old{};
   const bool is_known = file && ::GetFileInformationByHandle(file.get(), &old);
   if (!is_known || (old.nFileIndexHigh == 0 && old.nFileIndexLow == 0)) return "";  // some servers number no files
@@ -222,16 +218,6 @@ void sync_folder(const std::string&) {}  // rename_over() writes through
 
 namespace {
 
-/// Opens a file to write it.
-std::error_code open_to_write(const std::string& path, DWORD manner, DWORD flags, int& descriptor) {
-  const HANDLE file =
-      ::CreateFileW(wide(path).c_str(), GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
-                    manner, FILE_ATTRIBUTE_NORMAL | flags, nullptr);
-  if (file == INVALID_HANDLE_VALUE) return last_error();
-  descriptor = descriptor_of(file);
-  return {};
-}
-
 /// Marks a file as being written by a lock far beyond its end: others cannot read what a lock covers.
 bool lock(int descriptor, DWORD flags) {
   OVERLAPPED place{};
@@ -243,14 +229,18 @@ bool lock(int descriptor, DWORD flags) {
 
 std::error_code LockedFile::make(const std::string& path) {
   close();
-  if (const auto error = open_to_write(path, CREATE_NEW, 0, descriptor_)) return error;
+  Handle file = open_shared(path, GENERIC_WRITE, CREATE_NEW, FILE_ATTRIBUTE_NORMAL);
+  if (!file) return last_error();
+  descriptor_ = descriptor_of(file.release());
   is_locked_ = lock(descriptor_, 0);  // waits for a process that looks whether the file is abandoned
   return {};
 }
 
 std::error_code LockedFile::open_abandoned(const std::string& path) {
   close();
-  if (const auto error = open_to_write(path, OPEN_EXISTING, FILE_FLAG_OPEN_REPARSE_POINT, descriptor_)) return error;
+  Handle file = open_shared(path, GENERIC_WRITE, OPEN_EXISTING, FILE_FLAG_OPEN_REPARSE_POINT);
+  if (!file) return last_error();
+  descriptor_ = descriptor_of(file.release());
   is_locked_ = lock(descriptor_, LOCKFILE_FAIL_IMMEDIATELY);
   if (is_locked_) return {};
   const std::error_code error = last_error();

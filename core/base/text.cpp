@@ -215,8 +215,8 @@ std::string suggestion(std::string_view name, std::span<const std::string> candi
 
 std::string for_shell(const std::string& word) {
   constexpr bool kIsWindows = std::filesystem::path::preferred_separator == '\\';
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%-+=,:\\";
-  const std::string_view plain = kIsWindows ? kPlain : kPlain.substr(0, kPlain.size() - 1);
+  constexpr std::string_view kPlain = "\\abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./%-+=:,";
+  const std::string_view plain = kPlain.substr(kIsWindows ? 0 : 1, kPlain.size() - 1);  // PowerShell cuts at commas
   if (word.find_first_not_of(plain) == word.npos && !word.empty()) return word;
   if (kIsWindows) return '"' + word + '"';  // no name of a file has a quote there
   std::string text = "'";
