@@ -110,7 +110,7 @@ constexpr const char* kExitStatus =
 constexpr const char* kEnvironment =
     ".SH ENVIRONMENT\n.TP\nALCOVE_PRESETS\nThe folder of presets.\n.TP\nALCOVE_PRESET_PATH\n"
     "Folders of further presets, with colons, which come first.\n.TP\nOCIO\nThe colour configuration of composites "
-    "and previews.\n.TP\nXDG_CACHE_HOME\nWhere compiled kernels are kept, in the folder alcove.\n";
+    "and previews.\n";
 
 std::string see_also(const std::string& but) {
   std::vector<std::string> pages;

@@ -65,7 +65,7 @@ done >"$folder/dead"
 [ ! -s "$folder/dead" ] || fail "dead links of installed pages:
 $(cat "$folder/dead")"
 mkdir "$folder/elsewhere"
-# Of the environment only where compiled kernels lie, and what sanitizers are told.
+# Of the environment only where the driver keeps compiled kernels, and what sanitizers are told.
 alone() { (cd "$folder/elsewhere" && env -i XDG_CACHE_HOME="${XDG_CACHE_HOME:-$folder/cache}" ASAN_OPTIONS="${ASAN_OPTIONS:-}" "$folder/moved/bin/alcove" "$@"); }
 alone run "$examples/interior.gbuffer.exr" --camera "$examples/interior.camera.json" --beauty "$examples/interior.beauty.exr" --radius 0.35 --preset draft \
   -o ao.exr --composite composite.exr --preview ao.png --set debug=view-z

@@ -178,7 +178,6 @@ std::uint64_t memory_left_in_groups(const std::string&) { return kNoMemoryLimit;
 std::uint64_t memory_of_slurm_job() { return kNoMemoryLimit; }
 std::uint64_t free_memory() { return memory_left_on_machine(); }
 
-std::string cache_home() { return folder_of_variable(L"LOCALAPPDATA"); }
 std::string config_home() { return folder_of_variable(L"APPDATA"); }
 
 std::string file_id(const std::string& path) {
