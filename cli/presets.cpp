@@ -201,7 +201,7 @@ void refuse_token_of_folder(const SettingRow& row, const std::string& word, cons
 
 std::string project_file(const std::string& input) {
   std::error_code error;
-  fs::path at = fs::absolute(input, error);
+  fs::path at = is_on_share(input) ? fs::path(input) : fs::absolute(input, error);
   // In /show/../a.exr, /show is no folder above it.
   if (!is_on_share(at.string())) at = at.lexically_normal();
   for (; at != at.parent_path(); at = at.parent_path())

@@ -128,15 +128,15 @@ passed "a name with a comma is quoted"
 mkdir -p "$WINEPREFIX/dosdevices/unc/server" show/shots
 ln -s "$folder" "$WINEPREFIX/dosdevices/unc/server/share"
 share='\\server\share'
-cp "$frame" show/shots/a.exr
+cp "$frame" show/shots/
 line=$(printf 'camera = %s\nradius = 0.35\n' "'$share${camera#"$folder"}'")
-printf '[[frame]]\nname = "one"\ninput = %s\n%s' "'$share\show/shots/a.exr'" "$line" >share.toml
+printf '[[frame]]\nname = "one"\ninput = %s\n%s' "'$share\show/shots/interior.gbuffer.exr'" "$line" >share.toml
 windows run "$(path "$folder")\\share.toml" -q --preset draft -o "$share\\shared\\{name}.exr"
 same shared/one.exr draft.exr "a list of frames on a share"
 printf '%s\npreset = "draft"\n' "$line" >show/alcove.toml
-windows run "$share\\show\\shots\\a.exr" -q --project -o shared.exr
+windows run "$share\\show\\shots\\interior.gbuffer.exr" -q --project -o shared.exr
 same shared.exr draft.exr "the preset of a project on a share"
-windows run frame.exr -q --preset "$(path "$folder")\\show\\alcove.toml" -o named.exr
+windows run "$frame" -q --preset "$(path "$folder")\\show\\alcove.toml" -o named.exr
 same named.exr draft.exr "a preset that names a share"
 passed "\\\\server\\share in a list of frames, in a preset and with --project"
 

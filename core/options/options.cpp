@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/options/option_conflicts.h"
 
@@ -249,7 +250,8 @@ namespace {
 /// The value of a row as a line of a preset. Files have whole paths, since a preset may lie anywhere.
 std::string preset_line(const SettingRow& row, const Settings& settings) {
   Words words = row.words(settings);
-  for (auto& word : words) word = toml_of(row.names_file(word) ? std::filesystem::absolute(word).string() : word);
+  for (auto& word : words)
+    word = toml_of(row.names_file(word) && !is_on_share(word) ? std::filesystem::absolute(word).string() : word);
   const std::string list = fmt::format("{}", fmt::join(words, ", "));
   return fmt::format("{}={}\n", row.key(), words.size() > 1 ? "[" + list + "]" : list);
 }
