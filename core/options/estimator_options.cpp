@@ -150,12 +150,11 @@ void add_search_rows(std::vector<SettingRow>& rows) {
       .idle(unless_lights);
   pixels
       .number("sun-azimuth", &S::sun_azimuth, "degrees", between(-360, 360),
-              "of a sun of --lights: from x counterclockwise, seen from above")
+              "a sun's azimuth, counterclockwise from x, seen from above")
       .idle(unless_lights);
-  pixels
-      .number("sun-elevation", &S::sun_elevation, "degrees", between(-90, 90), "of a sun of --lights, above the ground")
+  pixels.number("sun-elevation", &S::sun_elevation, "degrees", between(-90, 90), "a sun's elevation above the ground")
       .idle(unless_lights);
-  pixels.text("sun", &S::sun, "NAME", "which sun of --lights these two turn; else its only one")
+  pixels.text("sun", &S::sun, "NAME", "the sun of --lights that these two turn; else its only one")
       .idle([](const Settings& all) {
         const auto& e = all.estimator;
         return unless_given(e.sun_azimuth || e.sun_elevation, "--set sun-azimuth and no --set sun-elevation");
