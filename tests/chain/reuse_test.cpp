@@ -523,7 +523,7 @@ TEST(Reuse, of_what_is_seen_gives_every_shaping_the_bits_of_a_run_of_its_own) {
       [](auto& s) { s.resolution = Resolution::half; }, [](auto& s) { s.estimator = Estimator::crytek; }};
   for (const auto& search : searches) {
     gpu::Recorder gpu(device());
-    std::optional<Seen> seen;
+    std::optional<FrameVisibility> visible;
     FrameInputs inputs;
     for (auto& look : looks) {
       look.estimator.radius = 0.5;
@@ -531,10 +531,10 @@ TEST(Reuse, of_what_is_seen_gives_every_shaping_the_bits_of_a_run_of_its_own) {
       search(look.estimator);
       if (!seen) {
         inputs = upload_lit(gpu, frame);
-        seen = see(gpu, inputs, look.estimator, look.output);
+        visible = frame_visibility(gpu, inputs, look.estimator, look.output);
         gpu.run();
       }
-      const FrameOutputs outputs = results_of(gpu, inputs, *seen, look.estimator, look.output);
+      const FrameOutputs outputs = results_of(gpu, inputs, *visible, look.estimator, look.output);
       gpu.run();
       for (const auto& pass : gpu.passes()) EXPECT_TRUE(pass.name == "shape" || pass.name == "composite") << pass.name;
       const std::vector<float> shared = results_in(outputs);

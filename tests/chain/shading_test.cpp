@@ -136,7 +136,7 @@ Planes composed(const Planes& ao, double gain, double least) {
   HostFrame frame = ball().frame;
   return pass(frame, [&](const GBuffer& gbuffer, FrameInputs& inputs) -> gpu::Buffer& {
     inputs[RawPlane::beauty] = &given("test beauty", Planes(3 * ao.size(), 1.0f));
-    return *composite(recorder(), gbuffer, &given("test ao", ao), inputs, {.gain = gain}, least);
+    return *composite(recorder(), gbuffer, &given("test ao", ao), nullptr, inputs, {.gain = gain}, least);
   });
 }
 
