@@ -529,7 +529,7 @@ TEST(Reuse, of_what_is_seen_gives_every_shaping_the_bits_of_a_run_of_its_own) {
       look.estimator.radius = 0.5;
       look.output.aovs = "ao,ao-scales";
       search(look.estimator);
-      if (!seen) {
+      if (!visible) {
         inputs = upload_lit(gpu, frame);
         visible = frame_visibility(gpu, inputs, look.estimator, look.output);
         gpu.run();
