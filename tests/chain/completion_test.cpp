@@ -3,7 +3,7 @@
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/reuse.h"
-#include "core/run/frame_run.h"
+#include "core/run/frame_tally.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/site_frames.h"
