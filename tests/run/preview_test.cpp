@@ -75,9 +75,9 @@ TEST_F(Preview, of_a_run_without_ao_is_the_shadow_of_the_first_light) {
   const auto shadow = image.plane("shadow-key.Y");
   ASSERT_NE(std::ranges::count(shadow, 0), std::ranges::ssize(shadow)) << "all is dark";
   ASSERT_GT(std::ranges::count(shadow, 0), 0) << "nothing is dark";
-  EXPECT_THAT(picture_in(png).planes, ElementsAre(ElementsAreArray(shadow)));
+  EXPECT_THAT(picture_in(png).planes, ElementsAre(testing::ElementsAreArray(shadow)));
   done({"--lights", lights, "--aov", "ao,shadow", "--preview", png});
-  EXPECT_THAT(picture_in(png).planes, Not(ElementsAre(ElementsAreArray(shadow))));
+  EXPECT_THAT(picture_in(png).planes, Not(ElementsAre(testing::ElementsAreArray(shadow))));
 }
 
 TEST_F(Preview, of_the_composite_may_be_of_the_ao_or_have_the_beauty_beside_it) {
