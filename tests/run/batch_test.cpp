@@ -236,7 +236,7 @@ TEST_F(Batch, resume_says_why_frames_are_computed_again_and_no_pace_of_those_tha
   fs::remove(output(3));  // which is not made again
   expect_said({}, "frame 2: --output is no whole file of Alcove");
   expect_said({"--set", "intensity=0.5"}, "frames 1-3: other settings made them");
-  expect_said({"--radius", "0.5"}, "frames 1-3: other settings made them, with the radius 1 and not 0.5");
+  expect_said({"--radius", "0.5"}, "frames 1-3: other settings made them, with the radius 1, not 0.5");
 }
 
 TEST_F(Batch, a_dry_run_says_how_many_frames_there_are_at_once_and_why) {
