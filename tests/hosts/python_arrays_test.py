@@ -152,7 +152,7 @@ class Arrays(unittest.TestCase):
     def test_what_is_wrong_is_an_exception(self):
         good = {"radius": 0.35, "fov": 65}
         for kind, sentence, arguments in (
-                (alcove.UsageError, "with 'radius' how far", {"fov": 65}), (alcove.UsageError, "no camera.* 'fov' ", {"radius": 0.35}),
+                (alcove.UsageError, "give 'radius', the reach of occluders", {"fov": 65}), (alcove.UsageError, "no camera.* 'fov' ", {"radius": 0.35}),
                 (alcove.UsageError, r"no option slizes \(did you mean slices", {**good, "slizes": 3}), (alcove.UsageError, "out of range", {**good, "slices": 100}),
                 (alcove.UsageError, "not available in the library", {**good, "beauty": "b.exr"}), (alcove.UsageError, "there is no preset", {**good, "preset": "nothing"}),
                 (alcove.UsageError, "there is no AOV", {**good, "aov": "oa"}), (alcove.InputError, "camera.json", {"radius": 1, "camera": "/nowhere/camera.json"}),
