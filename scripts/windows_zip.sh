@@ -19,6 +19,10 @@ licences=$root/share/doc/alcove/libraries
 mkdir -p "$licences"
 cp "$build"/libraries/licences/* "$licences/"
 cp LICENSE "$root/LICENSE.txt"
+{  # the first steps, without links; the rest is in the manual
+  sed -n '/^## Windows$/,$p' docs/getting-started.md | sed -E 's/\[([^]]*)\]\([^)]*\)/\1/g; s/^## .*/Alcove on Windows/; s/VERSION/'"$version"'/g'
+  printf '\nThe manual is share\\doc\\alcove\\README.md, beside docs and examples.\n'
+} | sed 's/$/\r/' >"$root/README.txt"
 # What windows has no loader for would not start: only its own libraries may be asked for.
 for program in "$root"/bin/*; do
   if x86_64-w64-mingw32-objdump -p "$program" | sed -n 's/.*DLL Name: //p' |

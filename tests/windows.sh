@@ -36,6 +36,7 @@ export DISPLAY
 wineboot -i >/dev/null 2>&1
 unzip -q "$zip" -d "$folder"
 root=$(echo "$folder"/alcove-*)
+grep -qF 'bin\alcove doctor' "$root/README.txt" || fail "the first steps are not at the top of the zip"
 frame=$root/share/doc/alcove/examples/interior.gbuffer.exr
 camera=$root/share/doc/alcove/examples/interior.camera.json
 beauty=$root/share/doc/alcove/examples/interior.beauty.exr
