@@ -322,7 +322,7 @@ TEST_F(Doubts, a_camera_that_the_pixels_refute_is_refused_or_noted_with_the_righ
            {"inverted", true, placed(camera_to_world(1)), Reply::refused, inverse},
            {"inverted, and the space is said", true, placed(camera_to_world(1), in_world), Reply::refused, inverse},
            {"of OpenCV", true, placed(of_opencv, in_world), Reply::refused, {"OpenCV"}},
-           {"with another axis up", true, placed(other_up, in_world), Reply::refused, {"different up axes"}},
+           {"with another axis up", true, placed(other_up, in_world), Reply::refused, {"another axis up"}},
        }) {
     SCOPED_TRACE(k.what);
     give(k.camera);

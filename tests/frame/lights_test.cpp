@@ -78,6 +78,7 @@ TEST(Lights, with_a_misspelt_or_senseless_field_are_refused_by_name) {
   expect_refused(file_of(R"("direction": [0, 0, 1])"), "\"kind\" is missing");
   expect_refused(file_of(R"("kind": "spot", "direction": [0, 0, 1])"), "sun or point");
   expect_refused(file_of(R"("kind": "sun")"), "\"direction\" is missing");
+  expect_refused(file_of(kSun + R"(, "position": [0, 0, 1])"), "a sun has \"direction\" and \"angular_diameter\", not");
   expect_refused(file_of(R"("kind": "sun", "direction": [0, 0, 0])"), "no length");
   for (const char* bad : {"[0, 1]", "[0, 1, null]", "[0, 1, 1e400]", "[0, 1, \"z\"]", "5"})
     expect_refused(file_of(R"("kind": "sun", "direction": )" + std::string(bad)), "");

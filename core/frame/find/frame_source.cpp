@@ -142,6 +142,9 @@ void find_shadowed(FrameSource& source, const ChannelSearch& search, std::size_t
   auto& lights = source.reading.ambient;
   for (const auto& [name, layer] : shadow_layers_of(settings)) {
     const auto light = search.find(file, names, layer, false);
+    if (light.front() == source.channels[RawPlane::beauty].front())
+      fail(ErrorKind::usage, "--set shadow-layers: {} is the whole beauty: name the layer of the light {} alone", layer,
+           name);
     std::size_t at = 0;
     while (at < lights.size() && source.channels[RawPlane::indirect][3 * at] != light.front()) at++;
     if (at == lights.size()) add_light(source, search, light, "", std::nullopt);

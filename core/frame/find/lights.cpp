@@ -116,6 +116,10 @@ LightsFile::Entry entry_of(LightReader reader, const Json& json) {
                                                   : std::vector<std::string>{"direction", "angular_diameter"};
   const std::string where = fields.front();
   fields.insert(fields.end(), {"name", "kind", "space", "frames"});
+  for (const char* other : {"position", "radius", "direction", "angular_diameter"})
+    if (json.contains(other) && std::ranges::find(fields, other) == fields.end())
+      reader.refuse(fmt::format("a {} has \"{}\" and \"{}\", not \"{}\"", light.is_lamp ? "point" : "sun", fields[0],
+                                fields[1], other));
   reader.require_known(json, fields);
   fields.resize(2);
   fields.emplace_back("frame");
@@ -164,9 +168,13 @@ void take_turn(LightsFile& file, const EstimatorSettings& settings) {
     if (of_frames.begin()->second.is_lamp) continue;
     if (settings.sun.empty() || settings.sun == name) file.sun = i, suns.push_back(name);
   }
-  if (suns.size() != 1)
-    fail(ErrorKind::usage, "--set sun-azimuth and sun-elevation: {} has {} {}: --set sun=NAME says which sun they turn",
-         file.path, suns.empty() ? "no sun" : "the suns", suns.empty() ? settings.sun : list_of(suns));
+  if (suns.empty())
+    fail(ErrorKind::usage, "--set sun-azimuth and sun-elevation turn a sun: {} lists no sun{}", file.path,
+         settings.sun.empty() ? "" : " " + settings.sun);
+  if (suns.size() > 1)
+    fail(ErrorKind::usage,
+         "--set sun-azimuth and sun-elevation: {} has the suns {}: --set sun=NAME says which they turn", file.path,
+         list_of(suns));
   file.azimuth = settings.sun_azimuth;
   file.elevation = settings.sun_elevation;
 }
@@ -220,7 +228,7 @@ std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::
   std::string why;
   const Json top = json_of(text, kDeepestLights, why);
   if (!top.is_object() || !top.contains("lights") || !top["lights"].is_array())
-    reader.refuse(fmt::format("it must be a JSON object with a list \"lights\"{}", why));
+    reader.refuse("it must be a JSON object with a list \"lights\"" + why);
   reader.require_known(top, {"lights", "up"});
   file.is_y_up = top.contains("up") && reader.word(top["up"], "up", {"z", "y"}) == "y";
   const Json& lights = top["lights"];

@@ -57,7 +57,7 @@ std::vector<Hypothesis> turned_worlds(const NormalPlanes& planes) {
       "second and its third row negated",
       product(kOpenCv, inverse));
   for (const Matrix3& up : {kYUp, transposed(kYUp)})
-    add("its world_to_camera and the normals seem to have different up axes (y, or z): give it for the world of the "
+    add("its world_to_camera seems to have another axis up than the normals (y, or z): give it for the world of the "
         "normals",
         product(given, up));
   std::ranges::move(other_rotations(planes), std::back_inserter(turned));
