@@ -173,7 +173,7 @@ bool are_one(Receiver r, float z, float last_z) {
 
 ivec2 pixel_of_step(Receiver r, Ray ray, int k) { return r.pixel + ivec2(round(ray.step_px * float(k))); }
 
-/// Whether two neighbouring pixels of any slope show one plane.
+/// Whether two neighbouring pixels of any slope show one plane, by the normals of what they show.
 bool are_coplanar(Receiver r, Ray ray, int k, float z) {
   const View view = params.view;
   const ivec2 pixel = pixel_of_step(r, ray, k), last = pixel_of_step(r, ray, k - 1);
@@ -181,7 +181,8 @@ bool are_coplanar(Receiver r, Ray ray, int k, float z) {
   const float last_z = occluder_depth[last_index];
   const Facet here = Facet(position_of(view, vec2(pixel) + 0.5, z), unpack_normal(normal[index]), z);
   const Facet there = Facet(position_of(view, vec2(last) + 0.5, last_z), unpack_normal(normal[last_index]), last_z);
-  return are_coplanar(view, there, here, kPlaneDot, kPlaneOff);
+  const bool are_shown = z == depth[index] && last_z == depth[last_index];
+  return are_shown && are_coplanar(view, there, here, kPlaneDot, kPlaneOff);
 }
 
 /// 4. How thick a run is, in scene units along the eye's ray.

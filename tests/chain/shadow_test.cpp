@@ -145,6 +145,18 @@ TEST(Shadow, of_wires_a_pixel_wide_is_there) {
   EXPECT_LE(lit_share(rendering, scene, light, shadow), 0.2);
 }
 
+// The depths of neighbouring pixels differ by fourteen times their width, so they are one surface by its plane alone.
+TEST(Shadow, of_a_sheet_seen_nearly_edge_on_is_closed) {
+  Scene scene;
+  scene.primitives.emplace_back(kGround);
+  scene.add(parallelepiped({-1, 0, 1.06}, {2, 0, 0}, {0, 1, -0.06}, {0, 0, 0.002}));
+  const Shot shot = Shot::perspective({0, -3, 1.5}, {0, 0, 0.3}, 45, 160, 120);
+  const Rendering rendering = render(scene, shot);
+  const Light light = sun({0.2, -0.6, 0.8});
+  const auto shadow = shadows(rendering.frame, {seen_by(shot, light)}, settings_of(0.5));
+  EXPECT_LE(lit_share(rendering, scene, light, shadow), 0.05);
+}
+
 TEST(Shadow, of_a_soft_sun_is_the_part_of_it_that_is_seen) {
   const Scene scene = box_on_floor();
   const Shot shot = Shot::perspective({0, -3, 3}, {0, -0.5, 0}, 45, 160, 120);
@@ -245,6 +257,7 @@ TEST(Shadow, of_a_hard_light_does_not_depend_on_the_seed_nor_on_the_units) {
   const std::vector<Light> lights{sun({0.5, 0.6, 0.3}), lamp({0.2, 0.5, -2})};
   EstimatorSettings settings = settings_of(0.5);
   const auto once = shadows(room, lights, settings);
+  for (const float either : {0.0F, 1.0F}) ASSERT_GT(std::ranges::count(once, either), 100);
   settings.seed = 7;
   settings.noise = Noise::animated;
   EXPECT_TRUE(same_bits(once, shadows(room, lights, settings)));

@@ -140,6 +140,18 @@ TEST(Lights, turn_a_sun_about_what_is_up) {
   expect_near(turned("", "view", {}, 0, left_handed), {0, 0, -1});
 }
 
+TEST(Lights, a_vertical_sun_has_no_azimuth_of_its_own) {
+  EstimatorSettings settings;
+  const auto in_view = [&] {
+    const auto lights = R"({"lights": [{"name": "a", "kind": "sun", "direction": [0, 1, 0], "space": "view"}]})";
+    return lights_of(lights, "lights.json", settings)->in_view({}, 0);
+  };
+  settings.sun_azimuth = 90;
+  expect_error(ErrorKind::usage, {"lights.json", "\"a\"", "vertical", "sun-elevation"}, [&] { in_view(); });
+  settings.sun_elevation = 0;
+  EXPECT_NEAR(in_view()[0].at[1], 0, 1e-12);
+}
+
 TEST(Lights, that_turn_must_be_one_sun) {
   EstimatorSettings settings;
   settings.sun_azimuth = 1;
@@ -147,10 +159,10 @@ TEST(Lights, that_turn_must_be_one_sun) {
   const auto refused = [&](const std::string& text, const std::vector<std::string>& words) {
     expect_error(ErrorKind::usage, words, [&] { lights_of(text, "lights.json", settings); });
   };
-  refused(file_of(kLamp), {"lights.json", "no sun", "--set sun"});
+  refused(file_of(kLamp), {"lights.json", "no sun", "--set sun-azimuth"});
   refused(two, {"a, b", "--set sun=NAME"});
   settings.sun = "c";
-  refused(two, {"no sun c"});
+  refused(two, {"no sun c", "--set sun=c"});
   settings.sun = "b";
   EXPECT_EQ(lights_of(two, "lights.json", settings)->sun, 1u);
 }

@@ -21,6 +21,7 @@ constexpr std::size_t kLongestName = 64;   // of a light: it is part of a channe
 constexpr std::size_t kLongestShown = 60;  // characters of a text of the file in a message
 constexpr double kFarthestLight = 1e12;    // scene units: kernels square it as a float
 constexpr double kWidestSun = 30;          // degrees: wider ones are no discs any more
+constexpr double kVertical = 1 - 1e-9;     // sine of an elevation from which the azimuth is rounding
 
 /// A text of the file for a message.
 std::string shown(const std::string& text) {
@@ -169,7 +170,8 @@ void take_turn(LightsFile& file, const EstimatorSettings& settings) {
     if (settings.sun.empty() || settings.sun == name) file.sun = i, suns.push_back(name);
   }
   if (suns.empty())
-    fail(ErrorKind::usage, "--set sun-azimuth and sun-elevation turn a sun: {} lists no sun{}", file.path,
+    fail(ErrorKind::usage, "{}: {} lists no sun{}",
+         settings.sun.empty() ? "--set sun-azimuth and sun-elevation" : "--set sun=" + settings.sun, file.path,
          settings.sun.empty() ? "" : " " + settings.sun);
   if (suns.size() > 1)
     fail(ErrorKind::usage,
@@ -207,6 +209,9 @@ std::vector<Light> LightsFile::in_view(const Camera& camera, int frame) const {
            "or the light in view space (--lights)",
            path, name);
     if (!in_world && camera.left_handed) light.at[2] = -light.at[2];
+    const std::size_t up = in_world && !is_y_up ? 2 : 1;
+    if (name == lights[sun].name && azimuth.has_value() != elevation.has_value() && std::abs(light.at[up]) > kVertical)
+      fail(ErrorKind::usage, "{}: light \"{}\" is vertical: give both --set sun-azimuth and sun-elevation", path, name);
     if (name == lights[sun].name) light.at = turned(light.at, azimuth, elevation, in_world && !is_y_up);
     if (in_world) light.at = times(*camera.view_from_world, light.at);
     if (in_world && light.is_lamp)
