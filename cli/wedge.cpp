@@ -158,15 +158,23 @@ WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::
     if (arguments[i].size() == 1 && !(parts.empty() && i + 1 == arguments.size())) continue;
     parts.push_back(name + (option == "--preset" ? without_shared_folder(arguments[i], value) : value));
   }
-  chosen.insert(chosen.end(), {"-o", usual_output(typed.input, "ao", ".exr")});
-  if (typed.no_composite.empty())
+  const auto settings_of = [&] {
+    RunOptions options;
+    (void)parse_run_options(chosen, options);
+    return options.settings;
+  };
+  const Settings of_values = settings_of();
+  const bool is_of_sun = turns_sun(of_values.estimator);
+  chosen.insert(chosen.end(), {"-o", usual_output(typed.input, is_of_sun ? "shadow" : "ao", ".exr")});
+  if (is_of_sun) chosen.insert(chosen.end(), {"--aov", "shadow"});
+  const bool shows_composite = !is_of_sun || !of_values.input.shadow_layers.empty();  // or it is the same in all looks
+  if (typed.no_composite.empty() && shows_composite)
     chosen.insert(chosen.end(), {"--composite", usual_output(typed.input, "composite", ".exr")});
   chosen.insert(chosen.end(), {"--preview", usual_output(typed.input, "preview", ".png")});
-  RunOptions options;
-  (void)parse_run_options(chosen, options);
+  const Settings settings = settings_of();
   for (auto& word : chosen) word = for_shell(word);
   return {fmt::format("{}", fmt::join(parts, ", ")), fmt::format("alcove run {}", fmt::join(chosen, " ")),
-          options.settings};
+          settings};
 }
 
 /// The radii that were typed, or half and twice the proposed one; and that.

@@ -78,6 +78,7 @@ constexpr NoteFacts kTable[] = {
     {no_indirect_light, "no-indirect-light", true, "the composite dims direct light too"},
     {light_passes, "light-passes", true, "the light passes do not add up to the beauty"},
     {sun_in_sky, "sun-in-sky", true, "nine colours do not hold the light of the sky"},
+    {dark_light, "dark-light", true, "a light reaches no surface, or is below the horizon"},
     {device_memory, "device-memory", false, "the device had too little memory at first"},
     {in_parts, "in-parts", false, "the frame was too large to compute at once", InHeader::nothing},
     {no_gpu, "no-gpu", false, "there is no GPU, so the CPU computed"},

@@ -74,6 +74,7 @@ enum class NoteCode {
   no_indirect_light,
   light_passes,
   sun_in_sky,
+  dark_light,
   // computing
   device_memory,
   in_parts,

@@ -256,7 +256,7 @@ ShownPicture beside(const ShownPicture& left, const ShownPicture& right) {
 ShownPicture preview_of(FrameSource& source, const Window& window, const FrameOutputs& outputs,
                         const DisplayTransform* transform, const OutputSettings& settings) {
   const std::string& style = settings.preview_style;
-  if (Wanted(settings).previews_shadow) return shown_plane(source, window, *outputs.shadow);
+  if (Wanted(settings).previews_shadow) return shown_plane(source, window, *outputs.shadow, settings.read_lights->sun);
   if (!outputs.composite || style == "ao") return shown_plane(source, window, *outputs.ao);
   const ShownPicture composite = shown_colors(source, window, outputs.composite, transform);
   return style == "split" ? beside(shown_colors(source, window, nullptr, transform), composite) : composite;

@@ -109,6 +109,13 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
   is_quick_ = is_quick_ || outputs.is_quick;
   add_surfaces(outputs);
   add_errors(outputs, computed);
+  if (outputs.shadow) {
+    const auto seen = outputs.shadow->as<const float>();
+    lit_.resize(seen.size() / computed.pixels());
+    for (std::size_t i = 0; i < lit_.size(); i++)
+      lit_[i] += std::uint64_t(std::ranges::count_if(seen.subspan(i * computed.pixels(), computed.pixels()),
+                                                     [](float part) { return part > 0; }));
+  }
   add_work(outputs, is_same);
 }
 
@@ -193,6 +200,17 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
     if (!settings.output.stats.empty() && !report_.occlusion) report_.occlusion.emplace();
   }
   note_repairs(source);
+  if (settings.output.read_lights) note_dark_lights(source, *settings.output.read_lights);
+}
+
+void FrameTally::note_dark_lights(const FrameSource& source, const LightsFile& lights) {
+  if (source.reading.supersampling > 1 || counts_.sky >= report_.pixels) return;  // whose pixels are no longer counted
+  for (std::size_t i = 0; i < std::min(lit_.size(), lights.lights.size()); i++)
+    if (lit_[i] <= counts_.sky)
+      report_.notes.push_back(
+          {NoteCode::dark_light,
+           fmt::format("the light \"{}\" reaches no surface of the frame (--lights)", lights.lights[i].name),
+           lights.path});
 }
 
 double FrameTally::estimates_of(const EstimatorSettings& settings) const {

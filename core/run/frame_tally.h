@@ -47,11 +47,13 @@ class FrameTally {
   /// The number of pixels with an estimate; if each has its own, of pixels that show surfaces.
   double estimates_of(const EstimatorSettings& settings) const;
   void note_repairs(const FrameSource& source);
+  void note_dark_lights(const FrameSource& source, const LightsFile& lights);
   void add(const gpu::PassTime& pass, gpu::PassTime& sum);
 
   FrameReport& report_;
   FrameTally* const taker_;
   FrameCounts counts_{};
+  std::vector<std::uint64_t> lit_;  // pixels that a light reaches, and sky; by the light
   DepthSample sample_;
   BehindSample behind_;
   std::uint64_t rows_of_others_ = 0;

@@ -262,7 +262,7 @@ void RunPreview::take_radii_of_depth(Notes& notes) {
                    frames.is_sequence() ? " for all frames" : "")});
 }
 
-void RunPreview::take_lights() {
+void RunPreview::take_lights(Notes& notes) {
   refuse_overwriting(plan());  // which says more than that an output is no lights file
   const auto lights = read_lights(settings_.output.lights, settings_.estimator);
   lights->require_frames(plan().frames());
@@ -272,14 +272,20 @@ void RunPreview::take_lights() {
     if (std::ranges::find(names, name) == names.end())
       fail(ErrorKind::usage, "--set shadow-layers={}:{}: {} has no light \"{}\"{}", name, layer, lights->path, name,
            suggestion(name, names));
+  for (const auto& name : lights->below_horizon(plan().frames().front()))
+    notes.push_back({NoteCode::dark_light,
+                     fmt::format("the sun \"{}\" is below the horizon: \"direction\" is the way to it, and \"up\" the "
+                                 "world's, {} (--lights)",
+                                 name, lights->is_y_up ? "y" : "z"),
+                     lights->path});
   plan_->set_lights(lights);
   require_distinct_channels(plan().settings());
 }
 
 Notes RunPreview::prepare() {
   check_settings(settings_);
-  if (!settings_.output.lights.empty()) take_lights();
   Notes notes;
+  if (!settings_.output.lights.empty()) take_lights(notes);
   if (depends_on_depth(settings_.estimator)) take_radii_of_depth(notes);
   add_new(notes, notes_on_names(plan()));
   return notes;

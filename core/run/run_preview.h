@@ -77,7 +77,7 @@ class RunPreview {
   std::vector<double> radii_of(int frame, const EstimatorSettings& estimator, const StandIns& stand_ins);
   DepthRadii radii_of_first(const EstimatorSettings& estimator, const StandIns& stand_ins);
   void propose_radius(MissingOptions& missing);
-  void take_lights();
+  void take_lights(Notes& notes);
   void take_radii_of_depth(Notes& notes);
 
   Settings settings_;

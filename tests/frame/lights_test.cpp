@@ -91,6 +91,7 @@ TEST(Lights, with_a_misspelt_or_senseless_field_are_refused_by_name) {
   expect_refused(file_of(R"("kind": "sun", "frames": [{"frame": 1, "direction": [1, 0, 0]}, {"frame": 2}])"),
                  "frame 2: \"direction\" is missing");
   expect_refused(file_of(kSun + ",\n\"frames\": [1,\n}]"), "line 3 is no JSON");
+  expect_refused(file_of(R"("type": "sun", "direction": [0, 0, 1])"), "no field \"type\"");
   expect_refused(R"({"up": "x", "lights": []})", "z or y");
   for (const char* number : {"4294967297", "-2147483649", "18446744073709551616", "1e300", "1.5", "\"1\"", "true"})
     expect_refused(file_of(kSun + fmt::format(R"(, "frames": [{{"frame": 1}}, {{"frame": {}}}])", number)),

@@ -66,6 +66,21 @@ TEST_F(ShadowRun, is_computed_anew_where_the_lights_alone_have_changed) {
   EXPECT_NE(shadow_of("--resume"), before);
 }
 
+TEST_F(ShadowRun, notes_a_sun_below_the_horizon_and_a_light_that_reaches_nothing) {
+  const auto said = [&](const std::string& light, const std::string& more = "") {
+    write_lights(light);
+    return done(joined({"--lights", lights}, typed(more))).err;
+  };
+  EXPECT_THAT(said(kSun), Not(HasSubstr("[dark-light]")));
+  EXPECT_THAT(said(R"("kind": "sun", "direction": [0, 1, -0.01])"),
+              AllOf(HasSubstr("[dark-light]"), HasSubstr("\"key\" is below the horizon"), HasSubstr(lights)));
+  EXPECT_THAT(said(R"("kind": "sun", "direction": [0, 1, -2])", "--set sun-elevation=40"), Not(HasSubstr("horizon")));
+  EXPECT_THAT(said(kSun, "--set sun-elevation=-1"), HasSubstr("horizon"));
+  const std::string lamp = R"("kind": "point", "position": )";
+  EXPECT_THAT(said(lamp + "[0, 1000, -1000]"), HasSubstr("\"key\" reaches no surface"));
+  EXPECT_THAT(said(lamp + "[0, 0, 1000]"), Not(HasSubstr("[dark-light]")));
+}
+
 /// A beauty with a layer of the light beside its indirect light.
 class ShadowComposite : public ShadowRun {
  protected:

@@ -1,5 +1,6 @@
 // A wedge shows what its commands compute, has the radius that inspect proposes, and loses no look in silence.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
 #include <regex>
 #include <sstream>
 
@@ -46,8 +47,9 @@ class Wedge : public SequenceFolder {
     return names;
   }
 
-  /// Runs the command of a look, and gives the AO as the page would show it.
-  std::string run_command_of(const json& report, std::size_t look, const Options& more = {}) const {
+  /// Runs the command of a look, and gives the channel of its file as the page would show it.
+  std::string run_command_of(const json& report, std::size_t look, const Options& more = {}, const char* file = "ao.exr",
+                             std::string_view channel = "Y") const {
     std::istringstream stream(report["candidates"][look]["settings"].get<std::string>());
     Names words{std::istream_iterator<std::string>(stream), {}};
     EXPECT_EQ(words.front(), "alcove");
@@ -55,9 +57,9 @@ class Wedge : public SequenceFolder {
     const Finished finished = run_program(joined(joined(words, {"--type", "float"}), more), {.folder = folder.path()});
     EXPECT_EQ(finished.code, 0) << finished;
     if (finished.code) return "";
-    const Image ao = read_exr_image(folder / "ao.exr");
+    const Image made = read_exr_image(folder / file);
     std::vector<float> pixels(kWallWindow.pixels());  // of the display window, 0 outside of a region
-    copy_common(ao.pixels.data(), ao.data, pixels.data(), kWallWindow);
+    copy_common(made.plane(channel).data(), made.data, pixels.data(), kWallWindow);
     return grey_picture(kWallWindow.width, kWallWindow.height, pixels);
   }
   void expect_bits_of_commands(const json& report) const {
@@ -85,11 +87,10 @@ TEST_F(Wedge, turns_a_sun_and_shows_its_shadow_by_one_estimate) {
   std::set<std::string> pictures;
   std::set<double> estimates;
   for (std::size_t i = 0; i < 4; i++) {
-    run_command_of(report, i);
-    const Image made = read_exr_image(folder / "ao.exr");
-    const auto key = made.plane(std::string_view("shadow-key.Y"));
     const std::string picture = report["images"][i]["result"];
-    EXPECT_EQ(picture, grey_picture(kWallWindow.width, kWallWindow.height, {key.begin(), key.end()}));
+    EXPECT_EQ(run_command_of(report, i, {}, "shadow.exr", "shadow-key.Y"), picture);
+    const std::vector<float> preview = Picture(folder / "preview.png", "--preview").read(std::array<std::size_t, 1>{});
+    EXPECT_EQ(grey_picture(kWallWindow.width, kWallWindow.height, preview), picture) << "of the turned sun";
     pictures.insert(picture);
     estimates.insert(report["rows"][i]["estimate_ms"].get<double>());
   }

@@ -104,6 +104,8 @@ bool is_name(const std::string& name) {
 
 LightsFile::Entry entry_of(LightReader reader, const Json& json) {
   if (!json.is_object()) reader.refuse("it must be an object, not " + shown(json.dump()));
+  reader.require_known(
+      json, {"name", "kind", "direction", "angular_diameter", "position", "radius", "space", "frames"});
   LightsFile::Entry entry;
   const Json& name = reader.required(json, "name");
   if (!name.is_string() || !is_name(name.get<std::string>()))
@@ -116,13 +118,10 @@ LightsFile::Entry entry_of(LightReader reader, const Json& json) {
   std::vector<std::string> fields = light.is_lamp ? std::vector<std::string>{"position", "radius"}
                                                   : std::vector<std::string>{"direction", "angular_diameter"};
   const std::string where = fields.front();
-  fields.insert(fields.end(), {"name", "kind", "space", "frames"});
   for (const char* other : {"position", "radius", "direction", "angular_diameter"})
     if (json.contains(other) && std::ranges::find(fields, other) == fields.end())
       reader.refuse(fmt::format("a {} has \"{}\" and \"{}\", not \"{}\"", light.is_lamp ? "point" : "sun", fields[0],
                                 fields[1], other));
-  reader.require_known(json, fields);
-  fields.resize(2);
   fields.emplace_back("frame");
   entry.in_world = !json.contains("space") || reader.word(json["space"], "space", {"world", "view"}) == "world";
   const bool is_placed = reader.take(json, light);
@@ -147,10 +146,10 @@ LightsFile::Entry entry_of(LightReader reader, const Json& json) {
 }
 
 /// A direction with another azimuth, or another elevation, where these are given.
-Vector3 turned(const Vector3& at, std::optional<double> azimuth, std::optional<double> elevation, bool is_z_up) {
+Vector3 turned(const Vector3& at, std::optional<double> azimuth, std::optional<double> elevation, std::size_t up) {
   if (!azimuth && !elevation) return at;
-  const std::size_t up = is_z_up ? 2 : 1, side = is_z_up ? 1 : 2;
-  const double left = is_z_up ? 1 : -1, degree = std::numbers::pi / 180;
+  const std::size_t side = 3 - up;
+  const double left = up == 2 ? 1 : -1, degree = std::numbers::pi / 180;
   const double around = azimuth ? *azimuth * degree : std::atan2(left * at[side], at[0]);
   const double high = elevation ? *elevation * degree : std::asin(std::clamp(at[up], -1.0, 1.0));
   Vector3 result{};
@@ -209,16 +208,27 @@ std::vector<Light> LightsFile::in_view(const Camera& camera, int frame) const {
            "or the light in view space (--lights)",
            path, name);
     if (!in_world && camera.left_handed) light.at[2] = -light.at[2];
-    const std::size_t up = in_world && !is_y_up ? 2 : 1;
+    const std::size_t up = in_world ? up_of_world() : 1;
     if (name == lights[sun].name && azimuth.has_value() != elevation.has_value() && std::abs(light.at[up]) > kVertical)
       fail(ErrorKind::usage, "{}: light \"{}\" is vertical: give both --set sun-azimuth and sun-elevation", path, name);
-    if (name == lights[sun].name) light.at = turned(light.at, azimuth, elevation, in_world && !is_y_up);
+    if (name == lights[sun].name) light.at = turned(light.at, azimuth, elevation, up);
     if (in_world) light.at = times(*camera.view_from_world, light.at);
     if (in_world && light.is_lamp)
       for (std::size_t i = 0; i < 3; i++) light.at[i] += camera.view_from_world_offset[i];
     result.push_back(light);
   }
   return result;
+}
+
+std::vector<std::string> LightsFile::below_horizon(int frame) const {
+  std::vector<std::string> names;
+  for (const auto& [name, of_frames, is_constant, in_world] : lights) {
+    const Light& light = is_constant ? of_frames.begin()->second : of_frames.at(frame);
+    const bool is_turned = elevation && name == lights[sun].name;
+    const double height = is_turned ? *elevation : light.at[up_of_world()];
+    if (in_world && !light.is_lamp && height < 0) names.push_back(name);
+  }
+  return names;
 }
 
 bool LightsFile::is_soft(std::size_t light) const {
@@ -232,8 +242,9 @@ std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::
   LightReader reader{path, "the file"};
   std::string why;
   const Json top = json_of(text, kDeepestLights, why);
+  if (!why.empty()) reader.refuse(why.substr(2));
   if (!top.is_object() || !top.contains("lights") || !top["lights"].is_array())
-    reader.refuse("it must be a JSON object with a list \"lights\"" + why);
+    reader.refuse("it must be a JSON object with a list \"lights\"");
   reader.require_known(top, {"lights", "up"});
   file.is_y_up = top.contains("up") && reader.word(top["up"], "up", {"z", "y"}) == "y";
   const Json& lights = top["lights"];

@@ -46,6 +46,9 @@ struct LightsFile {
   /// The lights of a frame in view space. Fails as require_frames() does, and with ErrorKind::input if a light is in
   /// world space and the camera has no view_from_world.
   std::vector<Light> in_view(const Camera& camera, int frame) const;
+  /// The suns that are below the world's horizon in a frame. Fails as require_frames() does.
+  std::vector<std::string> below_horizon(int frame) const;
+  std::size_t up_of_world() const { return is_y_up ? 1 : 2; }  // the axis
   /// Whether a light has some size in any frame.
   bool is_soft(std::size_t light) const;
 };
