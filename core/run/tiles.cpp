@@ -55,7 +55,7 @@ int reach_of_filters(const EstimatorSettings& settings) { return filter_reach_of
 int filter_reach(const Settings& settings) {
   const int own = reach_of_filters(settings.estimator);
   const bool is_alone = settings.output.lights.empty() && !wants(settings.output, &FrameOutputs::confidence);
-  return is_alone ? own : std::max(own, reach_of_filters(bracket_of(settings.estimator)) + 2 * kShadowSpacing);
+  return is_alone ? own : std::max(own, reach_of_filters(bracket_of(settings.estimator)));
 }
 
 /// How far lines reach beyond the sphere of the radius until they tell what those of the whole frame do, in px; 0 where

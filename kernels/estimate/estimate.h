@@ -105,9 +105,6 @@ struct NearestParams {
   ivec2 size;  // px, of the image
 };
 
-/// The spacing of the pixels that see a light by themselves, in px.
-ALCOVE_CONSTANT int kShadowSpacing = 4;
-
 struct ShadowParams {
   View view;
   vec3 light;            // unit vector to a sun, or scene units: the place of a lamp; in view space
@@ -118,8 +115,7 @@ struct ShadowParams {
   float bias;            // sine of the elevation above the tangent plane below which nothing blocks
   float thickness;       // scene units, infinite allowed; 0: as deep as wide
   uint plane;            // of the output, which has one plane per light
-  int spacing, coarser;  // px, powers of two: of the lattice whose pixels run, and of that of pixels before; 0: none
-  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern, and lattices
+  ivec2 noise_origin;    // px: added to a pixel, so that crops and tiles share one noise pattern
   vec2 noise_shift;      // in [0, 1): the pattern's shift for this frame and seed
   vec3 depth_precision;  // scene units: a depth z may be off by x + y z + z z^2
 };

@@ -17,8 +17,6 @@
 //     the ray, or all that far before it, are passed over. From one of these to the other rule 3 is looked at.
 //  6. Behind the border the surface of the last pixel goes on a little.
 //  7. A light of some size is sampled in several directions, which differ between neighbours.
-//  8. Pixels of a coarse lattice walk, then those of finer ones. A pixel takes what the coarser lattice sees around it
-//     on its plane where all of that is lit, or all dark.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/estimate/estimate.h"
@@ -379,9 +377,16 @@ vec4 towards(vec3 position, vec2 place) {
   return vec4(direction, is_lamp ? min(distance, params.reach) : params.reach);
 }
 
-/// The part of the light that a pixel of a surface sees.
-float visibility_of(View view, ivec2 pixel, int index) {
+void main() {
+  const View view = params.view;
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (!inside(view, pixel)) return;
+  const int index = index_of(view, pixel), at = index + int(params.plane) * view.size.x * view.size.y;
   const float z = depth[index];
+  if (z >= kSkyDepth) {
+    result[at] = 1.0;
+    return;
+  }
   const Receiver r = receiver_at(view, pixel, z, unpack_normal(normal[index]), params.size, params.depth_precision);
   const vec3 position = position_of(view, vec2(pixel) + 0.5, z);
   const vec2 noise = pixel_noise(pixel + params.noise_origin, params.noise_shift);
@@ -391,59 +396,6 @@ float visibility_of(View view, ivec2 pixel, int index) {
     const vec4 light = towards(position, place);
     if (dot(light.xyz, r.normal) > 0.0) seen += seen_of(view, r, position, light.xyz, light.w);  // 1.
   }
-  return seen / float(kDirections);
-}
-
-Facet facet_at(View view, ivec2 pixel) {
-  const int index = index_of(view, pixel);
-  return Facet(position_of(view, vec2(pixel) + 0.5, depth[index]), unpack_normal(normal[index]), depth[index]);
-}
-
-/// 8. What the pixels of the coarser lattice around a pixel see, if they all see the same, 0 or 1; else kUnlike.
-const float kUnlike = -1.0;
-float visibility_around(View view, ivec2 pixel, int plane) {
-  const ivec2 from = (pixel + params.noise_origin & ~(params.coarser - 1)) - params.noise_origin;
-  const ivec2 to = mix(from + params.coarser, from, equal(from, pixel));
-  const Facet own = facet_at(view, pixel);
-  float around = kUnlike;
-  for (int k = 0; k < 4; k++) {
-    const ivec2 other = ivec2((k & 1) == 0 ? from.x : to.x, (k & 2) == 0 ? from.y : to.y);
-    if (!inside(view, other)) return kUnlike;
-    const float seen = result[plane + index_of(view, other)];
-    if (k > 0 && seen != around || seen != 0.0 && seen != 1.0) return kUnlike;
-    if (!are_coplanar(view, own, facet_at(view, other), kPlaneDot, kPlaneOff)) return kUnlike;
-    around = seen;
-  }
-  return around;
-}
-
-/// The pixels of the workgroup that walk, side by side so that its lanes are full.
-shared uint count, walking[kGroupX * kGroupY];
-
-void main() {
-  const View view = params.view;
-  const int plane = int(params.plane) * view.size.x * view.size.y;
-  const ivec2 first = -params.noise_origin & params.spacing - 1;
-  const ivec2 own = first + params.spacing * ivec2(gl_GlobalInvocationID.xy);
-  if (gl_LocalInvocationIndex == 0u) count = 0u;
-  barrier();
-  const bool is_known = params.coarser > 0 && all(equal(own + params.noise_origin & params.coarser - 1, ivec2(0)));
-  if (inside(view, own) && !is_known) {
-    const int index = index_of(view, own);
-    const float seen = depth[index] >= kSkyDepth ? 1.0
-                       : params.coarser > 0      ? visibility_around(view, own, plane)
-                                                 : kUnlike;
-    if (seen != kUnlike)
-      result[plane + index] = seen;
-    else
-      walking[atomicAdd(count, 1u)] = gl_LocalInvocationIndex;
-  }
-  barrier();
-  if (gl_LocalInvocationIndex >= count) return;
-  const uint local = walking[gl_LocalInvocationIndex];
-  const ivec2 within = ivec2(local % kGroupX, local / kGroupX);
-  const ivec2 pixel = first + params.spacing * (ivec2(gl_WorkGroupID.xy) * ivec2(kGroupX, kGroupY) + within);
-  const int index = index_of(view, pixel), at = plane + index;
-  const float seen = visibility_of(view, pixel, index);
+  seen /= float(kDirections);
   result[at] = kConfidence == 0u ? seen : clamp(1.0 - (result[at] - seen), 0.0, 1.0);
 }

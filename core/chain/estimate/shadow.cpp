@@ -89,17 +89,10 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
                             : searches_exactly(settings) ? kDirectionsExact
                                                          : std::max(uint(settings.slices), kLeastDirections);
     const std::vector<uint> constants{solid, directions, rule == 2 ? 1u : 0u};
-    const bool has_lattices = rule == 0 && !searches_exactly(settings);
-    params.coarser = 0;
-    for (params.spacing = has_lattices ? kShadowSpacing : 1; params.spacing > 0; params.spacing /= 2) {
-      const gpu::Extent extent{groups_of(gbuffer.view.size.x, uint(params.spacing)),
-                               groups_of(gbuffer.view.size.y, uint(params.spacing))};
-      if (gbuffer.surfaces == 1)
-        gpu.dispatch("shadow", params, buffers, extent, constants);
-      else
-        gpu.dispatch("shadow_layers", params, buffers, extent, constants);
-      params.coarser = params.spacing;
-    }
+    if (gbuffer.surfaces == 1)
+      gpu.dispatch("shadow", params, buffers, extent_of(gbuffer.view), constants);
+    else
+      gpu.dispatch("shadow_layers", params, buffers, extent_of(gbuffer.view), constants);
   };
   const auto estimate = [&](bool hard, const gpu::Buffer& result) {
     for (std::size_t i = 0; i < count; i++)

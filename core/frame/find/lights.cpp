@@ -104,8 +104,8 @@ bool is_name(const std::string& name) {
 
 LightsFile::Entry entry_of(LightReader reader, const Json& json) {
   if (!json.is_object()) reader.refuse("it must be an object, not " + shown(json.dump()));
-  reader.require_known(json,
-                       {"name", "kind", "direction", "angular_diameter", "position", "radius", "space", "frames"});
+  reader.require_known(
+      json, {"name", "kind", "direction", "angular_diameter", "position", "radius", "space", "frames"});
   LightsFile::Entry entry;
   const Json& name = reader.required(json, "name");
   if (!name.is_string() || !is_name(name.get<std::string>()))
