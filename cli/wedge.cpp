@@ -173,8 +173,7 @@ WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::
   chosen.insert(chosen.end(), {"--preview", usual_output(typed.input, "preview", ".png")});
   const Settings settings = settings_of();
   for (auto& word : chosen) word = for_shell(word);
-  return {fmt::format("{}", fmt::join(parts, ", ")), fmt::format("alcove run {}", fmt::join(chosen, " ")),
-          settings};
+  return {fmt::format("{}", fmt::join(parts, ", ")), fmt::format("alcove run {}", fmt::join(chosen, " ")), settings};
 }
 
 /// The radii that were typed, or half and twice the proposed one; and that.

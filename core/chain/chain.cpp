@@ -52,6 +52,7 @@ FrameVisibility own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, con
   visible.estimate =
       visible.is_quick ? quick_horizon(gpu, work, chosen, *wide, inputs, settings)
                        : estimate(gpu, work, chosen, inputs, settings, order, with_completed, wanted.needs_curvature());
+  if (settings.resolution != Resolution::full) visible.estimate.told = nullptr;  // which is that of blocks
   visible.completion = completion(gpu, work, visible.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
   const Visibility noisy{visible.estimate.ao, nullptr, visible.estimate.moments};
@@ -108,12 +109,6 @@ FrameOutputs handed_out(const FrameVisibility& visible) {
   return out;
 }
 
-/// How far back the frame's pixels are solid, if its estimate has found that out for each of them.
-const gpu::Buffer* told_of(const FrameVisibility& visible) {
-  const gpu::Buffer* told = visible.estimate.told;
-  return told && told->bytes() == plane_bytes(visible.surfaces.wide.view) ? told : nullptr;
-}
-
 /// The outputs with the shadows of lights, the coefficients of the reflected light, and that light.
 FrameOutputs with_light(gpu::Recorder& gpu, const FrameInputs& frame, const FrameVisibility& visible,
                         const EstimatorSettings& settings, const Wanted& wanted, FrameOutputs out) {
@@ -121,7 +116,7 @@ FrameOutputs with_light(gpu::Recorder& gpu, const FrameInputs& frame, const Fram
   const Visibility& visibility = visible.visibility;
   if (wanted.has(&FrameOutputs::shadow))
     out.shadow = cut(gpu, frame,
-                     &shadow(gpu, visible.surfaces.wide, with_margin(frame), settings, told_of(visible),
+                     &shadow(gpu, visible.surfaces.wide, with_margin(frame), settings, visible.estimate.told,
                              wanted.has(&FrameOutputs::confidence)),
                      "shadow");
   if (wanted.has(&FrameOutputs::transfer))

@@ -90,9 +90,6 @@ std::string unless_fading(const Settings& all) {
   return asks_for_confidence(all) ? "" : first_of({unless_slices(all), if_exact(all)});
 }
 
-/// Settings that any search along slices takes, that of shadows too.
-std::string unless_ranges_anywhere(const Settings& all) { return asks_for_shadows(all) ? "" : unless_ranges(all); }
-
 std::string if_exact_alone(const Settings& all) { return asks_for_confidence(all) ? "" : if_exact(all); }
 std::string if_unsampled(const Settings& all) { return asks_for_shadows(all) ? "" : if_exact_alone(all); }
 std::string if_by_error_alone(const Settings& all) { return asks_for_confidence(all) ? "" : if_by_error(all); }

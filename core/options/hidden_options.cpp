@@ -96,7 +96,7 @@ void add_behind_rows(InputGroup& pixels) {
       [](const S& s) { return words_of(s.behind); }, [](S& s, const Words& words) { read_files(words, s.behind); });
   behind.repeats = true;
   behind.names(FileRole::input);
-  behind.idle(unless_ranges);
+  behind.idle(unless_ranges_anywhere);
   SettingRow& channels = pixels.add(
       {"behind-channel", "NAME[,NAME...]", "", "",
        "the depth channel of the --behind files: one for all, or one for each"},
@@ -129,7 +129,7 @@ void add_deep_rows(InputGroup& pixels) {
 void add_view_rows(InputGroup& pixels) {
   using S = InputSettings;
   pixels.flag("other-views", &S::other_views, "add hidden surfaces from a stereo file's other views")
-      .idle(unless_ranges);
+      .idle(unless_ranges_anywhere);
   pixels
       .own(
           {"--around", "NUMBER|all", "frames to each side", fmt::format("0 to {}", kMostAround),
@@ -137,7 +137,7 @@ void add_view_rows(InputGroup& pixels) {
           [](const S& s) { return s.around_all ? std::string("all") : fmt::format("{}", s.around); },
           [](S& s, const std::string& text) { return read_around(text, s); },
           fmt::format("is neither all nor a whole number from 0 to {}", kMostAround))
-      .others_idle(unless_ranges);
+      .others_idle(unless_ranges_anywhere);
   pixels.text("--motion", &S::motion, "FILE", "motion vectors, in pixels, to find moving surfaces")
       .names(FileRole::input)
       .idle([](const Settings& all) {

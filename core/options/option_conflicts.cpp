@@ -93,6 +93,10 @@ bool asks_for_confidence(const Settings& settings) { return asks_for(settings.ou
 
 bool asks_for_shadows(const Settings& settings) { return !settings.output.lights.empty(); }
 
+std::string unless_ranges_anywhere(const Settings& settings) {
+  return asks_for_shadows(settings) ? "" : unless_ranges(settings);
+}
+
 std::string unless_lights(const Settings& settings) { return unless_given(asks_for_shadows(settings), "--lights"); }
 
 std::string unless_denoised(const Settings& settings, std::initializer_list<Denoise> kinds) {

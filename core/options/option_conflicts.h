@@ -27,6 +27,8 @@ bool asks_for_confidence(const Settings& settings);
 /// Shadows of lights use the settings of thickness, noise and denoiser, beside any estimator of the AO.
 bool asks_for_shadows(const Settings& settings);
 std::string unless_lights(const Settings& settings);
+/// The AO's estimator, or that of shadows, knows where an occluder ends.
+std::string unless_ranges_anywhere(const Settings& settings);
 std::string unless_denoised(const Settings& settings, std::initializer_list<Denoise> kinds);
 /// Some pixels take the estimates of others, be it at another density.
 std::string unless_shared_estimates(const Settings& settings);

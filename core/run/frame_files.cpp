@@ -432,8 +432,9 @@ void require_picture(const FrameSource& source, const Window& window, std::span<
 
 /// Fails with ErrorKind::usage where deep samples beside a flat depth are of no use to the estimator. Only now it is
 /// known whether they are beside one.
-void require_use_of_deep(const FrameSource& source, const EstimatorSettings& settings) {
-  const bool has_use = searches_slices(settings) || settings.hidden == 0 || !source.channels.deep;
+void require_use_of_deep(const FrameSource& source, const Settings& settings) {
+  const bool has_use = searches_slices(settings.estimator) || !settings.output.lights.empty() ||
+                       settings.estimator.hidden == 0 || !source.channels.deep;
   if (has_use || source.part_of(source.channels[RawPlane::depth][0]).deep) return;
   fail(ErrorKind::usage,
        "{}: beside a flat depth --deep applies to --estimator gtao or bitmask only: give one of these, or --set "
@@ -513,7 +514,7 @@ bool are_of(const ReadPlanes& planes, const FrameSource& source) {
 FrameSource open_frame(const Settings& settings, int frame) {
   FrameSource source = find_frame(settings.input, !settings.output.composite.empty(), frame,
                                   settings.output.multi_bounce && !settings.input.albedo_value);
-  require_use_of_deep(source, settings.estimator);
+  require_use_of_deep(source, settings);
   if (settings.estimator.hidden == 0) {
     source.channels[RawPlane::behind].clear();
     source.reading.behind.clear();

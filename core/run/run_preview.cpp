@@ -272,7 +272,7 @@ void RunPreview::take_lights(Notes& notes) {
     if (std::ranges::find(names, name) == names.end())
       fail(ErrorKind::usage, "--set shadow-layers={}:{}: {} has no light \"{}\"{}", name, layer, lights->path, name,
            suggestion(name, names));
-  for (const auto& name : lights->below_horizon(plan().frames().front()))
+  for (const auto& name : lights->below_horizon(plan().frames()))
     notes.push_back({NoteCode::dark_light,
                      fmt::format("the sun \"{}\" is below the horizon: \"direction\" is the way to it, and \"up\" the "
                                  "world's, {} (--lights)",

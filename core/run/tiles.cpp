@@ -437,9 +437,9 @@ void WindowLimits::refuse(const std::string& what, const MemoryNeeds& needs) con
 TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowLimits& limits,
                   const FrameSource& source) {
   if (auto cut = Cutter(surroundings, limits).cut(whole); !cut.rows.empty()) return std::move(cut.rows);
-  const std::string what = fmt::format(
-      "{}: a tile depends on too many pixels to compute at once: give a smaller --radius or --set shadow-reach",
-      source.depth_path());
+  const std::string what =
+      fmt::format("{}: a tile depends on too many pixels to compute at once: give a smaller --radius{}",
+                  source.depth_path(), surroundings.reaches_beyond_radius() ? " or --set shadow-reach" : "");
   const MemoryNeeds needs = memory_needs(source, surroundings, limits);
   if (needs.least > limits.budget.bytes) limits.refuse(what, needs);
   limits.refuse(what, largest_least(whole, surroundings, limits.memory));

@@ -33,6 +33,8 @@ class Surroundings {
 
   /// The window to compute so that the results in a part have the bits of the whole frame.
   Window around(const Window& part);
+  /// Whether surfaces beyond the radius block: those of lights do.
+  bool reaches_beyond_radius() const { return occluders_ > radius_; }
 
  private:
   /// The reach beside a block of pixels, px.

@@ -83,7 +83,7 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<WedgeLook>& lo
 /// The settings of a look that is computed for a page, which also takes its depth.
 Settings with_planes_of_page(Settings settings) {
   settings.output.aovs = "ao,depth";
-  if (!shows_lights(settings)) settings.output.lights.clear();
+  if (!shows_lights(settings)) settings.output.lights.clear();  // which a preset may name
   return settings;
 }
 
@@ -258,8 +258,6 @@ bool shows_lights(const Settings& settings) {
 }
 
 void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet) {
-  for (auto& look : looks)
-    if (!shows_lights(look.settings)) look.settings.output.lights.clear();  // which a preset may name
   WedgeMaker maker(looks, !page.empty());
   std::set<std::optional<double>> radii;
   for (const auto& look : looks) radii.insert(look.settings.estimator.radius);

@@ -102,7 +102,8 @@ struct HorizonParams {
 ALCOVE_CONSTANT int kNearestStep = 16, kNearestBlock = 2 * kNearestStep;
 
 struct NearestParams {
-  ivec2 size;  // px, of the image
+  ivec2 size;         // px, of the image
+  uint orthographic;  // 0 or 1
 };
 
 struct ShadowParams {

@@ -43,7 +43,7 @@ readonly buffer Depth { float depth[]; };   // one float per pixel, from prepare
 readonly buffer Normal { uint normal[]; };  // one uint per pixel, from prepare
 // one float per pixel, depth of the first surfaces that may block
 readonly buffer Occluders { float occluder_depth[]; };
-readonly buffer Nearest { vec2 nearest[]; };  // nearest and farthest depth per block, from nearest
+readonly buffer Nearest { vec4 nearest[]; };  // four floats per block, from nearest
 readonly buffer Hidden { float hidden[]; };   // planes of hidden surfaces that may block, see GBuffer; with layers only
 readonly buffer Backs { uint backs[]; };      // one uint per pixel, from backs; only with kTellsBacks
 buffer Result { float result[]; };            // one float per pixel, in [0, 1]
@@ -63,6 +63,9 @@ const float kTangentBeyond = 0.3, kSizesBeyond = 4.0;
 
 /// Beyond the border a surface goes on where it is seen no more edge-on than this.
 const float kLeastFacingToGoOn = 0.02;
+
+/// So many pixels are looked at one by one before their block is, again: a ray leaves the plane that it starts on.
+const int kStepsAlone = 4;
 
 /// A light so near to the eye's ray, by its sine, is seen wherever the eye sees.
 const float kLeastSine = 1e-4;
@@ -132,6 +135,12 @@ bool is_deep(Receiver r, Ray ray, float change, float z) {
 /// On which side of the ray surfaces lie that cannot block it alone; kNoSide: they may.
 const uint kNoSide = 0u, kBehindRay = 1u, kFarBefore = 2u;
 
+/// The most of dot(slope, beside) at the pixels of these steps, which are up to half a pixel beside the ray.
+float farthest_along(vec2 slope, Ray ray, int first, int last) {
+  const float along = dot(slope, ray.step_px);
+  return max(along * float(first), along * float(last)) + 0.5 * max(abs(slope.x), abs(slope.y));
+}
+
 /// The last step in a block of a step, and the side of all up to there.
 struct Stretch {
   int last;
@@ -145,13 +154,16 @@ Stretch stretch_from(Receiver r, Ray ray, int first) {
   // A pixel less, since both ends are rounded.
   const vec2 room = vec2(mix(within, kNearestBlock - 1 - within, forward) - 1) / max(abs(ray.step_px), 1e-3);
   const int last = min(first + max(int(min(room.x, room.y)), 0), ray.steps);
-  const vec2 depths = nearest[block.y * ((params.view.size.x + kNearestStep - 1) / kNearestStep) + block.x];
-  const float change = dot(ray.change, ray.step_px), rounding = 1e-5 * (ray.facing + abs(change) * float(last));
-  const float aside = 0.5 * (max(abs(ray.change.x), abs(ray.change.y)) + abs(change)) + rounding;
-  const float most = max(change * float(first), change * float(last)) + aside;
-  const float least = min(change * float(first), change * float(last)) - aside;
-  const bool is_behind = ahead(r, ray, most, depths.x) > 1.00001 * ray.most;
-  return Stretch(last, is_behind ? kBehindRay : is_deep(r, ray, least, depths.y) ? kFarBefore : kNoSide);
+  const vec4 plane = nearest[block.y * ((params.view.size.x + kNearestStep - 1) / kNearestStep) + block.x];
+  // What is behind the ray has scale * nearness + dot(change, beside) < limit. The plane is linear as the ray is.
+  const float scale = r.perspective ? ray.most : ray.facing, limit = r.perspective ? ray.facing : -ray.most;
+  const vec2 slope = ray.change + scale * plane.yz;
+  const float start = scale * (plane.x + dot(plane.yz, vec2(r.pixel - block * kNearestStep)));
+  const float change = greater(abs(dot(slope, ray.step_px)), abs(dot(ray.change, ray.step_px))) * float(last);
+  const float rounding = 1e-5 * (abs(limit) + abs(start) + change);
+  const bool is_behind = start + farthest_along(slope, ray, first, last) + half_step(ray) + rounding < limit;
+  const float least = -farthest_along(-ray.change, ray, first, last) - half_step(ray) - rounding;
+  return Stretch(last, is_behind ? kBehindRay : is_deep(r, ray, least, plane.w) ? kFarBefore : kNoSide);
 }
 
 /// A surface of the last pixel.
@@ -173,16 +185,17 @@ bool are_one(Receiver r, float z, float last_z) {
 
 ivec2 pixel_of_step(Receiver r, Ray ray, int k) { return r.pixel + ivec2(round(ray.step_px * float(k))); }
 
-/// Whether two neighbouring pixels of any slope show one plane, by the normals of what they show.
-bool are_coplanar(Receiver r, Ray ray, int k, float z) {
+Facet facet_at(View view, ivec2 pixel) {
+  const int index = index_of(view, pixel);
+  const float z = occluder_depth[index];
+  return Facet(position_of(view, vec2(pixel) + 0.5, z), unpack_normal(normal[index]), z);
+}
+
+/// Whether two neighbouring pixels of any slope show one plane.
+bool are_coplanar(Receiver r, Ray ray, int k) {
   const View view = params.view;
   const ivec2 pixel = pixel_of_step(r, ray, k), last = pixel_of_step(r, ray, k - 1);
-  const int index = index_of(view, pixel), last_index = index_of(view, last);
-  const float last_z = occluder_depth[last_index];
-  const Facet here = Facet(position_of(view, vec2(pixel) + 0.5, z), unpack_normal(normal[index]), z);
-  const Facet there = Facet(position_of(view, vec2(last) + 0.5, last_z), unpack_normal(normal[last_index]), last_z);
-  const bool are_shown = z == depth[index] && last_z == depth[last_index];
-  return are_shown && are_coplanar(view, there, here, kPlaneDot, kPlaneOff);
+  return are_coplanar(view, facet_at(view, last), facet_at(view, pixel), kPlaneDot, kPlaneOff);
 }
 
 /// 4. How thick a run is, in scene units along the eye's ray.
@@ -251,7 +264,7 @@ bool take_step(Receiver r, Ray ray, Reach reach, uint outline, int k, inout Last
     for (int j = 1; j < kSurfaces; j++)
       if (abs(last[j].z - z) < abs(from.z - z)) from = last[j];
     bool goes_on = are_one(r, z, from.z);
-    if (i == 0 && !goes_on && k > 1 && before != last[0].before) goes_on = are_coplanar(r, ray, k, z);
+    if (i == 0 && !goes_on && k > 1 && before != last[0].before) goes_on = are_coplanar(r, ray, k);
     blocked = both(goes_on, before != from.before) ? true : blocked;  // 3.
     const float within = half_step(ray);
     const bool crosses = is_before(r, ray, change - within, z) != is_before(r, ray, change + within, z);
@@ -285,7 +298,7 @@ bool is_blocked_beyond(View view, Receiver r, Ray ray) {
   const float border = floor(steps_to_border(view, r.pixel, ray.step_px));
   const ivec2 pixel = pixel_of_step(r, ray, int(border));
   const int index = index_of(view, pixel);
-  const vec3 n = octahedral_direction(unpackSnorm2x16(normal[index]));
+  const vec3 n = unpack_normal(normal[index]);
   const float z = occluder_depth[index], toward = dot(n, ray.direction);
   const float far = dot(n, position_of(view, vec2(pixel) + 0.5, lesser(z, kFarther)) - ray.position) / toward;
   const vec3 place = ray.position + far * ray.direction;
@@ -332,11 +345,12 @@ float seen_of(View view, Receiver r, vec3 position, vec3 direction, float far) {
           stretch = stretch_from(r, ray, k);
           k = stretch.side == side ? stretch.last + 1 : k;
         } while (stretch.side == side && k <= ray.steps);
-        if (k <= stretch.last) {
+        const int end = min(stretch.last, k + kStepsAlone - 1);
+        if (k <= end) {
           do {
             is_found = side_of(r, ray, k) != side;
             k += is_found ? 0 : 1;
-          } while (!is_found && k <= stretch.last);
+          } while (!is_found && k <= end);
         }
       } while (!is_found && k <= ray.steps);
       if (is_found) {
@@ -357,7 +371,7 @@ float seen_of(View view, Receiver r, vec3 position, vec3 direction, float far) {
   if (blocked) return 0.0;
   if (kConfidence == 0u || !leaves) return 1.0;
   const float seen_length = length_to_border(view, r, ray);
-  return seen_length / (seen_length + kHalfKnown * params.size);
+  return seen_length / (seen_length + min(kHalfKnown * params.size, max(far - seen_length, 0.0)));
 }
 
 /// A direction to the light, and how far away it is: with two numbers in [0, 1), a place of its disc.

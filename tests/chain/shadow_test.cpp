@@ -119,7 +119,7 @@ TEST(Shadow, of_a_box_stays_closed_at_a_radius_below_a_pixel) {
   }
 }
 
-/// The lit part of the pixels in the shadow, without those beside light.
+/// The lit part of the pixels in the shadow.
 double lit_share(const Rendering& rendering, const Scene& scene, const Light& light, const std::vector<float>& shadow) {
   int count = 0, lit = 0;
   for (std::size_t i = 0; i < shadow.size(); i++) {

@@ -109,6 +109,29 @@ TEST_F(Occluders, those_that_count_are_the_others_of_those_that_are_ignored) {
   }
 }
 
+TEST_F(Occluders, cast_the_shadows_of_lights_beside_any_estimator) {
+  const std::string lights = folder / "lights.json";
+  write_bytes(lights, R"({"lights": [{"name": "key", "kind": "sun", "direction": [-0.6, -1, 0.8]}]})");
+  const auto shadow_of = [&](const FrameFile& of, const std::string& more) {
+    of.write(frame);
+    const Image image = computed(typed("--aov shadow,confidence --lights " + lights + more));
+    const auto shadow = image.plane("shadow-key.Y");
+    return Plane(shadow.begin(), shadow.end());
+  };
+  for (const std::string estimator : {"", " --estimator hbao"}) {
+    const Plane with = shadow_of(file, estimator), without = shadow_of(empty, estimator),
+                ignored = shadow_of(file, estimator + behind + ignore);
+    int darker = 0, off = 0;
+    for (std::size_t i = 0; i < with.size(); i++) {
+      if (is_board[i] != 0) continue;
+      darker += with[i] < without[i];
+      off += ignored[i] != without[i];
+    }
+    EXPECT_GT(darker, 200) << estimator;
+    EXPECT_EQ(off, 0) << estimator;
+  }
+}
+
 // A matte has the beauty's filter, and a depth is of one surface: nothing of the board's outline may be left.
 TEST_F(Occluders, of_a_filtered_matte_are_told_by_depth) {
   Plane soft = is_board;

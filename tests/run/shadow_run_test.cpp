@@ -223,6 +223,8 @@ TEST_F(ShadowSequence, is_that_of_the_light_of_its_frame) {
   write_frames(1, 2);
   const std::string lights = folder / "lights.json";
   write_bytes(lights, file_of(kSun + R"(, "frames": [{"frame": 1}, {"frame": 2, "direction": [0, -1, 2]}])"));
+  done({"--lights", lights, "--chunk", "1/3"});
+  EXPECT_TRUE(outputs().empty()) << "a chunk without frames";
   done({"--lights", lights});
   const Image first = read_exr_image(output(1)), second = read_exr_image(output(2));
   const std::size_t wall = 64 * 5 + 32;

@@ -169,9 +169,12 @@ TEST_F(Supersampling, amounts_and_directions_are_filtered_and_depth_is_that_of_t
   const Window display = times(kSmall, 2);
   write_frame(display, display);
   // Multi-bounce is that of each sample.
+  const std::string lights = folder / "lights.json";
+  write_bytes(lights, R"({"lights": [{"name": "key", "kind": "sun", "direction": [0, 1, 2]}]})");
   const Options aovs = typed(
-      "--radius 0.4 --set aov-space=view --set ao-channels=rgb --set multi-bounce=true --set "
-      "albedo=0.8 --aov ao,normal,bent-normal,transfer,depth,confidence,specular-occlusion,ao-scales");
+      "--radius 0.4 --set aov-space=view --set ao-channels=rgb --set multi-bounce=true --set albedo=0.8 "
+      "--aov ao,normal,bent-normal,transfer,depth,confidence,specular-occlusion,ao-scales,shadow --lights " +
+      lights);
   const Image full = computed(aovs), small = computed(joined(aovs, {"--set", "supersampling=2"}));
   expect_filtered(small, full, 2);
   for (std::size_t i = 0; i < kSmall.pixels(); i++)

@@ -48,8 +48,8 @@ class Wedge : public SequenceFolder {
   }
 
   /// Runs the command of a look, and gives the channel of its file as the page would show it.
-  std::string run_command_of(const json& report, std::size_t look, const Options& more = {}, const char* file = "ao.exr",
-                             std::string_view channel = "Y") const {
+  std::string run_command_of(const json& report, std::size_t look, const Options& more = {},
+                             const char* file = "ao.exr", std::string_view channel = "Y") const {
     std::istringstream stream(report["candidates"][look]["settings"].get<std::string>());
     Names words{std::istream_iterator<std::string>(stream), {}};
     EXPECT_EQ(words.front(), "alcove");

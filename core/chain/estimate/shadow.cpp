@@ -23,12 +23,13 @@ constexpr uint kLeastDirections = 2, kDirectionsExact = 16;
 
 bool is_hard(const Light& light) { return !(float(light.size) > 0); }
 
-/// The nearest and the farthest depth of every block.
+/// A plane before all surfaces of every block, and their farthest depth.
 const gpu::Buffer& nearest(gpu::Recorder& gpu, const GBuffer& occluders, const std::string& name) {
   const auto blocks = [](int side) { return std::size_t((side + kNearestStep - 1) / kNearestStep); };
   const ivec2 size = occluders.view.size;
-  const gpu::Buffer& result = gpu.buffer(name, blocks(size.x) * blocks(size.y) * sizeof(vec2));
-  gpu.dispatch("nearest", NearestParams{size}, {{"Occluders", occluder_depth_of(occluders)}, {"Nearest", result}},
+  const gpu::Buffer& result = gpu.buffer(name, blocks(size.x) * blocks(size.y) * 4 * sizeof(float));
+  gpu.dispatch("nearest", NearestParams{size, occluders.view.orthographic},
+               {{"Occluders", occluder_depth_of(occluders)}, {"Nearest", result}},
                {uint(blocks(size.x)), uint(blocks(size.y))});
   return result;
 }
@@ -102,7 +103,6 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   // Noise is of soft lights alone. So these are filtered, and hard ones take their planes behind the filter.
   gpu::Buffer* result = &gpu.buffer("shadow", (with_confidence ? 2 : 1) * count * plane_bytes(gbuffer.view));
   if (!std::ranges::all_of(frame.lights, is_hard)) {
-    gpu.clear(*result);
     estimate(false, *result);
     result = &denoise(gpu, gbuffer, *result, denoiser_of(sampled), "shadow ");
   }

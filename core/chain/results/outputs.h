@@ -149,7 +149,7 @@ struct Wanted {
   uint order = 0;                // of the moments for other outputs, of an estimator that finds open directions
   bool completed = false;        // the visibility that completed surfaces block
   bool only_own = false;         // the estimate alone, for other frames
-  bool previews_shadow = false;  // of the turned or first sun, where there is no AO to be seen
+  bool previews_shadow = false;  // of the turned sun or the first light, where there is no AO to be seen
   bool multi_bounce = false;
   std::vector<Light> lights;  // suns in place of the AOV shadow's lights when a frame is rehearsed; soft as they
   PixelFilter filter;

@@ -56,7 +56,7 @@ struct LightReader {
 
   double number(const Json& value, const char* field, double low, double high) const {
     if (!value.is_number() || !(value.get<double>() >= low && value.get<double>() <= high))
-      refuse(fmt::format("\"{}\" must be of numbers from {} to {}, not {}", field, low, high, shown(value.dump())));
+      refuse(fmt::format("\"{}\" must be a number from {} to {}, not {}", field, low, high, shown(value.dump())));
     return value.get<double>();
   }
 
@@ -71,7 +71,8 @@ struct LightReader {
     if (!value.is_array() || value.size() != 3)
       refuse(fmt::format("\"{}\" must be three numbers, not {}", field, shown(value.dump())));
     Vector3 result{};
-    for (std::size_t i = 0; i < 3; i++) result[i] = number(value[i], field, -kFarthestLight, kFarthestLight);
+    for (std::size_t i = 0; i < 3; i++)
+      result[i] = number(value[i], fmt::format("{}[{}]", field, i).c_str(), -kFarthestLight, kFarthestLight);
     return result;
   }
 
@@ -104,8 +105,8 @@ bool is_name(const std::string& name) {
 
 LightsFile::Entry entry_of(LightReader reader, const Json& json) {
   if (!json.is_object()) reader.refuse("it must be an object, not " + shown(json.dump()));
-  reader.require_known(
-      json, {"name", "kind", "direction", "angular_diameter", "position", "radius", "space", "frames"});
+  reader.require_known(json,
+                       {"name", "kind", "direction", "angular_diameter", "position", "radius", "space", "frames"});
   LightsFile::Entry entry;
   const Json& name = reader.required(json, "name");
   if (!name.is_string() || !is_name(name.get<std::string>()))
@@ -132,7 +133,7 @@ LightsFile::Entry entry_of(LightReader reader, const Json& json) {
     return entry;
   }
   const Json& frames = json["frames"];
-  if (!frames.is_array() || frames.empty()) reader.refuse("\"frames\" must be a list of objects");
+  if (!frames.is_array() || frames.empty()) reader.refuse("\"frames\" must list at least one frame");
   for (const auto& frame : frames) {
     if (!frame.is_object() || !frame.contains("frame")) reader.refuse("\"frames\" must list objects with a \"frame\"");
     const int number = reader.frame_number(frame["frame"]);
@@ -220,13 +221,15 @@ std::vector<Light> LightsFile::in_view(const Camera& camera, int frame) const {
   return result;
 }
 
-std::vector<std::string> LightsFile::below_horizon(int frame) const {
+std::vector<std::string> LightsFile::below_horizon(const std::vector<int>& frames) const {
   std::vector<std::string> names;
   for (const auto& [name, of_frames, is_constant, in_world] : lights) {
-    const Light& light = is_constant ? of_frames.begin()->second : of_frames.at(frame);
     const bool is_turned = elevation && name == lights[sun].name;
-    const double height = is_turned ? *elevation : light.at[up_of_world()];
-    if (in_world && !light.is_lamp && height < 0) names.push_back(name);
+    const auto is_below = [&](int frame) {
+      const Light& light = is_constant ? of_frames.begin()->second : of_frames.at(frame);
+      return !light.is_lamp && (is_turned ? *elevation : light.at[up_of_world()]) < 0;
+    };
+    if (in_world && std::ranges::any_of(frames, is_below)) names.push_back(name);
   }
   return names;
 }

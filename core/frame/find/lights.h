@@ -22,7 +22,7 @@ struct Light {
   std::string name = {};
   bool is_lamp = false;  // a lamp at a place; else a sun, which is infinitely far away
   Vector3 at{};          // scene units: of a lamp its place; of a sun the direction to it, 1 long
-  double size = 0;  // of a lamp its radius, scene units; of a sun its angular diameter, degrees, below 180; 0: hard
+  double size = 0;  // of a lamp its radius, scene units; of a sun its angular diameter, degrees, at most 30; 0: hard
   bool operator==(const Light&) const = default;
 };
 
@@ -46,8 +46,8 @@ struct LightsFile {
   /// The lights of a frame in view space. Fails as require_frames() does, and with ErrorKind::input if a light is in
   /// world space and the camera has no view_from_world.
   std::vector<Light> in_view(const Camera& camera, int frame) const;
-  /// The suns that are below the world's horizon in a frame. Fails as require_frames() does.
-  std::vector<std::string> below_horizon(int frame) const;
+  /// The suns that are below the world's horizon in one of these frames, which are listed: see require_frames().
+  std::vector<std::string> below_horizon(const std::vector<int>& frames) const;
   std::size_t up_of_world() const { return is_y_up ? 1 : 2; }  // the axis
   /// Whether a light has some size in any frame.
   bool is_soft(std::size_t light) const;
