@@ -350,9 +350,11 @@ class FrameRun {
       if (const auto& lights = look.output.read_lights) inputs.lights = lights->in_view(source.reading.camera, frame_);
       const FrameOutputs outputs = results_of(gpu_, inputs, visible, look.estimator, look.output);
       time.own_ms = run_passes();
-      // What is noted is the same of each.
+      // What is noted is the same of each, but for the light that looks turn.
       if (i == 0) {
-        tally_.add_outputs(outputs, computed, false);
+        FrameOutputs shared = outputs;
+        if (run_.looks.size() > 1) shared.shadow = nullptr;
+        tally_.add_outputs(shared, computed, false);
         finish_tally(source);
       }
       run_.take_look(i, source, computed, outputs, time);
