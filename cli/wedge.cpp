@@ -136,44 +136,65 @@ std::string without_shared_folder(const Words& files, const std::string& file) {
   return is_shared ? file.substr(folder.size()) : file;
 }
 
-/// The look of that number: the values of the last list change fastest. The last argument is the radius.
-WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::size_t number) {
-  Words chosen, parts;
+/// The value of each list for the look of that number: the values of the last list change fastest.
+Words values_of(const std::vector<Words>& arguments, std::size_t number) {
+  Words values;
   std::size_t rest = count_of(arguments);
-  for (std::size_t i = 0; i < arguments.size(); i++) {
-    rest /= arguments[i].size();
-    chosen.push_back(arguments[i][number / rest % arguments[i].size()]);
-    const std::string value = chosen.back();
-    // A value that begins as an option does is joined to its own. A flag holds its value already.
-    const auto awaits_value = [](const Words& words) {
-      return words.size() == 1 && words[0].starts_with("--") && words[0].find('=') == words[0].npos;
-    };
-    if (value.starts_with('-') && i > 0 && awaits_value(arguments[i - 1])) {
-      chosen.pop_back();
-      chosen.back() += "=" + value;
-    }
-    const std::string option = i > 0 ? arguments[i - 1].front() : "";
-    const std::string name =
-        option == "--preset" || option == "--set" ? "" : option.substr(std::min<std::size_t>(2, option.size())) + " ";
-    if (arguments[i].size() == 1 && !(parts.empty() && i + 1 == arguments.size())) continue;
-    parts.push_back(name + (option == "--preset" ? without_shared_folder(arguments[i], value) : value));
+  for (const auto& list : arguments) {
+    rest /= list.size();
+    values.push_back(list[number / rest % list.size()]);
   }
+  return values;
+}
+
+/// The name of a look: the values of lists, and of a single look its radius.
+std::string name_of(const std::vector<Words>& arguments, const Words& values) {
+  Words parts;
+  for (std::size_t i = 0; i < arguments.size(); i++) {
+    if (arguments[i].size() == 1 && !(parts.empty() && i + 1 == arguments.size())) continue;
+    const std::string option = i > 0 ? arguments[i - 1].front() : "";
+    const bool is_named = option != "--preset" && option != "--set" && option.size() > 2;
+    parts.push_back((is_named ? option.substr(2) + " " : "") +
+                    (option == "--preset" ? without_shared_folder(arguments[i], values[i]) : values[i]));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// The same as words of a command line: a value that begins as an option does is joined to its own.
+Words words_of_values(const Words& values) {
+  Words words;
+  for (const auto& value : values) {
+    // A flag holds its value already.
+    const bool follows_option =
+        !words.empty() && words.back().starts_with("--") && words.back().find('=') == words.back().npos;
+    if (value.starts_with('-') && follows_option)
+      words.back() += "=" + value;
+    else
+      words.push_back(value);
+  }
+  return words;
+}
+
+/// The look of that number. The last argument is the radius.
+WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::size_t number) {
+  const Words values = values_of(arguments, number);
+  Words words = words_of_values(values);
   const auto settings_of = [&] {
     RunOptions options;
-    (void)parse_run_options(chosen, options);
+    (void)parse_run_options(words, options);
     return options.settings;
   };
   const Settings of_values = settings_of();
   const bool is_of_sun = turns_sun(of_values.estimator);
-  chosen.insert(chosen.end(), {"-o", usual_output(typed.input, is_of_sun ? "shadow" : "ao", ".exr")});
-  if (is_of_sun) chosen.insert(chosen.end(), {"--aov", "shadow"});
+  words.insert(words.end(), {"-o", usual_output(typed.input, is_of_sun ? "shadow" : "ao", ".exr")});
+  if (is_of_sun) words.insert(words.end(), {"--aov", "shadow"});
   const bool shows_composite = !is_of_sun || !of_values.input.shadow_layers.empty();  // or it is the same in all looks
   if (typed.no_composite.empty() && shows_composite)
-    chosen.insert(chosen.end(), {"--composite", usual_output(typed.input, "composite", ".exr")});
-  chosen.insert(chosen.end(), {"--preview", usual_output(typed.input, "preview", ".png")});
+    words.insert(words.end(), {"--composite", usual_output(typed.input, "composite", ".exr")});
+  words.insert(words.end(), {"--preview", usual_output(typed.input, "preview", ".png")});
   const Settings settings = settings_of();
-  for (auto& word : chosen) word = for_shell(word);
-  return {fmt::format("{}", fmt::join(parts, ", ")), fmt::format("alcove run {}", fmt::join(chosen, " ")), settings};
+  for (auto& word : words) word = for_shell(word);
+  return {name_of(arguments, values), fmt::format("alcove run {}", fmt::join(words, " ")), settings};
 }
 
 /// The radii that were typed, or half and twice the proposed one; and that.
@@ -218,35 +239,59 @@ void check_reports(const Typed& typed, const FramePlan& plan) {
   require_ending(typed.sheet, "--sheet", ".png", "PNG");
 }
 
+/// Takes the typed radii out of the arguments.
+Words take_radii(std::vector<Words>& arguments) {
+  if (std::ranges::count(arguments, Words{"--radius"}) > 1)
+    fail(ErrorKind::usage, "--radius is given more than once: its looks are one list, as .1,.2,.5");
+  const auto at = std::ranges::find(arguments, Words{"--radius"});
+  if (at == arguments.end()) return {};
+  Words radii;
+  for (const auto& word : at[1]) radii.push_back(lower_case(word));
+  arguments.erase(at, at + 2);
+  return radii;
+}
+
+std::vector<Words> with_radii(std::vector<Words> arguments, const Words& radii) {
+  arguments.insert(arguments.end(), {{"--radius"}, radii});
+  return arguments;
+}
+
+/// The radius that inspect proposes. A frame without a surface has none, and must have typed radii.
+std::optional<double> proposed_radius(RunPreview& first, const Words& typed) {
+  try {
+    first.prepare();
+    return first.plan().settings().estimator.radius;
+  } catch (const Error& error) {
+    if (typed.empty() || has(typed, "auto") || error.kind() != ErrorKind::input) throw;
+  }
+  return {};
+}
+
+void require_few_pictures(std::size_t looks, std::size_t frames, bool has_page) {
+  if (looks * frames <= kMostPictures || (looks == 1 && !has_page)) return;
+  fail(ErrorKind::usage, "there are {} looks of {} frames, and a wedge has at most {} pictures: give {}", looks, frames,
+       kMostPictures, looks == 1 ? "--sheet alone, or --frames" : "fewer values or --frames");
+}
+
+void require_shown_lights(const std::vector<WedgeLook>& looks) {
+  if (std::ranges::any_of(looks, [](const WedgeLook& look) { return shows_lights(look.settings); })) return;
+  fail(ErrorKind::usage,
+       "--lights: a wedge shows a light where --set sun-azimuth or sun-elevation turns it, or --set shadow-layers "
+       "names its layer");
+}
+
 /// All combinations of what was typed, with the proposed radius among the radii.
 std::vector<WedgeLook> looks_of(const Typed& typed) {
   std::vector<Words> arguments = typed.arguments;
-  Words given;
-  if (std::ranges::count(arguments, Words{"--radius"}) > 1)
-    fail(ErrorKind::usage, "--radius is given more than once: its looks are one list, as .1,.2,.5");
-  if (const auto at = std::ranges::find(arguments, Words{"--radius"}); at != arguments.end()) {
-    for (const auto& word : at[1]) given.push_back(lower_case(word));
-    arguments.erase(at, at + 2);
-  }
-  const auto with_radii = [&](const Words& radii) {
-    auto all = arguments;
-    all.insert(all.end(), {{"--radius"}, radii});
-    return all;
-  };
-  RunPreview first(look_of(typed, with_radii({"auto"}), 0).settings);
+  Words given = take_radii(arguments);
+  RunPreview first(look_of(typed, with_radii(arguments, {"auto"}), 0).settings);
   check_reports(typed, first.plan());
   const bool is_of_sun = turns_sun(first.plan().settings().estimator);  // of one radius, if nothing else is typed
   if (is_of_sun && given.empty()) given = {"auto"};
   std::size_t frames = first.plan().frames().size();
   const bool names_frames = std::ranges::count(arguments, Words{"--frames"}) > 0;
   const bool is_contact_sheet = frames > 1 && !names_frames && given.size() == 1 && count_of(arguments) == 1;
-  std::optional<double> proposed;
-  try {
-    first.prepare();
-    proposed = first.plan().settings().estimator.radius;
-  } catch (const Error& error) {  // where radii are given, a frame without a surface is no mistake
-    if (given.empty() || has(given, "auto") || error.kind() != ErrorKind::input) throw;
-  }
+  const std::optional<double> proposed = proposed_radius(first, given);
   if (frames > 1 && !names_frames && !is_contact_sheet) {
     arguments.insert(arguments.end(), {{"--frames"}, {std::to_string(first.plan().frames()[frames / 2])}});
     frames = 1;
@@ -254,24 +299,18 @@ std::vector<WedgeLook> looks_of(const Typed& typed) {
   Words radii;
   for (const double radius : radii_of(given, proposed, !is_contact_sheet && !is_of_sun))
     radii.push_back(fmt::format("{}", radius));
-  const auto all = with_radii(radii);
+  const std::vector<Words> all = with_radii(arguments, radii);
   const std::size_t count = count_of(all);
-  if (count * frames > kMostPictures && !(count == 1 && typed.page.empty()))
-    fail(ErrorKind::usage, "there are {} looks of {} frames, and a wedge has at most {} pictures: give {}", count,
-         frames, kMostPictures, count == 1 ? "--sheet alone, or --frames" : "fewer values or --frames");
+  require_few_pictures(count, frames, !typed.page.empty());
   std::vector<WedgeLook> looks;
   for (std::size_t i = 0; i < count; i++) {
     looks.push_back(look_of(typed, all, i));
-    std::string& name = looks.back().name;
     const bool has_own_radius = radii.size() > 1 || count == 1;
-    if (proposed && has_own_radius && looks.back().settings.estimator.radius == proposed) name += " (proposed)";
+    if (proposed && has_own_radius && looks.back().settings.estimator.radius == proposed)
+      looks.back().name += " (proposed)";
   }
   check_looks(looks);
-  const bool shows = std::ranges::any_of(looks, [](const WedgeLook& look) { return shows_lights(look.settings); });
-  if (std::ranges::count(arguments, Words{"--lights"}) > 0 && !shows)
-    fail(ErrorKind::usage,
-         "--lights: a wedge shows a light where --set sun-azimuth or sun-elevation turns it, or --set shadow-layers "
-         "names its layer");
+  if (std::ranges::count(arguments, Words{"--lights"}) > 0) require_shown_lights(looks);
   return looks;
 }
 

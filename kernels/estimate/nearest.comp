@@ -1,4 +1,4 @@
-// A plane before all surfaces of every block of the image, and the farthest depth, by which `shadow` passes over blocks.
+// A plane before all surfaces of every block, and the farthest depth, by which `shadow` passes over blocks.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // In: depth of what may block.
