@@ -178,21 +178,22 @@ Words words_of_values(const Words& values) {
 /// The look of that number. The last argument is the radius.
 WedgeLook look_of(const Typed& typed, const std::vector<Words>& arguments, std::size_t number) {
   const Words values = values_of(arguments, number);
-  Words words = words_of_values(values);
-  const auto settings_of = [&] {
+  Words words;
+  const auto settings_with = [&](const char* file, const Words& aovs, bool has_composite) {
+    words = words_of_values(values);
+    words.insert(words.end(), {"-o", usual_output(typed.input, file, ".exr")});
+    words.insert(words.end(), aovs.begin(), aovs.end());
+    if (has_composite) words.insert(words.end(), {"--composite", usual_output(typed.input, "composite", ".exr")});
+    words.insert(words.end(), {"--preview", usual_output(typed.input, "preview", ".png")});
     RunOptions options;
     (void)parse_run_options(words, options);
     return options.settings;
   };
-  const Settings of_values = settings_of();
-  const bool is_of_sun = turns_sun(of_values.estimator);
-  words.insert(words.end(), {"-o", usual_output(typed.input, is_of_sun ? "shadow" : "ao", ".exr")});
-  if (is_of_sun) words.insert(words.end(), {"--aov", "shadow"});
-  const bool shows_composite = !is_of_sun || !of_values.input.shadow_layers.empty();  // or it is the same in all looks
-  if (typed.no_composite.empty() && shows_composite)
-    words.insert(words.end(), {"--composite", usual_output(typed.input, "composite", ".exr")});
-  words.insert(words.end(), {"--preview", usual_output(typed.input, "preview", ".png")});
-  const Settings settings = settings_of();
+  Settings settings = settings_with("ao", {}, typed.no_composite.empty());
+  if (turns_sun(settings.estimator)) {
+    const bool is_dimmed = typed.no_composite.empty() && !settings.input.shadow_layers.empty();
+    settings = settings_with("shadow", {"--aov", "shadow"}, is_dimmed);
+  }
   for (auto& word : words) word = for_shell(word);
   return {name_of(arguments, values), fmt::format("alcove run {}", fmt::join(words, " ")), settings};
 }
