@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks beside the tests: the address, undefined-behaviour and thread sanitizers, clang-tidy, some seconds of fuzzing for each target; and the coverage of the tests.
-#   scripts/check.sh              readers of files, every estimator, and sequences
+#   scripts/check.sh              readers of files, refusals, the bits of frames, the library, and sequences
 #   scripts/check.sh PART...      only these parts: addresses (with undefined behaviour), threads, tidy, fuzzing; windows (installs packages.txt's [build] and [windows])
 #   scripts/check.sh all          all sources and all tests
 #   scripts/check.sh coverage     only this: lines and branches of core/ and cli/ that the tests reach
@@ -14,8 +14,7 @@ readers=(core/formats/{exr_check,exr_zip,sample_loops,dds,image_io,npy,open_imag
 tests=(base/{text,new_file,memory_limit}_test
        formats/{file,file_names,open_image,bad_input,capture_formats,color,hostile,sequence,zip,zip_writer}_test
        frame/{camera,chan,resection,header_camera,frame_source,parts,inputs,readings,sources}_test
-       run/{refusals,same_bits,matte}_test measure/compare_test inspect/inspect_test cli/options_test
-       gpu/gpu_test chain/{property,confidence}_test api/{library,library_refusals}_test)
+       run/{refusals,same_bits,shadow_run}_test api/{library,library_refusals}_test)
 threaded=(run/{batch,faults}_test formats/{zip,zip_writer}_test)
 for file in "${readers[@]}" $(printf 'tests/%s.cpp ' "${tests[@]}" "${threaded[@]}"); do
   [ -f "$file" ] || { echo "$0: there is no $file" >&2; exit 2; }
