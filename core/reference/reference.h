@@ -41,7 +41,6 @@ struct ReferenceSettings {
   int hidden = 3;                   // the most surfaces behind the first that count; 0 to 3
   double separation = -1;           // scene units: surfaces closer together are one; below 0: as in layers.comp
   double bias = 0;                  // sine of the elevation above the tangent plane below which nothing blocks
-  int threads = 0;                  // 0: one per core
   std::vector<std::size_t> pixels;  // indices of the pixels to compute; empty: all
 };
 
@@ -55,31 +54,6 @@ ReferenceSettings reference_settings_of(const EstimatorSettings& settings, bool 
 /// Gives the visibility in [0, 1] of each pixel; 1 on sky and at pixels that were not asked for. The frame must have
 /// planar depth and normals. Fails with ErrorKind::input otherwise.
 std::vector<float> reference_ao(const HostFrame& frame, const ReferenceSettings& settings);
-
-/// Gives the visibility that completed surfaces take from each pixel, in [0, 1]; 0 on sky and at pixels that were not
-/// asked for. Thickness is the same with and without them.
-std::vector<float> reference_completed(const HostFrame& frame, const ReferenceSettings& settings);
-
-/// A light without size, in view space.
-struct ReferenceLight {
-  bool is_lamp = false;  // at a place; else a sun
-  Vector at;             // scene units: that place; or a direction to the sun, 1 long
-};
-
-/// Gives 1 for each pixel that sees a light, and on sky and at pixels that were not asked for; else 0. Nothing blocks
-/// farther away than `reach` (scene units); the settings' radius says how thick things may be.
-std::vector<float> reference_shadow(const HostFrame& frame, const ReferenceSettings& settings,
-                                    const ReferenceLight& light, double reach);
-
-/// Gives (1 / pi) times the integral of the visibility, the cosine to the normal and the real spherical harmonics of
-/// l <= 2 in view space as planes of (l, m) = (0, 0), (1, -1), (1, 0) ... (2, 2): constants are positive, and (1, 1)
-/// goes by x. The first band is the mean open direction. 0 on sky and at pixels that were not asked for.
-inline constexpr std::size_t kTransferPlanes = 9;
-std::vector<float> reference_transfer(const HostFrame& frame, const ReferenceSettings& settings);
-
-/// Gives two planes: the parts, in [0, 1], of the hemispheres below and above each pixel's tangent plane that the
-/// receiver's own surface blocks; 0 on sky and at other pixels than `pixels`. See own_surface.glsl.
-std::vector<float> reference_curvature(const HostFrame& frame, const ReferenceSettings& settings);
 
 /// Gives the visibility in [0, 1] of each pixel by the settings' estimator (gtao, hbao, crytek) with its radius, bias,
 /// falloff and kernel, intensity and power. That is its result at full resolution with so many directions and samples

@@ -7,10 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "core/base/error.h"
-#include "core/reference/reference_scene.h"
+#include "core/reference/reference_blocking.h"
 
 namespace alcove {
 namespace {
@@ -19,10 +18,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kDirections = 64;          // on the image, for hbao
 constexpr int kDirectionsOfKernel = 64;  // of the hemisphere, for each length of crytek's kernel
 
-struct Receiver {
-  int x, y;
-  Vector position, eye, normal;
-};
+using Receiver = ReferenceReceiver;
 
 double smooth(double x) {
   const double t = std::clamp(x, 0.0, 1.0);
@@ -30,13 +26,8 @@ double smooth(double x) {
 }
 
 double attenuation(const EstimatorSettings& settings, double distance) {
-  if (settings.falloff == Falloff::none) return 1;
-  const double start = settings.falloff_start * *settings.radius;
-  const double end = settings.falloff_end * *settings.radius;
-  const double x = std::clamp((distance - start) / (end - start), 0.0, 1.0);
-  return settings.falloff == Falloff::linear      ? 1 - x
-         : settings.falloff == Falloff::quadratic ? 1 - x * x
-                                                  : 1 - smooth(x);
+  return falloff_weight(settings.falloff, settings.falloff_start * *settings.radius,
+                        settings.falloff_end * *settings.radius, distance);
 }
 
 /// The distance in pixels, along a direction of the image, at which the sphere of the radius ends.
@@ -155,43 +146,26 @@ double crytek_ao(const ReferenceScene& scene, const Receiver& receiver, const Es
   return valid > 0 ? 1 - hidden / valid : 1;
 }
 
-std::vector<float> gtao(const HostFrame& frame, const EstimatorSettings& settings,
-                        const std::vector<std::size_t>& pixels) {
-  ReferenceSettings reference = reference_settings_of(settings);
-  reference.slices = kDirections / 2;
-  reference.pixels = pixels;
-  return reference_ao(frame, reference);
-}
-
 }  // namespace
 
 std::vector<float> reference_estimate(const HostFrame& frame, const EstimatorSettings& settings,
                                       const std::vector<std::size_t>& pixels) {
   if (settings.estimator == Estimator::bitmask)
     fail(ErrorKind::usage, "--estimator bitmask: its reference is reference_ao()");
-  const ReferenceScene scene(frame);
-  std::vector<std::size_t> all(pixels);
-  if (all.empty()) {
-    all.resize(frame.data.pixels());
-    std::iota(all.begin(), all.end(), 0u);
-  }
+  ReferenceSettings reference = reference_settings_of(settings);
+  reference.pixels = pixels;
   std::vector<float> ao(frame.data.pixels(), 1.0f);
   if (settings.estimator == Estimator::gtao) {
-    ao = gtao(frame, settings, all);
+    reference.slices = kDirections / 2;
+    ao = reference_ao(frame, reference);
   } else {
+    reference.hidden = 0;
     const auto estimate = settings.estimator == Estimator::hbao ? hbao_ao : crytek_ao;
-    for (const std::size_t i : all) {
-      const int x = int(i % std::size_t(scene.width()));
-      const int y = int(i / std::size_t(scene.width()));
-      const double z = scene.depth(x, y);
-      if (z == 0) continue;
-      const Vector position = scene.position(x, y, z);
-      const Vector eye = scene.toward_eye(position);
-      ao[i] = float(std::clamp(estimate(scene, {x, y, position, eye, scene.normal(x, y, eye)}, settings), 0.0, 1.0));
-    }
+    for_receivers(frame, reference, [&](std::size_t i, const ReferenceScene& scene, const Receiver& receiver) {
+      ao[i] = float(std::clamp(estimate(scene, receiver, settings), 0.0, 1.0));
+    });
   }
-  for (const std::size_t i : all)
-    ao[i] = float(std::pow(std::max(0.0, 1 - settings.intensity * (1 - ao[i])), settings.power));
+  for (float& value : ao) value = float(std::pow(std::max(0.0, 1 - settings.intensity * (1 - value)), settings.power));
   return ao;
 }
 

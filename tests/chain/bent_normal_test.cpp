@@ -1,8 +1,8 @@
 // Bent normals: closed forms, the CPU reference, and what the filters make of them.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/results/shading.h"
-#include "core/reference/reference.h"
 #include "tests/support/chain.h"
+#include "tests/support/reference_planes.h"
 #include "tests/support/scenes.h"
 
 namespace alcove::bent_normal_test {

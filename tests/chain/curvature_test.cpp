@@ -1,8 +1,8 @@
 // Convexity, cavity and curvature: closed forms, rays within solids, the CPU reference, and what must leave them alone.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reference/reference.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
+#include "tests/support/reference_planes.h"
 #include "tests/support/scenes.h"
 #include "tests/support/wall_frame.h"
 

@@ -4,9 +4,9 @@
 // The scenes are of flat things without thickness, and the searches are told that occluders are thin. Without completed
 // surfaces they then miss exactly what is hidden.
 
-#include "core/reference/reference.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
+#include "tests/support/reference_planes.h"
 
 namespace alcove::pieces_test {
 namespace {

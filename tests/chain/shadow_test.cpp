@@ -1,8 +1,8 @@
 // The shadows of lights: closed forms by rays, the reference, and what must not matter.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/find/lights.h"
-#include "core/reference/reference.h"
 #include "tests/support/chain.h"
+#include "tests/support/reference_planes.h"
 
 namespace alcove::shadow_test {
 namespace {

@@ -1,8 +1,8 @@
 // The nine coefficients: closed forms, the CPU reference, turned cameras, and what is to be their sum.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/results/shading.h"
-#include "core/reference/reference.h"
 #include "tests/support/chain.h"
+#include "tests/support/reference_planes.h"
 #include "tests/support/scenes.h"
 
 namespace alcove::transfer_test {
@@ -10,44 +10,30 @@ namespace {
 
 using namespace test;
 
-using Nine = std::array<double, kTransferPlanes>;
-
-/// The real spherical harmonics (0, 0), (1, -1), (1, 0) ... (2, 2), by polynomials of the direction.
-Nine harmonics(Vec3 w) {
-  const double c = std::sqrt(15 / kPi) / 2;
-  Nine y{0.5, w.y, w.z, w.x, w.x * w.y, w.y * w.z, 3 * w.z * w.z - 1, w.x * w.z, w.x * w.x - w.y * w.y};
-  y[0] *= std::sqrt(1 / kPi);
-  for (std::size_t k = 1; k < 4; k++) y[k] *= std::sqrt(3 / kPi) / 2;
-  for (const std::size_t k : {4, 5, 7}) y[k] *= c;
-  y[6] *= std::sqrt(5 / kPi) / 4;
-  y[8] *= c / 2;
-  return y;
-}
-
 /// The coefficients in view space that a receiver in the world has by quadrature over what is open about its normal.
-Nine truth_of(const Shot& shot, Vec3 normal, const std::function<bool(Vec3)>& is_open) {
+Transfer truth_of(const Shot& shot, Vec3 normal, const std::function<bool(Vec3)>& is_open) {
   const Vec3 aside = unit(std::abs(normal.z) < 0.9 ? cross(normal, {0, 0, 1}) : cross(normal, {1, 0, 0}));
   const Vec3 beside = cross(normal, aside);
-  Nine sum{};
+  Transfer sum{};
   constexpr int kRings = 60, kTurns = 120;
   for (int r = 0; r < kRings; r++)
     for (int t = 0; t < kTurns; t++) {
       const double out = std::sqrt((r + 0.5) / kRings), turn = 2 * kPi * (t + 0.5) / kTurns;
       const Vec3 w = out * std::cos(turn) * aside + out * std::sin(turn) * beside + std::sqrt(1 - out * out) * normal;
       if (!is_open(w)) continue;
-      const Nine y = harmonics(shot.view_from_world(w));
+      const Transfer y = harmonics(shot.view_from_world(w));
       for (std::size_t k = 0; k < y.size(); k++) sum[k] += y[k] / (kRings * kTurns);
     }
   return sum;
 }
 
-Nine at(const std::vector<float>& transfer, std::size_t i) {
-  Nine nine{};
+Transfer at(const std::vector<float>& transfer, std::size_t i) {
+  Transfer nine{};
   for (std::size_t k = 0; k < nine.size(); k++) nine[k] = transfer[i + k * transfer.size() / nine.size()];
   return nine;
 }
 
-double distance(const Nine& a, const Nine& b) {
+double distance(const Transfer& a, const Transfer& b) {
   double sum = 0;
   for (std::size_t k = 0; k < a.size(); k++) sum += (a[k] - b[k]) * (a[k] - b[k]);
   return std::sqrt(sum);
@@ -62,7 +48,7 @@ std::vector<EstimatorSettings> searches(double radius) {
 
 TEST(Transfer, truth_of_these_tests_is_the_closed_form) {
   const Shot shot = Shot::orthographic({0, 0, 9}, {0, 0, 0}, 1, 8, 8);  // view space is the world's
-  const Nine half = truth_of(shot, {0, 0, 1}, [](Vec3 w) { return w.x > 0; });
+  const Transfer half = truth_of(shot, {0, 0, 1}, [](Vec3 w) { return w.x > 0; });
   const double first = std::sqrt(3 / kPi) / 2, second = std::sqrt(15 / kPi) / 2;
   EXPECT_NEAR(half[0], std::sqrt(1 / kPi) / 4, 1e-3);
   EXPECT_NEAR(half[2], first / 3, 1e-3);
@@ -75,7 +61,7 @@ TEST(Transfer, truth_of_these_tests_is_the_closed_form) {
 TEST(Transfer, of_an_open_plane_is_that_of_its_hemisphere_at_every_tilt_through_every_filter) {
   for (const auto& [what, rendering] : slanted_planes({0, 40, 80}, {37, 200}, {0, 80})) {
     SCOPED_TRACE(what);
-    const Nine truth = truth_of(rendering.shot, rendering.at(32, 24).normal, [](Vec3) { return true; });
+    const Transfer truth = truth_of(rendering.shot, rendering.at(32, 24).normal, [](Vec3) { return true; });
     std::vector<EstimatorSettings> all = searches(1);
     all.push_back(sampled(Estimator::gtao, 1, 1, 8));
     all.back().denoise = Denoise::bilateral;
@@ -86,7 +72,7 @@ TEST(Transfer, of_an_open_plane_is_that_of_its_hemisphere_at_every_tilt_through_
     for (const EstimatorSettings& settings : all) {
       const auto transfer = planes_of(rendering.frame, settings, "transfer").transfer;
       for (std::size_t i = 0; i < rendering.hits.size(); i += 7)
-        ASSERT_LE(distance(at(transfer, i), rendering.hits[i].primitive < 0 ? Nine{} : truth), 2e-3)
+        ASSERT_LE(distance(at(transfer, i), rendering.hits[i].primitive < 0 ? Transfer{} : truth), 2e-3)
             << name_of(settings) << " pixel " << i;
     }
   }
@@ -136,8 +122,8 @@ TEST(Transfer, beside_a_wall_and_in_a_corner_turns_with_the_camera) {
 }
 
 /// The light that comes of nine coefficients of light from a direction.
-double light_from(const Nine& transfer, Vec3 direction) {
-  const Nine y = harmonics(direction);
+double light_from(const Transfer& transfer, Vec3 direction) {
+  const Transfer y = harmonics(direction);
   double sum = 0;
   for (std::size_t k = 0; k < y.size(); k++) sum += y[k] * transfer[k];
   return sum;
@@ -201,7 +187,7 @@ TEST(Transfer, of_each_band_is_possible_with_the_visibility) {
   for (const EstimatorSettings& settings : filtered_searches(0.6)) {
     const Planes planes = planes_of(room.frame, settings, "ao,transfer");
     for (std::size_t i = 0; i < room.hits.size(); i++) {
-      const Nine nine = at(planes.transfer, i);
+      const Transfer nine = at(planes.transfer, i);
       const double first = std::hypot(nine[1], nine[2], nine[3]);
       const double second = std::hypot(std::hypot(nine[4], nine[5], nine[6]), nine[7], nine[8]);
       ASSERT_LE(first, std::sqrt(3) * nine[0] + 1e-6) << name_of(settings) << " pixel " << i;

@@ -1,6 +1,6 @@
 // The rules of completed surfaces one by one, in single slices: which ends go on, how far, and how thick runs are.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reference/reference.h"
+#include "tests/support/reference_planes.h"
 #include "tests/support/scenes.h"
 
 namespace alcove::completion_rules_test {

@@ -4,8 +4,8 @@
 // The scenes are of flat things without thickness, so the reference is told that occluders are thin. Without completed
 // surfaces it then misses exactly what is hidden, and each test shows that this is a lot.
 
-#include "core/reference/reference.h"
 #include "tests/support/chain.h"
+#include "tests/support/reference_planes.h"
 #include "tests/support/scenes.h"
 
 namespace alcove::reference_completion_test {
