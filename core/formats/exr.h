@@ -142,7 +142,6 @@ void require_host_room(const std::string& path, const Window& data);
 struct ExrPlane {
   std::string channel;
   SampleType type;  // half: rounded to nearest, at most +-65504
-  std::span<const float> pixels;
 };
 
 struct ExrOutput {
@@ -159,7 +158,6 @@ struct ExrOutput {
 /// it is not. Fails with ErrorKind::output.
 class ExrWriter {
  public:
-  /// Ignores the pixels of output.planes.
   ExrWriter(const std::string& path, const ExrOutput& output);
   ~ExrWriter();
   ExrWriter(ExrWriter&&) noexcept;
@@ -174,9 +172,6 @@ class ExrWriter {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Writes a whole file with the pixels of output.planes.
-void write_exr(const std::string& path, const ExrOutput& output);
 
 /// Reads the named channels of the first part that holds all of them; without names, every channel of the first part.
 /// Fails with ErrorKind::input.

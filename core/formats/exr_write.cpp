@@ -55,7 +55,7 @@ Imf::Header header_of(const ExrOutput& output) {
 
 struct ExrWriter::Impl {
   std::string path;
-  ExrOutput output;  // without pixels
+  ExrOutput output;
   FileStream stream;
   std::unique_ptr<ZipWriter> zip;
   std::unique_ptr<Imf::OutputFile> file;  // for other compressions than ZIP
@@ -125,14 +125,6 @@ void ExrWriter::finish(const std::map<std::string, std::string>& late) {
     Imf::OutputFile(with_late.stream, header_of(with_late.output)).copyPixels(rows);
   });
   with_late.stream.commit();
-}
-
-void write_exr(const std::string& path, const ExrOutput& output) {
-  ExrWriter writer(path, output);
-  std::vector<std::span<const float>> planes;
-  for (const auto& plane : output.planes) planes.push_back(plane.pixels);
-  writer.write(planes);
-  writer.finish();
 }
 
 namespace {

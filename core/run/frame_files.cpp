@@ -324,8 +324,7 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
   for (const auto& aov : aovs_of(settings)) {
     const SampleType type =
         settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
-    for (const auto& channel : channels_of(aov, planes_of(aov, estimator)))
-      output.planes.push_back({channel, type, {}});
+    for (const auto& channel : channels_of(aov, planes_of(aov, estimator))) output.planes.push_back({channel, type});
   }
   if (wants(settings, &FrameOutputs::scales)) output.own_attributes["alcove/radii"] = radius_text(estimator);
   if (wants(settings, &FrameOutputs::normal) || wants(settings, &FrameOutputs::bent_normal) ||
@@ -375,11 +374,10 @@ ExrOutput composite_file(const FrameSource& source, const Settings& all, const P
   output.compression = settings.composite_compression;
   const char* names[] = {"R", "G", "B", "A"};
   for (std::size_t c = 0; c < source.channels[RawPlane::beauty].size(); c++)
-    output.planes.push_back(
-        {names[c],
-         source.is_half(source.channels[RawPlane::beauty][c]) ? SampleType::half_float : SampleType::single_float,
-         {}});
-  if (!settings.append_ao.empty()) output.planes.push_back({appended_channel(settings), type_of(settings), {}});
+    output.planes.push_back({names[c], source.is_half(source.channels[RawPlane::beauty][c])
+                                           ? SampleType::half_float
+                                           : SampleType::single_float});
+  if (!settings.append_ao.empty()) output.planes.push_back({appended_channel(settings), type_of(settings)});
   return output;
 }
 

@@ -13,6 +13,7 @@
 #include "tests/support/device.h"
 #include "tests/support/program.h"
 #include "tests/support/test.h"
+#include "tests/support/wall_frame.h"
 
 namespace alcove::kept_references_test {
 namespace {
@@ -49,12 +50,7 @@ ReferenceSettings reference_of(const SuiteCandidate& candidate, const SuiteFrame
 /// Rounded to half floats.
 void write_kept_reference(const std::string& path, const ReferenceSettings& settings, const HostFrame& frame,
                           const std::vector<float>& ao) {
-  ExrOutput output;
-  output.data = frame.data;
-  output.display = frame.display;
-  output.own_attributes["alcove/reference"] = text_of(settings);
-  output.planes.push_back({"Y", SampleType::half_float, ao});
-  write_exr(path, output);
+  FrameFile{frame.data, frame.display, 1, {{"Y", ao}}, {"Y"}, {{"alcove/reference", text_of(settings)}}}.write(path);
 }
 
 TEST(KeptReferences, are_what_the_reference_computes) {

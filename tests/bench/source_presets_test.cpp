@@ -14,6 +14,7 @@
 #include "core/reference/reference.h"
 #include "tests/support/device.h"
 #include "tests/support/program.h"
+#include "tests/support/wall_frame.h"
 
 namespace alcove::source_presets_test {
 namespace {
@@ -94,13 +95,10 @@ TEST(SourcePresets, are_these) {
 
 TEST(SourcePresets, DISABLED_writes_the_goldens) {
   const HostFrame frame = part_of_frame();
-  std::vector<std::vector<float>> planes;
-  ExrOutput output;
-  output.data = output.display = {0, 0, frame.data.width, frame.data.height};
-  for (const auto& preset : kPresets) planes.push_back(reference_estimate(frame, settings_of(preset)));
-  for (std::size_t i = 0; i < kPresets.size(); i++)
-    output.planes.push_back({kPresets[i], SampleType::half_float, planes[i]});
-  write_exr(kGoldens, output);
+  const Window window{0, 0, frame.data.width, frame.data.height};
+  test::FrameFile file{window, window, 1, {}, {kPresets.begin(), kPresets.end()}};
+  for (const auto& preset : kPresets) file.planes[preset] = reference_estimate(frame, settings_of(preset));
+  file.write(kGoldens);
 }
 
 }  // namespace

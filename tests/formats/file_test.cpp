@@ -13,6 +13,7 @@
 #include "tests/support/picture_file.h"
 #include "tests/support/program.h"
 #include "tests/support/test.h"
+#include "tests/support/wall_frame.h"
 
 namespace alcove::file_test {
 namespace {
@@ -178,13 +179,6 @@ float nearest_half(float x) {
   return std::copysign(float(rounded), x);
 }
 
-ExrOutput output_of(const Window& data, const Window& display) {
-  ExrOutput output;
-  output.data = data;
-  output.display = display;
-  return output;
-}
-
 bool same(float a, float b) {
   return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (std::isnan(a) && std::isnan(b));
 }
@@ -193,10 +187,9 @@ TEST_F(Files, floats_come_back_bit_by_bit_and_halves_as_the_nearest_that_is_fini
   const auto values = difficult_values();
   const Window window{0, 0, int(values.size()), 1};
   for (const char* compression : {"none", "rle", "zips", "zip", "piz"}) {
-    ExrOutput output = output_of(window, window);
-    output.compression = compression;
-    output.planes = {{"F", SampleType::single_float, values}, {"H", SampleType::half_float, values}};
-    write_exr(path, output);
+    FrameFile file{window, window, 1, {{"F", values}, {"H", values}}, {"H"}};
+    file.compression = compression;
+    file.write(path);
     const Image image = read_exr_image(path);
     for (std::size_t i = 0; i < values.size(); i++) {
       EXPECT_TRUE(same(image.plane("F")[i], values[i]))
@@ -213,10 +206,7 @@ TEST_F(Files, windows_come_back_wherever_they_are) {
     const Window display{-2, 3, 17, 9};
     std::vector<float> values(data.pixels());
     for (std::size_t i = 0; i < values.size(); i++) values[i] = float(i);
-    ExrOutput output = output_of(data, display);
-    output.pixel_aspect = 0.75;
-    output.planes = {{"Y", SampleType::single_float, values}};
-    write_exr(path, output);
+    FrameFile{data, display, 0.75, {{"Y", values}}}.write(path);
     const ExrFile file(path, "INPUT");
     EXPECT_EQ(file.display(), display) << to_string(file.display());
     EXPECT_EQ(file.parts().at(0).data, data) << to_string(file.parts()[0].data);
@@ -227,9 +217,7 @@ TEST_F(Files, windows_come_back_wherever_they_are) {
 
 TEST_F(Files, channels_of_chosen_names_are_read_in_the_order_asked_for) {
   const std::vector<float> one{1, 2}, two{3, 4};
-  ExrOutput output = output_of({0, 0, 2, 1}, {0, 0, 2, 1});
-  output.planes = {{"b", SampleType::single_float, one}, {"a.x", SampleType::half_float, two}};
-  write_exr(path, output);
+  FrameFile{{0, 0, 2, 1}, {0, 0, 2, 1}, 1, {{"b", one}, {"a.x", two}}, {"a.x"}}.write(path);
   EXPECT_EQ(read_exr_image(path, {"b", "a.x"}).pixels, (std::vector<float>{1, 2, 3, 4}));
   EXPECT_EQ(read_exr_image(path, {"a.x"}).pixels, two);
   expect_error(ErrorKind::input, {"a.exr", "missing"}, [&] { read_exr_image(path, {"missing"}); });
@@ -264,12 +252,10 @@ TEST_F(Files, attributes_of_every_type_are_carried_over_but_those_of_storage) {
   header.channels().insert("Y", Imf::Channel(Imf::HALF));
   write_openexr(path, header);
   ExrHeader before = kept();
-  const std::vector<float> values(8, 0.5f);
-  ExrOutput output = output_of({0, 0, 4, 2}, {0, 0, 4, 2});
-  output.attributes = ExrFile(path, "INPUT").attributes(0);
-  output.own_attributes = {{"alcove/version", "1"}, {"owner", "another"}};
-  output.planes = {{"Y", SampleType::half_float, values}};
-  write_exr(path, output);
+  FrameFile file{{0, 0, 4, 2}, {0, 0, 4, 2}, 1, {{"Y", std::vector<float>(8, 0.5f)}}, {"Y"}};
+  file.input_attributes = ExrFile(path, "INPUT").attributes(0);
+  file.attributes = {{"alcove/version", "1"}, {"owner", "another"}};
+  file.write(path);
   for (const char* name : {"BlenderMultiChannel", "cryptomatte/123abcd/name", "cryptomatte/123abcd/manifest",
                            "multiView", "dwaCompressionLevel"})
     EXPECT_EQ(before.erase(name), 1) << name << " was in the input";
@@ -286,12 +272,9 @@ TEST_F(Files, our_attributes_replace_those_of_another_type) {
   header.insert("alcove/version", Imf::FloatAttribute(3));
   header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
   write_openexr(path, header);
-  const std::vector<float> value(1);
-  ExrOutput output = output_of({0, 0, 1, 1}, {0, 0, 1, 1});
-  output.attributes = ExrFile(path, "INPUT").attributes(0);
-  output.own_attributes = {{"alcove/version", "1"}};
-  output.planes = {{"Y", SampleType::half_float, value}};
-  EXPECT_NO_THROW(write_exr(path, output));
+  FrameFile file{{0, 0, 1, 1}, {0, 0, 1, 1}, 1, {{"Y", {0}}}, {"Y"}, {{"alcove/version", "1"}}};
+  file.input_attributes = ExrFile(path, "INPUT").attributes(0);
+  EXPECT_NO_THROW(file.write(path));
   EXPECT_EQ(text_in(read_header(path), "alcove/version"), "1");
 }
 
@@ -312,10 +295,9 @@ std::pair<std::string, std::vector<float>> small_exr(const std::string& path, co
     one[i] = float(i);
     two[i] = float(i % 7) / 8;
   }
-  ExrOutput output = output_of({-2, 1, 7, 5}, {0, 0, 9, 9});
-  output.compression = compression;
-  output.planes = {{"A", SampleType::half_float, two}, {"Z", SampleType::single_float, one}};
-  write_exr(path, output);
+  FrameFile file{{-2, 1, 7, 5}, {0, 0, 9, 9}, 1, {{"A", two}, {"Z", one}}, {"A"}};
+  file.compression = compression;
+  file.write(path);
   std::vector<float> both = two;
   both.insert(both.end(), one.begin(), one.end());
   return {read_bytes(path), both};
@@ -362,12 +344,10 @@ TEST_F(Files, every_damaged_byte_is_an_input_error_or_gives_some_pixels) {
 
 TEST_F(Files, an_exr_that_cannot_be_written_leaves_the_old_one) {
   write_bytes(path, "before");
-  const std::vector<float> value(1);
-  ExrOutput output = output_of({0, 0, 1, 1}, {0, 0, 1, 1});
-  output.planes = {{"", SampleType::half_float, value}};  // a channel must have a name
-  expect_error(ErrorKind::output, {"a.exr"}, [&] { write_exr(path, output); });
-  output = output_of({0, 0, 0, 0}, {0, 0, 1, 1});
-  expect_error(ErrorKind::output, {"a.exr"}, [&] { write_exr(path, output); });
+  FrameFile file{{0, 0, 1, 1}, {0, 0, 1, 1}, 1, {{"", {0}}}};  // a channel must have a name
+  expect_error(ErrorKind::output, {"a.exr"}, [&] { file.write(path); });
+  file = {{0, 0, 0, 0}, {0, 0, 1, 1}};
+  expect_error(ErrorKind::output, {"a.exr"}, [&] { file.write(path); });
   EXPECT_EQ(read_bytes(path), "before");
   EXPECT_THAT(names_in(folder.path()), ElementsAre("a.exr"));
 }

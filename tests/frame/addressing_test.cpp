@@ -5,6 +5,7 @@
 #include "core/frame/find/matte.h"
 #include "core/inspect/inspect.h"
 #include "tests/support/part_files.h"
+#include "tests/support/wall_frame.h"
 
 namespace alcove::addressing_test {
 namespace {
@@ -118,14 +119,10 @@ class ThreeChannels : public GBuffer {
   template <class Of>
   void write_planes(const std::string& path, const Names& names, Of of) const {
     const Window window{0, 0, 40, 30};
-    std::vector<std::vector<float>> planes(names.size());
+    FrameFile file{window, window};
     for (std::size_t i = 0; i < window.pixels(); i++)
-      for (std::size_t c = 0; c < names.size(); c++) planes[c].push_back(of(i, c));
-    ExrOutput output;
-    output.data = output.display = window;
-    for (std::size_t c = 0; c < names.size(); c++)
-      output.planes.push_back({names[c], SampleType::single_float, planes[c]});
-    write_exr(path, output);
+      for (std::size_t c = 0; c < names.size(); c++) file.planes[names[c]].push_back(of(i, c));
+    file.write(path);
   }
   static float grey(std::size_t i, std::size_t) { return 2 + float(i % 7); }
   static float coloured(std::size_t i, std::size_t c) { return 1 + float((i + 3 * c) % 7); }

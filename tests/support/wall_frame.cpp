@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/wall_frame.h"
 
-#include "core/formats/exr.h"
-
 namespace alcove::test {
 namespace {
 
@@ -17,15 +15,23 @@ float uneven(std::size_t index) { return float(std::fmod(double(index) * 0.61803
 
 }  // namespace
 
-void FrameFile::write(const std::string& path) const {
-  ExrOutput output;
-  output.data = data;
-  output.display = display;
-  output.pixel_aspect = pixel_aspect;
-  output.own_attributes = attributes;
+ExrOutput FrameFile::output() const {
+  ExrOutput output{data, display, pixel_aspect, compression, input_attributes, attributes, {}};
   for (const auto& [name, pixels] : planes)
-    output.planes.push_back({name, halves.contains(name) ? SampleType::half_float : SampleType::single_float, pixels});
-  write_exr(path, output);
+    output.planes.push_back({name, halves.contains(name) ? SampleType::half_float : SampleType::single_float});
+  return output;
+}
+
+std::vector<std::span<const float>> FrameFile::pixels() const {
+  std::vector<std::span<const float>> all;
+  for (const auto& [name, pixels] : planes) all.emplace_back(pixels);
+  return all;
+}
+
+void FrameFile::write(const std::string& path) const {
+  ExrWriter writer(path, output());
+  writer.write(pixels());
+  writer.finish();
 }
 
 void FrameFile::rename(const std::string& from, const std::string& to) {

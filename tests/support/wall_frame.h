@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/base/image.h"
+#include "core/formats/exr.h"
 #include "tests/support/openexr.h"
 #include "tests/support/test.h"
 
@@ -14,10 +14,15 @@ constexpr Window kWallWindow{0, 0, 64, 36};
 struct FrameFile {
   Window data = kWallWindow, display = kWallWindow;
   double pixel_aspect = 1;
-  std::map<std::string, std::vector<float>> planes;
-  std::set<std::string> halves;  // the planes to be written as half
-  std::map<std::string, std::string> attributes;
+  std::map<std::string, std::vector<float>> planes = {};
+  std::set<std::string> halves = {};  // the planes to be written as half
+  std::map<std::string, std::string> attributes = {};
+  std::string compression = "zip";
+  std::shared_ptr<const ExrAttributes> input_attributes = {};  // to carry over
 
+  /// The file as a writer takes it: its planes are in the order of `planes`.
+  ExrOutput output() const;
+  std::vector<std::span<const float>> pixels() const;
   void write(const std::string& path) const;
   /// Gives a plane another name.
   void rename(const std::string& from, const std::string& to);
