@@ -147,11 +147,4 @@ std::string header_text(const Notes& notes) {
   return text;
 }
 
-std::string note_table_markdown() {
-  std::string text;
-  for (const auto& facts : note_table())
-    text += std::string("- `") + facts.name + "`" + (facts.is_warning ? "" : " (note)") + ": " + facts.meaning + "\n";
-  return text;
-}
-
 }  // namespace alcove

@@ -141,7 +141,4 @@ std::vector<std::string> texts_of(const Notes& notes);
 /// The attribute alcove/notes: a line "CODE: TEXT" per warning; "" without warnings.
 std::string header_text(const Notes& notes);
 
-/// The table of all codes as docs/troubleshooting.md shows it.
-std::string note_table_markdown();
-
 }  // namespace alcove

@@ -16,9 +16,8 @@ namespace alcove {
 namespace {
 
 constexpr int kSize = 64, kCell = 8, kCells = kSize / kCell;  // px, px, cells
-constexpr double kStoredOne = 65535;                          // stands for 1
 
-/// For each of kCheckedPresets what stored_text() gave on lavapipe. device_check_test writes the file anew, see there.
+/// For each of kCheckedPresets its values on lavapipe. device_check_test writes the file anew, see there.
 constexpr std::string_view kStored[] = {
 #include "core/bench/device_check_values.inc"
 };
@@ -70,12 +69,6 @@ std::vector<double> check_values(gpu::Recorder& gpu, const EstimatorSettings& se
   for (std::size_t i = 0; i < ao.size(); i++)
     means[i / kSize / kCell * kCells + i % kSize / kCell] += double(ao[i]) / (kCell * kCell);
   return means;
-}
-
-std::string stored_text(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) text += fmt::format("{:04x}", std::lround(std::clamp(value, 0., 1.) * kStoredOne));
-  return text;
 }
 
 double deviation(const std::string& preset, const std::vector<double>& values) {

@@ -17,15 +17,15 @@ namespace alcove {
 /// The presets that have stored values.
 inline constexpr const char* kCheckedPresets[] = {"draft", "standard", "production", "reference"};
 
+/// A stored value has four hexadecimal digits, of which this stands for 1.
+inline constexpr double kStoredOne = 0xffff;
+
 /// The largest RMS of the difference to the stored values.
 inline constexpr double kMostDeviation = 1e-4;
 
 /// The AO of the frame with these settings, which may lack a radius: the means of its blocks of 8 x 8 pixels, row by
 /// row. Fails with ErrorKind::device.
 std::vector<double> check_values(gpu::Recorder& gpu, const EstimatorSettings& settings);
-
-/// Values as the stored ones are written, four hexadecimal digits each.
-std::string stored_text(const std::vector<double>& values);
 
 /// The RMS of the differences from the stored values of one of kCheckedPresets.
 double deviation(const std::string& preset, const std::vector<double>& values);

@@ -51,8 +51,6 @@ const gpu::Buffer* normals_from_depth(gpu::Recorder& gpu, FrameInputs frame) {
 
 }  // namespace
 
-std::span<const DebugView> debug_view_table() { return kViews; }
-
 std::vector<std::string> debug_view_names() {
   std::vector<std::string> names;
   std::ranges::transform(kViews, std::back_inserter(names), &DebugView::name);

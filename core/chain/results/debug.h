@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -40,7 +39,6 @@ struct DebugView {
   float high;
   bool is_grey;  // black to white instead of the colour ramp
 };
-std::span<const DebugView> debug_view_table();
 std::vector<std::string> debug_view_names();
 
 /// The rows that the settings ask for. Fails with ErrorKind::usage on an unknown name, listing the known ones.

@@ -407,11 +407,4 @@ Notes detected(const Findings& findings) {
   return notes;
 }
 
-std::string detector_table_markdown() {
-  std::string text = "| code | looks at | speaks if | mend |\n|---|---|---|---|\n";
-  for (const Detector& d : kTable)
-    text += fmt::format("| `{}` | {} | {} | {} |\n", facts_of(d.code).name, d.looks_at, d.speaks, d.mend);
-  return text;
-}
-
 }  // namespace alcove

@@ -36,7 +36,4 @@ std::span<const Detector> detectors();
 /// The notes of all detectors on a frame.
 Notes detected(const Findings& findings);
 
-/// The table as docs/troubleshooting.md shows it.
-std::string detector_table_markdown();
-
 }  // namespace alcove
