@@ -23,9 +23,6 @@ std::vector<float> cropped(std::span<const float> planes, const Window& from, co
 Image::Image(const Window& data_window, const Window& display_window, std::vector<std::string> plane_names)
     : data(data_window), display(display_window), names(std::move(plane_names)), pixels(data.pixels() * names.size()) {}
 
-Image::Image(int width, int height, std::vector<std::string> plane_names)
-    : Image({0, 0, width, height}, {0, 0, width, height}, std::move(plane_names)) {}
-
 std::span<float> Image::plane(std::size_t index) { return {pixels.data() + index * data.pixels(), data.pixels()}; }
 
 std::span<const float> Image::plane(std::size_t index) const {

@@ -31,8 +31,6 @@ struct Image {
   Image() = default;
   /// Makes planes of zeros.
   Image(const Window& data, const Window& display, std::vector<std::string> names);
-  /// Makes planes of zeros whose data and display windows are 0, 0, width, height.
-  Image(int width, int height, std::vector<std::string> names);
 
   std::span<float> plane(std::size_t index);
   std::span<const float> plane(std::size_t index) const;
