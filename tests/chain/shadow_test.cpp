@@ -188,6 +188,25 @@ TEST(Shadow, of_a_soft_sun_is_the_part_of_it_that_is_seen) {
   for (std::size_t i = rendering.hits.size(); i < shadow.size(); i++) ASSERT_EQ(shadow[i], std::round(shadow[i]));
 }
 
+TEST(Shadow, of_the_sun_in_the_sky_has_no_wider_penumbra_than_without_a_filter) {
+  const Shot shot = Shot::perspective({0, -3, 3}, {0, -0.5, 0}, 45, 160, 120);
+  const Rendering rendering = render(box_on_floor(), shot);
+  Light light = seen_by(shot, kBehind);
+  light.size = 0.53;
+  Light wide = light;
+  wide.size = 5;
+  std::vector<std::ptrdiff_t> partly_lit;
+  for (const Denoise denoise : {Denoise::none, Denoise::bilateral}) {
+    EstimatorSettings settings = settings_of(0.5);
+    settings.denoise = denoise;
+    for (const auto& planes : {shadows(rendering.frame, {light}, settings), shadows(rendering.frame, {wide}, settings)})
+      partly_lit.push_back(std::ranges::count_if(planes, [](float x) { return x > 0.05F && x < 0.95F; }));
+  }
+  EXPECT_GT(partly_lit[0], 10);
+  EXPECT_EQ(partly_lit[2], partly_lit[0]);
+  EXPECT_GT(partly_lit[3], partly_lit[1]) << "that of a wide sun is filtered";
+}
+
 TEST(Shadow, leaves_a_plane_lit_at_every_tilt_unless_it_faces_away) {
   for (const auto& [name, rendering] : slanted_planes({0, 40, 80}, {0, 70}, {60, 0}))
     for (const double elevation : {-20., 2., 30., 90.}) {

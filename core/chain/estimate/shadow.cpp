@@ -23,6 +23,11 @@ constexpr uint kLeastDirections = 2, kDirectionsExact = 16;
 
 bool is_hard(const Light& light) { return !(float(light.size) > 0); }
 
+/// A sun up to this diameter, in degrees, has penumbrae of few pixels, which a filter would widen.
+constexpr double kSharpSun = 1;
+
+bool is_filtered(const Light& light) { return !is_hard(light) && (light.is_lamp || light.size > kSharpSun); }
+
 /// A plane before all surfaces of every block, and their farthest depth.
 const gpu::Buffer& nearest(gpu::Recorder& gpu, const GBuffer& occluders, const std::string& name) {
   const auto blocks = [](int side) { return std::size_t((side + kNearestStep - 1) / kNearestStep); };
@@ -95,18 +100,18 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
     else
       gpu.dispatch("shadow_layers", params, buffers, extent_of(gbuffer.view), constants);
   };
-  const auto estimate = [&](bool hard, const gpu::Buffer& result) {
+  const auto estimate = [&](bool filtered, const gpu::Buffer& result) {
     for (std::size_t i = 0; i < count; i++)
-      for (std::size_t rule = 0; is_hard(frame.lights[i]) == hard && rule < rules.size(); rule++)
+      for (std::size_t rule = 0; is_filtered(frame.lights[i]) == filtered && rule < rules.size(); rule++)
         dispatch(frame.lights[i], i, rule, result);
   };
-  // Noise is of soft lights alone. So these are filtered, and hard ones take their planes behind the filter.
+  // Hard lights have no noise, and sharp ones little. They take their planes behind the filter.
   gpu::Buffer* result = &gpu.buffer("shadow", (with_confidence ? 2 : 1) * count * plane_bytes(gbuffer.view));
-  if (!std::ranges::all_of(frame.lights, is_hard)) {
-    estimate(false, *result);
+  if (std::ranges::any_of(frame.lights, is_filtered)) {
+    estimate(true, *result);
     result = &denoise(gpu, gbuffer, *result, denoiser_of(sampled), "shadow ");
   }
-  estimate(true, *result);
+  estimate(false, *result);
   return *result;
 }
 

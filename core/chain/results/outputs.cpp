@@ -107,7 +107,7 @@ Wanted::Wanted(const OutputSettings& settings)
       look(settings.look) {
   const auto is_at_least = [](AovSource source) { return [source](const Aov& aov) { return aov.source >= source; }; };
   for (std::size_t i = 0; settings.read_lights && i < settings.read_lights->lights.size(); i++)
-    lights.push_back({.at = {0, 0, 1}, .size = settings.read_lights->is_soft(i) ? 1.0 : 0.0});
+    lights.push_back({.at = {0, 0, 1}, .size = settings.read_lights->is_soft(i) ? 30.0 : 0.0});
   const auto shows_completed = [](const DebugView* view) { return view->source == DebugSource::completed; };
   completed = !settings.stats.empty() || std::ranges::any_of(debug_views, shows_completed);
   for (const AovSource source : {AovSource::open_directions, AovSource::transfer})
