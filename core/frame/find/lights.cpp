@@ -223,13 +223,13 @@ std::vector<Light> LightsFile::in_view(const Camera& camera, int frame) const {
 
 std::vector<std::string> LightsFile::below_horizon(const std::vector<int>& frames) const {
   std::vector<std::string> names;
-  for (const auto& [name, of_frames, is_constant, in_world] : lights) {
-    const bool is_turned = elevation && name == lights[sun].name;
+  for (const Entry& entry : lights) {
+    const bool is_turned = elevation && entry.name == lights[sun].name;
     const auto is_below = [&](int frame) {
-      const Light& light = is_constant ? of_frames.begin()->second : of_frames.at(frame);
+      const Light& light = entry.is_constant ? entry.of_frames.begin()->second : entry.of_frames.at(frame);
       return !light.is_lamp && (is_turned ? *elevation : light.at[up_of_world()]) < 0;
     };
-    if (in_world && std::ranges::any_of(frames, is_below)) names.push_back(name);
+    if (entry.in_world && std::ranges::any_of(frames, is_below)) names.push_back(entry.name);
   }
   return names;
 }
