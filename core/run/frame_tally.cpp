@@ -109,13 +109,7 @@ void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed
   is_quick_ = is_quick_ || outputs.is_quick;
   add_surfaces(outputs);
   add_errors(outputs, computed);
-  if (outputs.shadow) {
-    const auto seen = outputs.shadow->as<const float>();
-    lit_.resize(seen.size() / computed.pixels());
-    for (std::size_t i = 0; i < lit_.size(); i++)
-      lit_[i] += std::uint64_t(std::ranges::count_if(seen.subspan(i * computed.pixels(), computed.pixels()),
-                                                     [](float part) { return part > 0; }));
-  }
+  add_lights(outputs, computed);
   add_work(outputs, is_same);
 }
 
@@ -153,6 +147,16 @@ void FrameTally::add_errors(const FrameOutputs& outputs, const Window& computed)
   if (outputs.count)
     for (const float count : outputs.count->as<const float>().first(computed.pixels()))
       report_.accumulated += double(count);
+}
+
+/// Adds the pixels that each light reaches. Planes of confidence behind them are counted too, and not asked for.
+void FrameTally::add_lights(const FrameOutputs& outputs, const Window& computed) {
+  if (!outputs.shadow) return;
+  const auto seen = outputs.shadow->as<const float>();
+  lit_.resize(seen.size() / computed.pixels());
+  for (std::size_t i = 0; i < lit_.size(); i++)
+    lit_[i] += std::uint64_t(std::ranges::count_if(seen.subspan(i * computed.pixels(), computed.pixels()),
+                                                   [](float part) { return part > 0; }));
 }
 
 /// Adds tiles and estimates; is_same: none was computed.
@@ -204,7 +208,8 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
 }
 
 void FrameTally::note_dark_lights(const FrameSource& source, const LightsFile& lights) {
-  if (source.reading.supersampling > 1 || counts_.sky >= report_.pixels) return;  // whose pixels are no longer counted
+  // Shadows of a supersampled frame are reduced already, and its sky is not.
+  if (source.reading.supersampling > 1 || counts_.sky >= report_.pixels) return;
   for (std::size_t i = 0; i < std::min(lit_.size(), lights.lights.size()); i++)
     if (lit_[i] <= counts_.sky)
       report_.notes.push_back(

@@ -43,6 +43,7 @@ class FrameTally {
  private:
   void add_surfaces(const FrameOutputs& outputs);
   void add_errors(const FrameOutputs& outputs, const Window& computed);
+  void add_lights(const FrameOutputs& outputs, const Window& computed);
   void add_work(const FrameOutputs& outputs, bool is_same);
   /// The number of pixels with an estimate; if each has its own, of pixels that show surfaces.
   double estimates_of(const EstimatorSettings& settings) const;
