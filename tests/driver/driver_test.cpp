@@ -265,6 +265,20 @@ TEST_F(Driver, gets_a_long_recording_in_parts_that_give_the_same_bits) {
   }
 }
 
+TEST_F(Driver, begins_a_list_at_its_beginning_behind_a_pass_that_was_cut) {
+  gpu::DeviceOptions limited = options();
+  const auto expected = ao_on(limited, settings_of(0.4));
+  limited.submission_ms = 10;
+  gpu::Device device(limited);
+  gpu::Recorder recorder(device);
+  fake.slow_ticks = std::uint64_t(15e6 / device.nanoseconds_per_tick());
+  ao_of(recorder, settings_of(0.1));  // its results are not those below
+  fake.submissions = fake.slices = 0;
+  EXPECT_EQ(ao_of(recorder, settings_of(0.4)), expected);
+  EXPECT_GT(fake.slices, 0) << "passes of 15 ms, each cut in two";
+  EXPECT_LT(fake.submissions, int(recorder.passes().size())) << "short passes share the last slice's submission";
+}
+
 TEST(Kernels, do_not_count_the_workgroups_of_a_dispatch_which_may_be_a_slice) {
   int kernels = 0;
   for (const auto& entry : fs::recursive_directory_iterator(ALCOVE_SOURCE_DIR "/kernels")) {

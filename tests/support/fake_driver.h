@@ -22,6 +22,7 @@ struct FakeDriver {
   bool hangs = false;                  // no submission ends
   int failing_submission = 0;          // from now on; 0: none
   bool lists_no_extensions = false;    // of its device: the call fails
+  std::uint64_t slow_ticks = 0;        // that every third submission's dispatches take, the others 1; 0: the real ones
 
   // What it was told.
   std::uint32_t instance_flags = 0;
@@ -29,7 +30,7 @@ struct FakeDriver {
   bool is_robust = false;
   std::vector<std::uint32_t> mapped_types = {};          // types of memory that were mapped
   std::vector<std::vector<std::uint32_t>> modules = {};  // SPIR-V
-  int idle_waits = 0, submissions = 0, allocations = 0, live_allocations = 0, live_instances = 0;
+  int idle_waits = 0, submissions = 0, queries = 0, slices = 0, allocations = 0, live_allocations = 0, live_instances = 0;
 };
 
 FakeDriver& fake_driver();
