@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // OpenEXR's document "File Layout" says how bytes are packed: split into halves, made differences, and deflated or put
-// together as runs.
+// together as runs. OpenEXR's C core would do both, but 3.1.5 refuses what OpenEXR's C++ writes: deep parts beside flat
+// ones, and tiles at the border without compression, whose counts are those of a whole tile.
 #include "core/formats/exr_deep.h"
 
 #include <ImfChannelList.h>
