@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/base/ranks.h"
-#include "core/frame/camera/least_squares.h"
 
 namespace alcove {
 namespace {
@@ -24,9 +23,7 @@ struct Pinhole {
   std::array<Vector3, 3> axes{};  // rows
   Vector3 offset{};
 
-  Vector3 in_view(const Vector3& p) const {
-    return {dot(axes[0], p) + offset[0], dot(axes[1], p) + offset[1], dot(axes[2], p) + offset[2]};
-  }
+  Vector3 in_view(const Vector3& p) const { return sum(times(axes, p), offset); }
 };
 
 /// A view point's distance from its pixel.
@@ -61,18 +58,8 @@ using Projection = std::array<Row<4>, 3>;
 
 std::optional<Projection> perspective_of(const Picked& points, const ImageScale& image) {
   Square<12> sums{};
-  for (const auto* seen : points) {
-    const Row<4> p{seen->position[0], seen->position[1], seen->position[2], 1};
-    const double u = (seen->x - image.x) / image.size, v = (seen->y - image.y) / image.size;
-    Row<12> of_x{}, of_y{};
-    for (std::size_t k = 0; k < 4; k++) {
-      of_x[k] = of_y[4 + k] = p[k];
-      of_x[8 + k] = -u * p[k];
-      of_y[8 + k] = -v * p[k];
-    }
-    add_products(sums, of_x);
-    add_products(sums, of_y);
-  }
+  for (const auto* seen : points)
+    add_linear({seen->position, (seen->x - image.x) / image.size, (seen->y - image.y) / image.size}, sums);
   const Row<12> fit = least_squares(sums);
   Projection projection{};
   for (std::size_t i = 0; i < 12; i++) projection[i / 4][i % 4] = fit[i];
@@ -386,6 +373,13 @@ Resection result_of(const Pinhole& solved, const Normalized& from, const Window&
 }
 
 }  // namespace
+
+void add_linear(const SeenPoint& seen, Square<12>& sums) {
+  const auto& [x, y, z] = seen.position;
+  const double u = seen.x, v = seen.y;
+  add_products(sums, {x, y, z, 1, 0, 0, 0, 0, -u * x, -u * y, -u * z, -u});
+  add_products(sums, {0, 0, 0, 0, x, y, z, 1, -v * x, -v * y, -v * z, -v});
+}
 
 Normalized normalized(std::span<const SeenPoint> points) {
   Normalized result{{points.begin(), points.end()}, {}, 1};

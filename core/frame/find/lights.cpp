@@ -214,8 +214,7 @@ std::vector<Light> LightsFile::in_view(const Camera& camera, int frame) const {
       fail(ErrorKind::usage, "{}: light \"{}\" is vertical: give both --set sun-azimuth and sun-elevation", path, name);
     if (name == lights[sun].name) light.at = turned(light.at, azimuth, elevation, up);
     if (in_world) light.at = times(*camera.view_from_world, light.at);
-    if (in_world && light.is_lamp)
-      for (std::size_t i = 0; i < 3; i++) light.at[i] += camera.view_from_world_offset[i];
+    if (in_world && light.is_lamp) light.at = sum(light.at, camera.view_from_world_offset);
     result.push_back(light);
   }
   return result;

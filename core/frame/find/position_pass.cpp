@@ -13,8 +13,6 @@
 
 #include "core/base/error.h"
 #include "core/base/ranks.h"
-#include "core/frame/camera/position_faults.h"
-#include "core/frame/camera/resection.h"
 
 namespace alcove {
 namespace {
@@ -161,8 +159,7 @@ double beside(const Camera& lens, const Camera& standing, std::span<const SeenPo
   for (const auto& point : points) {
     Vector3 view = point.position;
     if (standing.view_from_world) {
-      view = times(*standing.view_from_world, point.position);
-      for (std::size_t k = 0; k < 3; k++) view[k] += standing.view_from_world_offset[k];
+      view = sum(times(*standing.view_from_world, point.position), standing.view_from_world_offset);
     } else if (standing.left_handed) {
       view[2] = -view[2];
     }

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "core/base/ranks.h"
-#include "core/frame/camera/least_squares.h"
 #include "core/frame/pixels/places.h"
 #include "core/frame/pixels/statistics.h"
 

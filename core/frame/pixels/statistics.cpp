@@ -133,8 +133,7 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
       Vector3 p{position[i], position[i + plane], position[i + 2 * plane]};
       if (!(dot(p, p) > 0) || !(dot(p, p) < 1e18)) continue;
       if (space == PositionSpace::world) {
-        p = times(*camera.view_from_world, p);
-        for (std::size_t c = 0; c < 3; c++) p[c] += camera.view_from_world_offset[c];
+        p = sum(times(*camera.view_from_world, p), camera.view_from_world_offset);
       } else if (camera.left_handed != mirrored) {
         p[2] = -p[2];
       }
