@@ -458,10 +458,7 @@ FirstSurfaces compare_first(FrameSource& source, const RawPart& raw) {
     deep_file(source).read(std::span(&read, 1), raw.window.y + y - whole.y, 1);
     for (std::size_t x = 0; x < width; x++) {
       const double ray = ray_length(view, int(x), y);
-      Vector3 values{};
-      for (std::size_t axis = 0; axis < source.channels[RawPlane::depth].size(); axis++)
-        values[axis] = raw.depth[axis * raw.window.pixels() + std::size_t(y) * width + x];
-      const double z = planar_depth(map, values, ray);
+      const double z = planar_depth(map, value_at(raw.depth, raw.window.pixels(), std::size_t(y) * width + x), ray);
       const double sample = row[x + std::size_t(raw.window.x - whole.x)];
       first.found += sample < double(kNoDeepSurface);
       if (!std::isfinite(z) || sample >= double(kNoDeepSurface)) continue;

@@ -12,12 +12,9 @@
 
 namespace alcove {
 
-/// A row of the table.
+/// A row of the table. docs/troubleshooting.md lists what each looks at, when it speaks, and what mends it.
 struct Detector {
   NoteCode code;
-  const char* looks_at;  // for lists: the pixels that it looks at
-  const char* speaks;    // when it does; both end without a full stop
-  const char* mend;      // what mends it
   // The sentence of its note, where it speaks.
   std::optional<std::string> (*sentence)(const Findings&);
 };

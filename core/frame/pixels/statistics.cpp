@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/base/ranks.h"
-#include "core/frame/pixels/places.h"
+#include "core/frame/samples.h"
 #include "kernels/geometry/geometry.h"
 
 namespace alcove {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/frame/pixels/places.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/samples.h"
 #include "core/frame/settle/normal_settlement.h"

@@ -8,7 +8,6 @@
 
 #include "core/base/error.h"
 #include "core/frame/pixels/detectors.h"
-#include "core/frame/pixels/empty.h"
 #include "core/frame/pixels/flatness.h"
 #include "core/frame/pixels/ramps.h"
 #include "core/frame/pixels/statistics.h"

@@ -9,7 +9,6 @@
 #include "core/base/option_words.h"
 #include "core/base/ranks.h"
 #include "core/frame/pixels/disparity.h"
-#include "core/frame/pixels/right_angles.h"
 #include "core/frame/settle/depth_settlement.h"
 
 namespace alcove {
