@@ -12,9 +12,8 @@
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/radius.h"
 #include "core/frame/pixels/statistics.h"
-#include "core/frame/settle/depth_settlement.h"
 #include "core/frame/settle/other_cameras.h"
-#include "core/frame/settle/precision.h"
+#include "core/frame/settle/settlement.h"
 
 namespace alcove {
 namespace {

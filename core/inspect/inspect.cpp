@@ -14,7 +14,6 @@
 #include "core/frame/find/behind.h"
 #include "core/frame/find/channels.h"
 #include "core/frame/raw_plane.h"
-#include "core/frame/settle/faults.h"
 #include "core/frame/settle/settle.h"
 
 namespace alcove {

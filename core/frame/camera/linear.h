@@ -38,8 +38,8 @@ inline Matrix3 product(const Matrix3& a, const Matrix3& b) {
 }
 /// Below 0 where the map mirrors.
 inline double determinant(const Matrix3& m) { return dot(m[0], cross(m[1], m[2])); }
-/// The scale, squared, of a map that turns, may mirror, and scales all directions alike; none of any other. Matrices come
-/// from single precision, and from tools that round.
+/// The scale, squared, of a map that turns, may mirror, and scales all directions alike; none of any other. Matrices
+/// come from single precision, and from tools that round.
 inline std::optional<double> squared_scale(const Matrix3& m) {
   constexpr double kTolerance = 1e-3;
   const double squared = dot(m[0], m[0]);

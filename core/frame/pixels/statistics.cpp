@@ -17,14 +17,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void count_value(ValueStatistics& s, float x) {
   s.pixels++;
-  if (std::isnan(x)) {
-    s.nan++;
-    return;
-  }
-  if (std::isinf(x)) {
-    s.infinite++;
-    return;
-  }
+  if (std::isnan(x)) return void(s.nan++);
+  if (std::isinf(x)) return void(s.infinite++);
   s.negative += x < 0;
   s.zero += x == 0;
   s.one += x == 1;

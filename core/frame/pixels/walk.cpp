@@ -1,4 +1,4 @@
-// Takes lines out of the planes, counts along them, and adds up; rows and columns without surfaces, and rectangles of them.
+// Takes lines out of the planes, counts along them, and adds up; finds borders and rectangles without surfaces.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/pixels/walk.h"
 
@@ -120,13 +120,10 @@ void add(LineCounts& all, LineCounts more) {
     to->resize(std::max(to->size(), from->size()));
     for (std::size_t i = 0; i < from->size(); i++) (*to)[i] += (*from)[i];
   }
-  all.outlines.count += more.outlines.count;
-  all.outlines.sharp += more.outlines.sharp;
-  all.outlines.steps += more.outlines.steps;
-  all.outlines.blended += more.outlines.blended;
-  all.holes.surfaces += more.holes.surfaces;
-  all.holes.between += more.holes.between;
-  all.holes.within_planes += more.holes.within_planes;
+  for (const auto count : {&Outlines::count, &Outlines::sharp, &Outlines::steps, &Outlines::blended})
+    all.outlines.*count += more.outlines.*count;
+  for (const auto count : {&Holes::surfaces, &Holes::between, &Holes::within_planes})
+    all.holes.*count += more.holes.*count;
   for (std::size_t y = 0; y < 8; y++)
     for (std::size_t x = 0; x < 8; x++) {
       all.cells[y].surfaces[x] += more.cells[y].surfaces[x];
@@ -174,13 +171,11 @@ void count_cells(LineCounts& lines) {
     }
 }
 
-Unevenness unevenness_of(BendSample rows, BendSample columns) {
-  append(rows.sizes, columns.sizes);
-  Unevenness found{.count = rows.sizes.size()};
-  if (rows.sizes.empty()) return found;
-  found.tenth = value_at_rank(rows.sizes, rows.sizes.size() / 10);
-  found.alternating =
-      double(rows.opposite + columns.opposite) / double(std::max<std::size_t>(1, rows.neighbours + columns.neighbours));
+Unevenness unevenness_of(BendSample bends) {
+  Unevenness found{.count = bends.sizes.size()};
+  if (bends.sizes.empty()) return found;
+  found.tenth = value_at_rank(bends.sizes, bends.sizes.size() / 10);
+  found.alternating = double(bends.opposite) / double(bends.neighbours);
   return found;
 }
 
@@ -243,18 +238,16 @@ void walk(const WalkedPlanes& planes, Findings& findings) {
   count_cells(rows);
   count_cells(columns);
   findings.holes = {rows.holes, columns.holes};
-  findings.unevenness = unevenness_of(std::move(rows.bends), std::move(columns.bends));
-  rows.drops.most = std::max(rows.drops.most, columns.drops.most);
-  append(rows.drops.drops, columns.drops.drops);
-  findings.wrapping = wrapping_of(std::move(rows.drops));
-  append(rows.shifts, columns.shifts);
-  findings.normals = normal_outlines(std::move(rows.shifts));
   findings.plateau = plateau_of(planes, source, rows);
   std::vector<PlacedRuns> placed;
   for (int i = 0; i < int(rows.empty.size()); i++)
     placed.push_back({source.place(false, i), std::move(rows.empty[std::size_t(i)])});
   findings.rectangle = empty_rectangle(planes.depth, planes.reading.data, planes.frame, placed,
                                        planes.reading.depth_kind == DepthKind::disparity);
+  add(rows, std::move(columns));
+  findings.unevenness = unevenness_of(std::move(rows.bends));
+  findings.wrapping = wrapping_of(std::move(rows.drops));
+  findings.normals = normal_outlines(std::move(rows.shifts));
 }
 
 // Parts without surfaces.

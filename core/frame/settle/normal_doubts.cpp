@@ -9,8 +9,6 @@
 #include "core/base/option_words.h"
 #include "core/frame/pixels/detectors.h"
 #include "core/frame/settle/normal_settlement.h"
-#include "core/frame/settle/other_cameras.h"
-#include "core/frame/settle/other_components.h"
 #include "core/frame/settle/settle.h"
 
 namespace alcove {
@@ -58,16 +56,6 @@ class NormalDoubts : private NormalSettlement {
       note(NoteCode::normals_disagree,
            fmt::format("even the best quarter of the normals is up to {:.1f} degrees off the normals of depth: {}",
                        chosen->angle, kCheck));
-  }
-
-  void refuse_turned_camera(const NormalScore& chosen, double sharpest) const {
-    const auto turned = best_turned_camera(planes(), chosen);
-    if (!turned || turned->score.close < sharpest || turned->score.agreement < kClear * chosen.agreement) return;
-    fail(ErrorKind::input,
-         "{}: the camera{} does not fit: by it {:.0f} % of the normals in {} space agree with depth; {}, then {:.0f} % "
-         "agree; {}",
-         path_, from(), 100 * chosen.agreement, word_of(chosen.space), turned->what, 100 * turned->score.agreement,
-         kWithout);
   }
 
  private:
@@ -186,8 +174,14 @@ class NormalDoubts : private NormalSettlement {
 
 }  // namespace
 
-void refuse_turned_camera(const NormalSettlement& normals, const NormalScore& chosen, double sharpest) {
-  NormalDoubts(normals).refuse_turned_camera(chosen, sharpest);
+void NormalSettlement::refuse_turned_camera(const NormalScore& chosen, double sharpest) const {
+  const auto turned = best_turned_camera(planes(), chosen);
+  if (!turned || turned->score.close < sharpest || turned->score.agreement < kClear * chosen.agreement) return;
+  fail(ErrorKind::input,
+       "{}: the camera{} does not fit: by it {:.0f} % of the normals in {} space agree with depth; {}, then {:.0f} % "
+       "agree; {}",
+       path_, from(), 100 * chosen.agreement, word_of(chosen.space), turned->what, 100 * turned->score.agreement,
+       kWithout);
 }
 
 void doubt_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores) {

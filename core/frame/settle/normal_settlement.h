@@ -54,6 +54,12 @@ class NormalSettlement : protected Settlement {
   /// Whether normals that are read in view space belong to a world in which the camera is turned by little, if no
   /// matrix places it.
   std::optional<std::string> turned_world(const NormalScore& score) const;
+  /// Refuses the given camera if the normals disagree with depth by it, and agree by a camera with a usual mistake
+  /// undone. `sharpest` is the share of close normals in another reading.
+  void refuse_turned_camera(const NormalScore& chosen, double sharpest) const;
+  /// Refuses normals with components in another order, or in two of the three channels, unless another camera explains
+  /// them. `scores`: of the normals as they are; none: they have no reading.
+  void refuse_other_components(const std::vector<NormalScore>& scores, const NormalStatistics& statistics) const;
   static std::string text_of(const NormalScore& s);
   /// Names the file of the camera, or the header's attributes.
   std::string from() const;
@@ -73,22 +79,17 @@ class NormalSettlement : protected Settlement {
 /// Settles the encoding of the normals, and refuses vectors that were treated as colours. Gives the statistics of some
 /// of them.
 NormalStatistics settle_normal_encoding(const NormalSettlement& normals);
-/// Settles their space.
-void settle_normal_space(const NormalSettlement& normals, const NormalStatistics& statistics);
+/// The place of a channel that has one value on all surfaces while the two others vary, and that value.
+struct ConstantComponent {
+  std::size_t channel;
+  float value;
+  double bare;  // the share of surfaces without a normal
+};
+std::optional<ConstantComponent> constant_component(const RawPart& raw, const DepthMap& map);
 
-/// Takes normals without components below 0 if depth says that they lost some: the file does not hold the lost ones.
-/// Returns whether they are such.
-bool settle_cut_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores,
-                        const NormalStatistics& statistics);
+/// Whether nearly all normals look the same way, as in tangent space.
+bool are_alike(const RawPart& raw, const DepthMap& map);
 
-/// Refuses normals with components in another order, or in two of the three channels, unless another camera explains
-/// them. `scores`: of the normals as they are; none: they have no reading.
-void refuse_other_components(const NormalSettlement& normals, const std::vector<NormalScore>& scores,
-                             const NormalStatistics& statistics);
-
-/// Refuses the given camera if the normals disagree with depth by it, and agree by a camera with a usual mistake
-/// undone. `sharpest` is the share of close normals in another reading.
-void refuse_turned_camera(const NormalSettlement& normals, const NormalScore& chosen, double sharpest);
 /// Notes normals that depth speaks against, and refuses normals that it refutes.
 void doubt_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores);
 

@@ -1,6 +1,6 @@
 // Looks at depth for what its values cannot tell.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/settle/precision.h"
+#include "core/frame/settle/settlement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,6 @@
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/pixels/walk.h"
 #include "core/frame/samples.h"
-#include "core/frame/settle/depth_settlement.h"
 
 namespace alcove {
 namespace {

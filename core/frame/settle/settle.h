@@ -46,6 +46,9 @@ bool settle_like(FrameSource& source, const FrameSource& settled);
 bool settle_like_or_alone(FrameSource& source, const FrameSource& settled, const InputSettings& settings,
                           std::uint64_t most_bytes);
 
+/// Whether the normals are vectors in x, y and z, so that they have lengths.
+bool has_lengths(const FrameSource& source);
+
 /// The word of --normal-encoding for normals of a frame that is settled.
 const char* encoding_name(NormalEncoding encoding, bool unorm);
 

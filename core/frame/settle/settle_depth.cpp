@@ -1,14 +1,17 @@
-// The order in which a frame's depth is settled.
+// Settles depth: holds what is said of it against its pixels, and settles its sign, its ends, and the space of
+// positions. Takes down the choices that are made.
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/frame/pixels/flatness.h"
 #include "core/frame/samples.h"
-#include "core/frame/settle/depth_settlement.h"
+#include "core/frame/settle/settlement.h"
 
 namespace alcove {
 namespace {
@@ -35,13 +38,315 @@ void refuse_unused_range(const PlanesToSettle& planes) {
   if (!unused.empty()) refuse_range_options(planes.path, unused, planes.reading.depth_kind);
 }
 
-void settle_plane(const DepthSettlement& depth, bool is_kind_open) {
-  is_kind_open ? settle_depth_kind(depth) : doubt_depth_kind(depth);
-  compare_near_planes(depth);
-  settle_depth_ends(depth);
-}
+/// Depth that is no position: decides its kind, or holds the one that is said against its pixels, and settles its ends.
+class PlaneSettlement : private DepthSettlement {
+ public:
+  explicit PlaneSettlement(const DepthSettlement& depth) : DepthSettlement(depth) {}
+
+  void run() {
+    facts_.is_kind_open ? settle_depth_kind(*this) : doubt_kind();
+    compare_near_planes();
+    settle_sign();
+    settle_ends();
+    find_sky();
+  }
+
+ private:
+  /// Notes evidence of the pixels, or of two sources of planes, against the given kind of depth. The given kind stays.
+  void doubt_kind() {
+    doubt_range();
+    const bool linear = reading_.depth_kind == DepthKind::normalized || reading_.depth_kind == DepthKind::log;
+    const DepthKind said = reading_.depth_kind == DepthKind::disparity ? DepthKind::inverse  // with a shift, alike
+                           : reading_.depth_kind != DepthKind::device  ? reading_.depth_kind
+                           : reading_.camera.orthographic              ? DepthKind::planar
+                                                                       : DepthKind::inverse;
+    const auto& scores = seen_.depth_scores;
+    doubt_fractions(scores);
+    if (scores.empty() || scores[0].straight < (linear ? kSurelyStraight : kLeastStraight)) return;
+    if (kClear * straightness(linear ? scores_as_said() : scores, linear ? DepthKind::planar : said) >
+        scores[0].straight)
+      return;
+    note(NoteCode::said_otherwise,
+         fmt::format("depth is read as {} by {}, but {}: is it {}?", word_of(reading_.depth_kind), facts_.said_by,
+                     straight(scores[0]),
+                     scores[0].kind == DepthKind::inverse ? "inverse or device" : word_of(scores[0].kind)));
+  }
+
+  /// Notes near planes that differ. A projection matrix made for another depth range than the buffer's scales all
+  /// distances, which no pixel shows.
+  void compare_near_planes() {
+    constexpr double kSame = 0.01;  // matrices are rounded
+    const auto near = reading_.depth_range.near, by_file = reading_.camera.near,
+               by_matrix = reading_.camera.matrix_near;
+    const bool is_said = settings_.depth_range.near.has_value();
+    if (reading_.depth_kind != DepthKind::device) return;
+    if (is_said && by_file && std::abs(*near / *by_file - 1) >= kSame)
+      note(NoteCode::near_plane, fmt::format("--near is {:.4g}, and the camera file's near plane is at {:.4g}: "
+                                             "distances are {:.3g} times those by the file",
+                                             *near, *by_file, *near / *by_file));
+    if (is_said || reading_.depth_range.reversed || reading_.depth_range.device != DeviceRange::automatic) return;
+    if (!near || !by_matrix || std::abs(*by_matrix / *near - 1) < kSame) return;
+    note(NoteCode::near_plane,
+         fmt::format("the near plane is {:.4g}, but the camera file's projection, read with z = depth, has it at "
+                     "{:.4g}, for distances {:.3g} times as large; --near or --set device-range decides",
+                     *near, *by_matrix, *by_matrix / *near));
+  }
+
+  /// Notes distances that look like a part of a range. They are read as distances all the same.
+  void doubt_fractions(const std::vector<DepthScore>& scores) {
+    if (!is_distance(reading_.depth_kind) || !is_fraction()) return;
+    const double straight = scores.empty() ? 0 : scores[0].straight, from_1 = straightness_from_1();
+    if (from_1 >= kLeastStraight && from_1 > kClear * straight)
+      note(NoteCode::said_otherwise,
+           fmt::format("{}, and flat surfaces are straight on {:.0f} % as 1 - depth, on {:.0f} % as depth: it is read "
+                       "as {} by {}; if it is normalized, give {}",
+                       text_of_range(), 100 * from_1, 100 * straight, word_of(reading_.depth_kind), facts_.said_by,
+                       normalized_line(true)));
+    else if (settings_.depth_kind == DepthKind::automatic && facts_.program.rules->depth_kind == DepthKind::automatic)
+      note(NoteCode::depth_below_1,
+           fmt::format("{} and is read as {}; if it is normalized, give {}; --depth-kind {} confirms distances",
+                       text_of_range(), word_of(reading_.depth_kind), normalized_line(false),
+                       word_of(reading_.depth_kind)));
+  }
+
+  /// The scores of the distances that the depth gives if it is read as is said.
+  std::vector<DepthScore> scores_as_said() const {
+    const auto planar = planar_depths(raw_.depth, depth_map_of(reading_), view_);
+    return shape_of(planar, view_, settings_.sky, grain_of(planar, settings_.sky, view_.orthographic != 0)).scores;
+  }
+
+  /// Notes a z-buffer that uses only half of its range, or that leaves it.
+  void doubt_range() {
+    if (reading_.depth_kind != DepthKind::device) return;
+    const auto below = std::ranges::count_if(raw_.depth, [](float d) { return d > -1 && d < 0; });
+    if (reading_.depth_range.device == DeviceRange::automatic && below > 0)
+      note(NoteCode::said_otherwise,
+           fmt::format(
+               "{} pixels have a depth of -1 to 0 and count as sky: does the depth need --set device-range=-1..1?",
+               below));
+    if (reading_.depth_range.device == DeviceRange::minus_one_to_one && values_.all.least >= 0)
+      note(NoteCode::said_otherwise,
+           "no depth is below 0: either all surfaces lie beyond twice the near plane, or --set device-range=-1..1 is "
+           "wrong");
+  }
+
+  /// Distances below 0 are those of cameras that look along -z. One value above 0 beside them is their sky.
+  void settle_sign() {
+    if (!is_distance(reading_.depth_kind) && reading_.depth_kind != DepthKind::inverse) return;
+    const bool are_errors =
+        double(values_.below_0.count) <= kFewErrors * double(values_.below_0.count + values_.above_0.size());
+    if (!values_.below_0.varies() || are_errors) return;
+    const Side above = values_.side_above(0);
+    if (!above.is_mostly_one()) return;
+    reading_.depth_range.negative = true;
+    note(NoteCode::negative_depth,
+         above.count ? fmt::format("depth is negative, and its distance from 0 is taken; {} is the sky", above.usual)
+                     : "all depth values are negative: their distance from 0 is the depth");
+  }
+
+  /// Settles depth at the ends of a range and beyond them: normalized depth may go on, and the sky is at the far end.
+  void settle_ends() {
+    auto& range = reading_.depth_range;
+    if (reading_.depth_kind == DepthKind::normalized) {
+      const bool below = goes_on(values_.below_0, values_.all.zero, 0),
+                 above = goes_on(values_.side_above(1), values_.all.one, 1);
+      range.goes_before_near = range.reversed ? above : below;
+      range.goes_beyond_far = range.reversed ? below : above;
+      if (below || above)
+        note(NoteCode::beyond_planes,
+             fmt::format("depth goes from {:.3g} to {:.3g}: it was not cut off at its planes, and is read beyond them",
+                         values_.all.least, values_.surfaces.most));
+    }
+    if (reading_.depth_kind == DepthKind::device) settle_direction();
+  }
+
+  /// Whether normalized depth goes on beyond an end of its range. If many pixels are exactly at the end, it was cut off
+  /// there: a filter made the values beyond from the edges of these, and they count as these do.
+  bool goes_on(const Side& beyond, std::uint64_t at_end, int end) {
+    if (!beyond.varies()) return false;
+    if (double(at_end) < kPlateau * double(values_.all.pixels)) return true;
+    if (double(beyond.count) > kFewErrors * double(values_.all.pixels))
+      note(NoteCode::beyond_planes,
+           fmt::format("{:.2g} % of the depth lies beyond {}, and {:.2g} % is exactly {}: all of these count as sky",
+                       100 * double(beyond.count) / double(values_.all.pixels), end,
+                       100 * double(at_end) / double(values_.all.pixels), end));
+    return false;
+  }
+
+  /// Nothing is seen at exactly the near plane, so that many pixels there are sky of a depth that runs the other way.
+  void settle_direction() {
+    auto& range = reading_.depth_range;
+    const float low = range.device == DeviceRange::minus_one_to_one ? -1 : 0, near = range.reversed ? 1 : low,
+                far = range.reversed ? low : 1;
+    const auto at_near = std::size_t(std::ranges::count(raw_.depth, near));
+    if (double(at_near) < kPlateau * double(raw_.depth.size()) ||
+        std::ranges::find(raw_.depth, far) != raw_.depth.end())
+      return;
+    const std::string what = fmt::format(
+        "{:.0f} % of the pixels have exactly {}, the near plane's value{}, and none has {}",
+        100 * double(at_near) / double(raw_.depth.size()), near, range.reversed ? " of reversed depth" : "", far);
+    const bool is_by_rules = !settings_.depth_range.reversed && !reading_.camera.reversed_z && range.reversed;
+    if (!is_by_rules) {
+      note(NoteCode::said_otherwise,
+           fmt::format("{}: that looks like the sky of depth that is {}reversed: {} --reversed-z", what,
+                       range.reversed ? "not " : "", range.reversed ? "leave out" : "give"));
+      return;
+    }
+    range.reversed = false;
+    guess("depth's direction", "not reversed", what, "--reversed-z", true);
+  }
+
+  /// Takes one distance far behind all others for the sky where the normals show it, and else points it out.
+  void find_sky() {
+    constexpr double kLeastShare = 0.002;  // of the pixels
+    constexpr double kBlended = 0.1;       // for each pixel of the sky; edges lie in between
+    if (!is_distance(reading_.depth_kind) || settings_.sky != InputSettings{}.sky) return;
+    const Farthest far = farthest();
+    const double share = double(far.count) / double(far.all);
+    if (far.next == 0 || share < kLeastShare || double(far.blended) > kBlended * double(far.count)) return;
+    // A wall that faces the camera has one planar depth and one normal; a dome around it has many normals.
+    if (reading_.depth_kind == DepthKind::planar && far.like_first == far.count) return;
+    if (far.is_bare()) reading_.found_sky = far.value;
+    note(NoteCode::finite_sky, far.is_bare()
+                                   ? fmt::format("the depth {:.6g} of {:.1f} % of the pixels, all without normals, is "
+                                                 "taken for the sky (--sky {:.6g} confirms it)",
+                                                 far.value, 100 * share, far.value)
+                                   : fmt::format("{:.1f} % of the pixels have exactly the depth {:.6g}, and all others "
+                                                 "end at {:.4g}: if they are sky, and no wall, give --sky {:.6g}",
+                                                 100 * share, far.value, far.next, far.value));
+  }
+
+  /// The pixels with the largest distance, and all others.
+  struct Farthest {
+    float value = 0, next = 0;             // next: the largest distance that is less than half of it
+    std::size_t all = 0, count = 0;        // pixels that were looked at, and those with it
+    std::size_t blended = 0;               // surfaces in between
+    std::size_t bare = 0, other_bare = 0;  // without a normal: those with it, and other surfaces
+    std::size_t like_first = 0;            // with the normal of the first one
+    bool has_normals = false;
+
+    /// Whether these pixels, and no others, have no normals.
+    bool is_bare() const {
+      constexpr double kAll = 0.98;
+      return has_normals && double(bare) >= kAll * double(count) &&
+             double(other_bare) <= (1 - kAll) * double(all - count);
+    }
+  };
+
+  Farthest farthest() const {
+    constexpr std::size_t kSampled = 1 << 15;
+    constexpr double kFar = 2;  // times as far as all others
+    const double limit = depth_map_of(reading_).sky_depth / reading_.depth_scale;
+    const std::size_t step = raw_.depth.size() / kSampled + 1;
+    Farthest far{.has_normals = has_vectors()};
+    for (std::size_t i = 0; i < raw_.depth.size(); i += step)
+      if (const float d = std::abs(raw_.depth[i]); d < limit) far.value = std::max(far.value, d);
+    std::optional<std::size_t> first;
+    for (std::size_t i = 0; i < raw_.depth.size(); i += step) {
+      const float d = std::abs(raw_.depth[i]);
+      const bool is_bare = far.has_normals && has_no_normal(i);
+      far.all++;
+      if (d == far.value) {
+        if (!first) first = i;
+        far.count++;
+        far.bare += is_bare;
+        far.like_first += far.has_normals && !is_bare && has_same_normal(i, *first);
+      } else if (d > 0 && d < limit) {
+        far.other_bare += is_bare;
+        kFar* d >= far.value ? void(far.blended++) : void(far.next = std::max(far.next, d));
+      }
+    }
+    return far;
+  }
+
+  bool has_same_normal(std::size_t pixel, std::size_t other) const {
+    constexpr float kRounded = 0.01f;  // 8 bits, too
+    for (std::size_t c = 0; c < 3; c++) {
+      const float* const plane = &raw_.normal[c * raw_.depth.size()];
+      if (!(std::abs(plane[pixel] - plane[other]) < kRounded)) return false;
+    }
+    return true;
+  }
+
+  /// Whether a pixel's normal is NaN, or 0 as a vector or as a colour.
+  bool has_no_normal(std::size_t pixel) const {
+    constexpr float kGrey = 0.5f, kRoundedGrey = 0.003f;  // 8 bits have no 0.5
+    const auto all = [&](const auto& holds) {
+      for (std::size_t c = 0; c < 3; c++)
+        if (!holds(raw_.normal[c * raw_.depth.size() + pixel])) return false;
+      return true;
+    };
+    return all([](float n) { return n == 0; }) || all([](float n) { return std::isnan(n); }) ||
+           all([](float n) { return std::abs(n - kGrey) < kRoundedGrey; });
+  }
+};
+
+/// Pixels. If the median is farther off than this, positions are no positions of this space and camera.
+constexpr double kLargestError = 2;
+
+/// Settles the space of positions.
+class PositionSettlement : private Settlement {
+ public:
+  using Settlement::Settlement;
+
+  void run() {
+    struct Candidate {
+      PositionSpace space;
+      bool forward;  // the camera looks along +z
+      std::optional<double> error;
+    };
+    std::vector<Candidate> candidates;
+    for (const PositionSpace space : {PositionSpace::world, PositionSpace::view})
+      for (const bool forward : {false, true})
+        if ((settings_.position_space == PositionSpace::automatic || settings_.position_space == space) &&
+            (space == PositionSpace::view || (reading_.camera.view_from_world && !forward)))
+          candidates.push_back(
+              {space, forward, reprojection_error(raw_.depth, space, forward, reading_.camera, view_)});
+    // no world matrix, which the map complains about; or nothing but sky
+    if (candidates.empty() || !candidates[0].error) return;
+    const auto best = std::ranges::min_element(candidates, {}, &Candidate::error);
+    if (!(*best->error <= kLargestError))
+      fail(
+          ErrorKind::input, "{}: its positions lie {} from their pixels: check --set position-space and --camera",
+          path_,
+          *best->error < 1e6 ? fmt::format("{:.1f} pixels (median)", *best->error) : "on the other side of the camera");
+    reading_.position_space = best->space;
+    reading_.depth_range.negative = best->forward;
+    if (settings_.position_space == PositionSpace::automatic)
+      guess("position space", best->space == PositionSpace::world ? "world" : "view",
+            fmt::format("positions lie {:.3f} pixels (median) from their pixels", *best->error), "--set position-space",
+            false);
+  }
+};
 
 }  // namespace
+
+Settlement::Settlement(PlanesToSettle planes)
+    : reading_(planes.reading),
+      settings_(planes.settings),
+      raw_(planes.raw),
+      seen_(planes.seen),
+      view_(view_of(planes.reading, planes.raw.window)),
+      path_(std::move(planes.path)),
+      notes_(planes.notes),
+      file_(std::move(planes.file)) {}
+
+void Settlement::note(NoteCode code, std::string text) { notes_.push_back({code, std::move(text), file_}); }
+
+void Settlement::take_down(const std::string& what, const std::string& chosen, const std::string& why,
+                           const std::string& option, bool unusual, bool proven) {
+  seen_.guesses.push_back({what, chosen, why, option});
+  if (unusual)
+    note(proven ? NoteCode::proven_reading : NoteCode::unusual_reading,
+         fmt::format("{} taken as {}: {} ({} says otherwise)", what, chosen, why, option));
+}
+
+void Settlement::guess(const std::string& what, const std::string& chosen, const std::string& why,
+                       const std::string& option, bool unusual, bool proven) {
+  if (settings_.strict)
+    fail(ErrorKind::input, "{}: --strict, and the {} is a guess, {} ({}): give {}", path_, what, chosen, why, option);
+  take_down(what, chosen, why, option, unusual, proven);
+}
 
 DepthValues::DepthValues(std::span<const float> depth, double sky)
     : step(depth.size() < kFewPixels ? 1 : kSparse), all(statistics_of(depth, step)) {
@@ -60,29 +365,10 @@ Side DepthValues::side_above(float limit) const {
   return side_of(std::move(above));
 }
 
-std::string DepthSettlement::text_of_range() const {
-  return fmt::format("all depth lies within 0 to 1 ({:.3g} to {:.3g})", values_.surfaces.least, values_.surfaces.most);
-}
-
-std::string DepthSettlement::straight(const DepthScore& score) const {
-  return fmt::format("as {} alone {:.0f} % of the smooth places are flat", word_of(score.kind), 100 * score.straight);
-}
-
-double DepthSettlement::straightness(const std::vector<DepthScore>& scores, DepthKind kind) const {
-  if (reading_.camera.orthographic && kind == DepthKind::ray) kind = DepthKind::planar;
-  const auto found = std::ranges::find(scores, kind, &DepthScore::kind);
-  return found == scores.end() ? 0 : found->straight;
-}
-
 double DepthSettlement::straightness_from_1() const {
   std::vector<float> turned(raw_.depth.begin(), raw_.depth.end());
   for (float& d : turned) d = d > 0 && d < 1 ? 1 - d : 0;
   return straightness(shape_of(turned, view_, settings_.sky, seen_.grain).scores, DepthKind::planar);
-}
-
-std::string DepthSettlement::normalized_line(bool reversed) {
-  return fmt::format("--depth-kind normalized{} --near 0 --far F, where F is the distance of {} in scene units",
-                     reversed ? " --reversed-z" : "", reversed ? 0 : 1);
 }
 
 void settle_depth(const PlanesToSettle& planes, const DepthFacts& facts) {
@@ -91,14 +377,14 @@ void settle_depth(const PlanesToSettle& planes, const DepthFacts& facts) {
   const DepthValues values(depth, sky);
   planes.seen.tells = values.has_any;
   if (planes.reading.depth_kind == DepthKind::position) {
-    settle_position_space(planes);
+    PositionSettlement(planes).run();
   } else {
     DepthShape shape = shape_of(depth, view_of(planes.reading, planes.raw.window), sky, planes.seen.grain);
     planes.seen.depth_scores = std::move(shape.scores);
     planes.seen.curve = shape.curve;
     const DepthSettlement depth(planes, facts, values);
     if (planes.reading.depth_kind == DepthKind::disparity) settle_disparity(depth);
-    settle_plane(depth, facts.is_kind_open);
+    PlaneSettlement(depth).run();
   }
   refuse_unused_range(planes);
 }
