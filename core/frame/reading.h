@@ -1,5 +1,5 @@
-// The reading of a frame: the windows of its planes, the meaning of their values, and its camera. One map leads from
-// any kind of depth to planar depth, the same on the host and in prepare.comp.
+// The reading of a frame: the windows of its planes, the meaning of their values, and its camera; evidence for it in the
+// pixels. One map leads from any kind of depth to planar depth, the same on the host and in prepare.comp.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -88,6 +88,50 @@ double step_of(std::span<const float> raw);
 /// surfaces 1000 units across are seen from a few units away (measured: 8e-6).
 DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double step = 0);
 
+// Evidence in the pixels, and the choices made by it.
+
+/// The coarseness of stored values, of any sample type.
+struct Grain {
+  double median = 0;  // of the values' distances from 0; where there is a step, each of them counts once
+  double step = 0;    // from one value to the next at the median; 0: as fine as floats are, or too few values to tell
+  bool is_coarse = false;  // the step is more than a 2^14th of the median
+  bool is_fixed = false;   // the step is the same for small and large values
+  bool is_half = false;    // the steps are a half float's, or a scaled half float's
+};
+/// A way to read depth and how well the frame's flat surfaces agree with it.
+struct DepthScore {
+  DepthKind kind;
+  // The share of the smooth blocks that are flat by this kind and by no other.
+  double straight = 0;
+};
+/// The curve from places in the picture to depth values, as measured on planes at an angle. If L is affine over a
+/// plane's picture and v = f(L) is the value, then v'' / v'^2 is a function of v alone, the same for all planes: 2 / (v
+/// + c) for planar depth that counts from a plane at distance c.
+struct Curve {
+  std::size_t planes = 0;  // blocks of the picture that show one
+  // v'^2 / v'' = slope v + offset: 1/2 and 0 of distances, 0 of logarithms, p / (1 + p) of distances to the power of p
+  double slope = 0.5, offset = 0;
+  double median = 0;     // value
+  double spread = 0;     // of the planes' own numbers about that line, relative to the median value
+  bool is_wide = false;  // the values are different enough to tell the slope
+};
+/// A choice that neither settings nor camera make.
+struct Guess {
+  std::string what, chosen, why, option;  // the option makes the choice
+};
+
+/// Facts that the pixels of a frame show.
+struct Evidence {
+  bool tells = true;                     // false: the pixels left a question open
+  Grain grain;                           // of the depth's values
+  std::vector<DepthScore> depth_scores;  // of depth that is no position
+  Curve curve;                           // of the same
+  // of the surfaces, scene units; none until the frame is settled, and where all is sky
+  std::optional<double> median_depth;
+  std::optional<NormalSpace> space_by_shift;  // of normals that give the shift of a coarse disparity
+  std::vector<Guess> guesses;
+};
+
 // The whole reading.
 
 /// Whether normals have two components of a vector: nothing in them tells whether the third is above or below 0, and
@@ -100,7 +144,7 @@ struct Meaning {
   DepthKind depth_kind = DepthKind::planar;  // not automatic
   DepthRange depth_range;
   // The rounding of depth values: to multiples of a step (0: to none), and to a part of themselves, if that is more
-  // than their sample type rounds. See Grain in core/frame/evidence.h, and step_of().
+  // than their sample type rounds. See Grain and step_of().
   double depth_step = 0, depth_rounding = 0;
   bool depth_is_coarse = false;                                // either is more than a 2^14th of the median value
   double found_sky = std::numeric_limits<double>::infinity();  // raw depth at or beyond it is sky, as the pixels show

@@ -1,6 +1,6 @@
 // Detectors: each speaks on the numbers of its fault, and is silent on those of frames that are sound.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/findings.h"
 
 #include <set>
 

@@ -529,7 +529,7 @@ void note_unused_input(FrameSource& source, const InputSettings& settings) {
   if (settings.input.empty() || !source.channels[RawPlane::normal].empty() || !wants_normals(settings)) return;
   const auto is_of_input = [&](const ChannelRef& ref) { return source.file_of(ref).path() == settings.input; };
   const auto is_used = [&](const std::vector<ChannelRef>& plane) { return std::ranges::any_of(plane, is_of_input); };
-  if (std::ranges::any_of(source.channels.planes.entries, is_used)) return;
+  if (std::ranges::any_of(source.channels.entries, is_used)) return;
   source.notes.push_back({NoteCode::unused_input, fmt::format("no channel of {} is used: if it holds the normals, give "
                                                               "it to --normal, or name them with --normal-channels",
                                                               settings.input)});

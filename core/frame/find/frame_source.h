@@ -12,7 +12,6 @@
 #include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
-#include "core/frame/evidence.h"
 #include "core/frame/find/channels.h"
 #include "core/frame/find/environment.h"
 #include "core/frame/find/input_rules.h"
@@ -36,14 +35,11 @@ struct DeepFiles {
 };
 
 /// The channels of a frame that are read.
-struct FrameChannels {
-  /// The channels of a plane, in the order of its components; none: the frame has no such plane, or nobody asked for
-  /// it. The indirect diffuse light is to be multiplied by the diffuse colour where that is there, and holds it already
-  /// where it is not.
-  std::vector<ChannelRef>& operator[](RawPlane plane) { return planes[plane]; }
-  const std::vector<ChannelRef>& operator[](RawPlane plane) const { return planes[plane]; }
-
-  RawPlaneArray<std::vector<ChannelRef>> planes;
+///
+/// Those of a plane are in the order of its components; none: the frame has no such plane, or nobody asked for it. The
+/// indirect diffuse light is to be multiplied by the diffuse colour where that is there, and holds it already where it
+/// is not.
+struct FrameChannels : RawPlaneArray<std::vector<ChannelRef>> {
   std::vector<ChannelRef> positions;  // that may tell the camera; empty: there are none
   std::optional<DeepFiles> deep;
   std::string view;  // that is read, of files with views

@@ -1,6 +1,6 @@
 // The table of detectors.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/findings.h"
 
 #include <fmt/format.h>
 #include <algorithm>

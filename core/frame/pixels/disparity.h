@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "core/frame/evidence.h"
 #include "core/frame/pixels/normal_scores.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 

@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/option_words.h"
-#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/findings.h"
 #include "core/frame/settle/normal_settlement.h"
 #include "core/frame/settle/settle.h"
 

@@ -14,7 +14,7 @@
 #include "core/formats/exr.h"
 #include "core/frame/find/behind.h"
 #include "core/frame/find/position_pass.h"
-#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/findings.h"
 #include "core/frame/pixels/radius.h"
 #include "core/frame/pixels/ramps.h"
 #include "core/frame/pixels/statistics.h"

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/frame/evidence.h"
 #include "core/frame/find/frame_source.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 

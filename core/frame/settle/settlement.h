@@ -13,11 +13,11 @@
 #include "core/base/note.h"
 #include "core/base/option_words.h"
 #include "core/base/settings.h"
-#include "core/frame/evidence.h"
 #include "core/frame/find/frame_source.h"
 #include "core/frame/pixels/findings.h"
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/statistics.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 
