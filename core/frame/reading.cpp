@@ -196,27 +196,6 @@ bool is_between_planes(DepthKind kind) {
 
 bool is_distance(DepthKind kind) { return kind == DepthKind::planar || kind == DepthKind::ray; }
 
-std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind kind) {
-  const bool is_device = kind == DepthKind::device, is_log = kind == DepthKind::log;
-  const bool is_disparity = kind == DepthKind::disparity, has_planes = is_disparity || is_between_planes(kind);
-  std::vector<std::string> unused;
-  if (said.near && (is_log || !has_planes)) unused.emplace_back("--near");
-  if (said.far && !has_planes) unused.emplace_back("--far");
-  if (said.disparity_scale && !is_disparity) unused.emplace_back("--set disparity-scale");
-  if (said.disparity_shift && !is_disparity) unused.emplace_back("--set disparity-shift");
-  if (said.reversed && !is_between_planes(kind)) unused.emplace_back("--reversed-z");
-  if (said.device != DeviceRange::automatic && !is_device) unused.emplace_back("--set device-range");
-  if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.emplace_back("--set log-constant");
-  return unused;
-}
-
-void refuse_range_options(const std::string& depth, std::span<const std::string> options, DepthKind kind) {
-  const bool is_one = options.size() == 1;
-  fail(ErrorKind::usage,
-       "{}: {} {} no effect, since the depth is read as {}: leave {} out, or give the depth's kind with --depth-kind",
-       depth, fmt::join(options, ", "), is_one ? "has" : "have", word_of(kind), is_one ? "it" : "them");
-}
-
 bool is_all_sky(const DepthMap& map, std::span<const float> raw) {
   if (map.form == kDepthPosition) return std::ranges::all_of(raw, [](float x) { return x == 0; });
   const auto below = float(map.sky_below);
@@ -289,14 +268,6 @@ View view_of(const Reading& reading, const Window& window) { return view_of(read
 
 Window picture_of(const Reading& reading, const Window& part) {
   return reduced(part, reading.display, reading.supersampling);
-}
-
-void read_like(Reading& reading, const Meaning& settled) {
-  const DepthRange own = reading.depth_range;
-  static_cast<Meaning&>(reading) = settled;
-  if (reading.depth_kind == DepthKind::disparity) return;  // whose scale and shift are no camera's
-  reading.depth_range.near = own.near;
-  reading.depth_range.far = own.far;
 }
 
 bool dims_beauty(const std::vector<AmbientReading>& lights) {

@@ -61,11 +61,6 @@ bool is_between_planes(DepthKind kind);
 /// Whether the values are distances: planar, or along the ray.
 bool is_distance(DepthKind kind);
 
-/// The options of a range that depth of this kind has not.
-std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind kind);
-/// Fails with ErrorKind::usage, since these options have no effect on the depth of that name.
-[[noreturn]] void refuse_range_options(const std::string& depth, std::span<const std::string> options, DepthKind kind);
-
 /// Whether every raw value plainly says that there is no surface: none is one, or has to be repaired to be none. Of
 /// positions: x, y and z are 0.
 bool is_all_sky(const DepthMap& map, std::span<const float> raw);
@@ -221,10 +216,6 @@ View view_of(const Reading& reading, const Window& window);
 
 /// The part of the picture that is written for a part of the frame: see core/base/image.h.
 Window picture_of(const Reading& reading, const Window& part);
-
-/// Takes over the meaning of another frame of the sequence. The clip planes stay this frame's own, as its own camera
-/// has them.
-void read_like(Reading& reading, const Meaning& settled);
 
 /// The largest finite half float.
 constexpr double kLargestHalf = 65504;

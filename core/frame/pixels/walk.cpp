@@ -256,64 +256,50 @@ namespace {
 
 bool is_same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
-/// A row or a column, counted from one of the borders.
-class BorderLines {
- public:
-  BorderLines(std::span<const float> depth, const Window& window, const DepthMap& map, bool are_columns, bool are_last)
-      : depth_(depth),
-        map_(map),
-        width_(std::size_t(window.width)),
-        count_(are_columns ? window.width : window.height),
-        size_(are_columns ? window.height : window.width),
-        are_columns_(are_columns),
-        are_last_(are_last) {}
+/// Rows or columns, counted from one of the borders: the upper, lower, left or right one.
+struct BorderLines {
+  std::span<const float> depth;
+  const Window& window;
+  const DepthMap& map;
+  std::size_t side;
 
-  int size() const { return size_; }
-  bool is_surface(int line, int i) const { return std::isfinite(planar_depth(map_, {value(line, i), 0, 0}, 1)); }
+  int count() const { return side < 2 ? window.height : window.width; }
+  int size() const { return side < 2 ? window.width : window.height; }
+  float value(int line, int i) const {
+    const int at = side % 2 == 0 ? line : count() - 1 - line, x = side < 2 ? i : at, y = side < 2 ? at : i;
+    return depth[std::size_t(y) * std::size_t(window.width) + std::size_t(x)];
+  }
+  bool is_surface(int line, int i) const { return std::isfinite(planar_depth(map, {value(line, i), 0, 0}, 1)); }
   /// How many lines have no surface and one value.
   int empty() const {
+    const auto is_empty = [&](int line) {
+      for (int i = 0; i < size(); i++)
+        if (!is_same(value(line, i), value(line, 0)) || (i == 0 && is_surface(line, 0))) return false;
+      return true;
+    };
     int line = 0;
-    while (line < count_ && is_empty(line)) line++;
+    while (line < count() && is_empty(line)) line++;
     return line;
   }
   /// The part of a line's pixels from `first` to `end` that has surfaces.
   double covered(int line, int first, int end) const {
-    if (line >= count_ || first >= end) return 0;
+    if (line >= count() || first >= end) return 0;
     int surfaces = 0;
     for (int i = first; i < end; i++) surfaces += is_surface(line, i);
     return double(surfaces) / (end - first);
   }
-
- private:
-  float value(int line, int i) const {
-    const int at = are_last_ ? count_ - 1 - line : line;
-    return depth_[are_columns_ ? std::size_t(i) * width_ + std::size_t(at) : std::size_t(at) * width_ + std::size_t(i)];
-  }
-  bool is_empty(int line) const {
-    for (int i = 0; i < size_; i++)
-      if (!is_same(value(line, i), value(line, 0)) || (i == 0 && is_surface(line, 0))) return false;
-    return true;
-  }
-
-  std::span<const float> depth_;
-  const DepthMap& map_;
-  std::size_t width_;
-  int count_, size_;
-  bool are_columns_, are_last_;
 };
 
 }  // namespace
 
 Borders borders_of(std::span<const float> depth, const Window& window, const DepthMap& map) {
   Borders borders;
-  std::vector<BorderLines> lines;
-  for (const bool are_columns : {false, true})
-    for (const bool are_last : {false, true}) lines.emplace_back(depth, window, map, are_columns, are_last);
-  for (std::size_t side = 0; side < 4; side++) borders[side].empty = lines[side].empty();
+  for (std::size_t side = 0; side < 4; side++) borders[side].empty = BorderLines{depth, window, map, side}.empty();
   for (std::size_t side = 0; side < 4; side++) {
+    const BorderLines lines{depth, window, map, side};
     const std::size_t across = side < 2 ? 2 : 0;
     borders[side].covered =
-        lines[side].covered(borders[side].empty, borders[across].empty, lines[side].size() - borders[across + 1].empty);
+        lines.covered(borders[side].empty, borders[across].empty, lines.size() - borders[across + 1].empty);
   }
   return borders;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -86,6 +87,35 @@ std::optional<std::string> alteration_of(const RawPart& raw, const DepthMap& map
 }
 
 // The encoding.
+
+/// The place of a channel that has one value on all surfaces while the two others vary, and that value.
+struct ConstantComponent {
+  std::size_t channel;
+  float value;
+  double bare;  // the share of surfaces without a normal
+};
+std::optional<ConstantComponent> constant_component(const RawPart& raw, const DepthMap& map) {
+  constexpr float kSame = 1e-3f;
+  const auto normal = raw.normal;
+  const std::size_t pixels = raw.window.pixels(), step = even_step(raw.window, kNormalPixels);
+  std::array<float, 3> least{}, most{};
+  std::size_t surfaces = 0, bare = 0;
+  least.fill(INFINITY);
+  most.fill(-INFINITY);
+  for (std::size_t i = 0; i < pixels; i += step) {
+    if (std::isinf(planar_depth(map, value_at(raw.depth, pixels, i), 1))) continue;
+    const std::array n{normal[i], normal[i + pixels], normal[i + 2 * pixels]};
+    surfaces++;
+    bare += std::ranges::all_of(n, [](float v) { return v == 0 || !std::isfinite(v); });
+    if (n == std::array{0.0f, 0.0f, 0.0f}) continue;
+    for (std::size_t c = 0; c < 3; c++) least[c] = std::min(least[c], n[c]), most[c] = std::max(most[c], n[c]);
+  }
+  const auto is_constant = [&](std::size_t c) { return most[c] - least[c] < kSame; };
+  for (const std::size_t c : {std::size_t(2), std::size_t(0), std::size_t(1)})
+    if (is_constant(c) && !is_constant((c + 1) % 3) && !is_constant((c + 2) % 3))
+      return ConstantComponent{c, least[c], double(bare) / double(surfaces)};
+  return std::nullopt;
+}
 
 class EncodingSettlement : private NormalSettlement {
  public:

@@ -114,17 +114,6 @@ class NormalSettlement : protected Settlement {
 /// Settles the encoding of the normals, and refuses vectors that were treated as colours. Gives the statistics of some
 /// of them.
 NormalStatistics settle_normal_encoding(const NormalSettlement& normals);
-/// The place of a channel that has one value on all surfaces while the two others vary, and that value.
-struct ConstantComponent {
-  std::size_t channel;
-  float value;
-  double bare;  // the share of surfaces without a normal
-};
-std::optional<ConstantComponent> constant_component(const RawPart& raw, const DepthMap& map);
-
-/// Whether nearly all normals look the same way, as in tangent space.
-bool are_alike(const RawPart& raw, const DepthMap& map);
-
 /// Notes normals that depth speaks against, and refuses normals that it refutes.
 void doubt_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores);
 

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/frame/pixels/statistics.h"
-#include "core/frame/samples.h"
 #include "core/frame/settle/normal_settlement.h"
 #include "core/frame/settle/settle.h"
 
@@ -63,47 +59,6 @@ std::string components_text(const OtherComponents& other, const NormalScore& sco
 }
 
 }  // namespace
-
-std::optional<ConstantComponent> constant_component(const RawPart& raw, const DepthMap& map) {
-  constexpr float kSame = 1e-3f;
-  const auto normal = raw.normal;
-  const std::size_t pixels = raw.window.pixels(), step = even_step(raw.window, kNormalPixels);
-  std::array<float, 3> least{}, most{};
-  std::size_t surfaces = 0, bare = 0;
-  least.fill(INFINITY);
-  most.fill(-INFINITY);
-  for (std::size_t i = 0; i < pixels; i += step) {
-    if (std::isinf(planar_depth(map, value_at(raw.depth, pixels, i), 1))) continue;
-    const std::array n{normal[i], normal[i + pixels], normal[i + 2 * pixels]};
-    surfaces++;
-    bare += std::ranges::all_of(n, [](float v) { return v == 0 || !std::isfinite(v); });
-    if (n == std::array{0.0f, 0.0f, 0.0f}) continue;
-    for (std::size_t c = 0; c < 3; c++) least[c] = std::min(least[c], n[c]), most[c] = std::max(most[c], n[c]);
-  }
-  const auto is_constant = [&](std::size_t c) { return most[c] - least[c] < kSame; };
-  for (const std::size_t c : {std::size_t(2), std::size_t(0), std::size_t(1)})
-    if (is_constant(c) && !is_constant((c + 1) % 3) && !is_constant((c + 2) % 3))
-      return ConstantComponent{c, least[c], double(bare) / double(surfaces)};
-  return std::nullopt;
-}
-
-bool are_alike(const RawPart& raw, const DepthMap& map) {
-  constexpr double kAlike = 0.98;  // length of the mean of the unit vectors
-  const std::size_t pixels = raw.window.pixels(), step = even_step(raw.window, kNormalPixels);
-  std::array<Vector3, 2> sums{};
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < pixels; i += step) {
-    if (std::isinf(planar_depth(map, value_at(raw.depth, pixels, i), 1))) continue;
-    std::size_t unorm = 0;
-    for (Vector3& sum : sums) {
-      const Vector3 n = decoded_normal(raw.normal, pixels, i, NormalEncoding::signed_float, unorm++ > 0);
-      const double size = length(n);
-      for (std::size_t c = 0; c < 3 && size > 0; c++) sum[c] += n[c] / size;
-    }
-    count++;
-  }
-  return std::ranges::any_of(sums, [&](const Vector3& sum) { return length(sum) > kAlike * double(count); });
-}
 
 void NormalSettlement::refuse_other_components(const std::vector<NormalScore>& scores,
                                                const NormalStatistics& n) const {

@@ -250,7 +250,12 @@ HostFrame read_host_frame(const InputSettings& settings, int number) {
 bool settle_like(FrameSource& source, const FrameSource& settled) {
   for (const RawPlane plane : {RawPlane::depth, RawPlane::normal})
     if (source.channels[plane].size() != settled.channels[plane].size()) return false;
-  read_like(source.reading, settled.reading);
+  Reading& reading = source.reading;
+  const DepthRange own = reading.depth_range;
+  static_cast<Meaning&>(reading) = settled.reading;
+  // The clip planes stay this frame's own, as its own camera has them; scale and shift of disparity are no camera's.
+  if (reading.depth_kind != DepthKind::disparity)
+    reading.depth_range.near = own.near, reading.depth_range.far = own.far;
   read_deep_like_meaning(source);
   source.evidence = settled.evidence;
   return true;

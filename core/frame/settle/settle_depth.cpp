@@ -35,11 +35,31 @@ Side side_of(std::vector<float> values) {
   return side;
 }
 
+/// The options of a range that depth of this kind has not.
+std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind kind) {
+  const bool is_device = kind == DepthKind::device, is_log = kind == DepthKind::log;
+  const bool is_disparity = kind == DepthKind::disparity, has_planes = is_disparity || is_between_planes(kind);
+  std::vector<std::string> unused;
+  if (said.near && (is_log || !has_planes)) unused.emplace_back("--near");
+  if (said.far && !has_planes) unused.emplace_back("--far");
+  if (said.disparity_scale && !is_disparity) unused.emplace_back("--set disparity-scale");
+  if (said.disparity_shift && !is_disparity) unused.emplace_back("--set disparity-shift");
+  if (said.reversed && !is_between_planes(kind)) unused.emplace_back("--reversed-z");
+  if (said.device != DeviceRange::automatic && !is_device) unused.emplace_back("--set device-range");
+  if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.emplace_back("--set log-constant");
+  return unused;
+}
+
 /// Refuses options of the user for a range that depth of this kind lacks. Presets serve frames of every kind.
 void refuse_unused_range(const PlanesToSettle& planes) {
-  auto unused = unused_range_options(planes.settings.depth_range, planes.reading.depth_kind);
+  const DepthKind kind = planes.reading.depth_kind;
+  auto unused = unused_range_options(planes.settings.depth_range, kind);
   std::erase_if(unused, [&](const auto& option) { return planes.settings.from_presets.contains(option); });
-  if (!unused.empty()) refuse_range_options(planes.path, unused, planes.reading.depth_kind);
+  if (unused.empty()) return;
+  const bool is_one = unused.size() == 1;
+  fail(ErrorKind::usage,
+       "{}: {} {} no effect, since the depth is read as {}: leave {} out, or give the depth's kind with --depth-kind",
+       planes.path, fmt::join(unused, ", "), is_one ? "has" : "have", word_of(kind), is_one ? "it" : "them");
 }
 
 /// Depth that is no position: decides its kind, or holds the one that is said against its pixels, and settles its ends.
