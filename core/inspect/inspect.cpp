@@ -76,7 +76,7 @@ std::optional<BehindKind> kind_by(const std::string& name) {
 /// Whether the frame reads the channel already.
 bool is_read(const FrameSource& source, const ChannelRef& ref) {
   const auto has = [&](const std::vector<ChannelRef>& plane) { return std::ranges::find(plane, ref) != plane.end(); };
-  return std::ranges::any_of(source.channels.planes.entries, has);
+  return std::ranges::any_of(source.channels.entries, has);
 }
 
 }  // namespace
