@@ -91,7 +91,16 @@ std::optional<Projection> orthographic_of(const Picked& points, const ImageScale
 
 Vector3 first_three(const Row<4>& row) { return {row[0], row[1], row[2]}; }
 
-/// Takes a perspective projection apart, without its skew. The points are in front.
+/// Takes focal lengths and axes from rows of a projection, without its skew.
+void take_axes(Pinhole& camera, const Vector3& x, const Vector3& y) {
+  camera.fy = length(y);
+  camera.axes[1] = scaled(y, 1 / camera.fy);
+  const Vector3 right = difference(x, scaled(camera.axes[1], dot(x, camera.axes[1])));
+  camera.fx = length(right);
+  camera.axes[0] = scaled(right, 1 / camera.fx);
+}
+
+/// Takes a perspective projection apart. The points are in front.
 std::optional<Pinhole> pinhole_of_perspective(Projection m, const Picked& points) {
   const double size = length(first_three(m[2]));
   if (!(size > 0)) return std::nullopt;
@@ -103,13 +112,7 @@ std::optional<Pinhole> pinhole_of_perspective(Projection m, const Picked& points
   const Vector3 ahead = first_three(m[2]), x = first_three(m[0]), y = first_three(m[1]);
   camera.cx = dot(x, ahead);
   camera.cy = dot(y, ahead);
-  const Vector3 down = difference(y, scaled(ahead, camera.cy));
-  camera.fy = length(down);
-  camera.axes[1] = scaled(down, 1 / camera.fy);
-  const Vector3 beside = difference(x, scaled(ahead, camera.cx));
-  const Vector3 right = difference(beside, scaled(camera.axes[1], dot(beside, camera.axes[1])));
-  camera.fx = length(right);
-  camera.axes[0] = scaled(right, 1 / camera.fx);
+  take_axes(camera, difference(x, scaled(ahead, camera.cx)), difference(y, scaled(ahead, camera.cy)));
   camera.axes[2] = ahead;
   camera.offset = {(m[0][3] - camera.cx * m[2][3]) / camera.fx, (m[1][3] - camera.cy * m[2][3]) / camera.fy, m[2][3]};
   return camera;
@@ -120,14 +123,8 @@ std::optional<Pinhole> pinhole_of_perspective(Projection m, const Picked& points
 std::optional<Pinhole> pinhole_of_orthographic(const Projection& m, const Window& display) {
   Pinhole camera;
   camera.orthographic = true;
-  const Vector3 x = first_three(m[0]), y = first_three(m[1]);
-  camera.fy = length(y);
-  if (!(camera.fy > 0)) return std::nullopt;
-  camera.axes[1] = scaled(y, 1 / camera.fy);
-  const Vector3 right = difference(x, scaled(camera.axes[1], dot(x, camera.axes[1])));
-  camera.fx = length(right);
-  if (!(camera.fx > 0)) return std::nullopt;
-  camera.axes[0] = scaled(right, 1 / camera.fx);
+  take_axes(camera, first_three(m[0]), first_three(m[1]));
+  if (!(camera.fx > 0)) return std::nullopt;  // as where fy is 0, too
   camera.axes[2] = cross(camera.axes[0], camera.axes[1]);
   camera.cx = 0.5 * display.width;
   camera.cy = 0.5 * display.height;

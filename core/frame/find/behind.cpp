@@ -104,10 +104,6 @@ ChannelRef find_channel(FrameSource& source, ChannelSearch& search, std::size_t 
   return found[0];
 }
 
-std::string base_name(const FrameSource& source, const ChannelRef& ref) {
-  return std::filesystem::path(source.file_of(ref).path()).filename().string();
-}
-
 }  // namespace
 
 void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
@@ -135,8 +131,8 @@ std::string hidden_sources_text(const FrameSource& source) {
   std::vector<std::string> sources;
   for (std::size_t i = 0; i < source.channels[RawPlane::behind].size(); i++) {
     const ChannelRef& ref = source.channels[RawPlane::behind][i];
-    sources.push_back(
-        fmt::format("{} {} {}", base_name(source, ref), ref.channel, word_of(source.reading.behind[i].kind)));
+    sources.push_back(fmt::format("{} {} {}", std::filesystem::path(source.file_of(ref).path()).filename().string(),
+                                  ref.channel, word_of(source.reading.behind[i].kind)));
   }
   std::ranges::sort(sources);
   return fmt::format("{}", fmt::join(sources, "; "));

@@ -225,7 +225,7 @@ void doubt_depth_of_three(FrameSource& source, const ChannelSearch& search, cons
   const std::string word = lower_case(depth.channel.substr(depth.channel.rfind('.') + 1));
   const std::string& path = source.file_of(depth).path();
   const std::string layer = depth.channel.substr(0, depth.channel.size() - word.size());
-  if (word == "y" && search.has(depth, "ry") && search.has(depth, "by"))
+  if (word == "y" && search.find_beside(depth, "ry") && search.find_beside(depth, "by"))
     fail(ErrorKind::input,
          "{}: {}Y with RY and BY is the brightness of a picture of colours, and no depth: give the file of the depth "
          "with --depth, or name its channel with --depth-channel",

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,10 @@ inline constexpr double kAsMany = 0.98, kLeastOwn = 0.2;
 /// Degrees. If all normals are turned by more than this against depth, their space or camera is another one. Bumps do
 /// not turn all normals alike; half depth turns them by up to a degree.
 inline constexpr double kLeastTurn = 1, kLeastTurnOfHalf = 3;
+
+/// Degrees. If the best quarter of the normals is farther off than this, normals and depth are of different cameras or
+/// planes.
+inline constexpr double kLargestAngle = 2;
 
 // The usual mistakes of cameras, each undone and tried on the normals.
 
@@ -71,14 +76,25 @@ class NormalSettlement : protected Settlement {
 
  protected:
   NormalPlanes planes() const { return {over(reading_, raw_.window), raw_.normal, raw_.depth}; }
-  static bool agrees(const NormalScore& score);
+  static bool agrees(const NormalScore& score) {
+    return score.explained() >= kLeastAgreement && score.angle <= kLargestAngle;
+  }
   /// Whether a reading is as good as any, if need be after a turn of opposite normals: opposite normals are a fault of
   /// some objects, flips a fault of all.
-  static bool explains(const NormalScore& score, const std::vector<NormalScore>& scores);
-  static bool explains_most(const NormalScore& score, const std::vector<NormalScore>& scores);
+  static bool explains(const NormalScore& score, const std::vector<NormalScore>& scores) {
+    return score.agreement >= kNoBetter * scores[0].agreement || explains_most(score, scores);
+  }
+  static bool explains_most(const NormalScore& score, const std::vector<NormalScore>& scores) {
+    const double most = std::ranges::max_element(scores, {}, &NormalScore::explained)->explained();
+    return score.explained() >= kAsMany * most && score.agreement >= kLeastOwn * score.explained();
+  }
   /// Whether one reading lacks the common turn of all normals in the other reading. A slightly turned camera causes
   /// this turn in the wrong space.
-  bool is_straighter(const NormalScore& score, const NormalScore& other) const;
+  bool is_straighter(const NormalScore& score, const NormalScore& other) const {
+    const double least = !has_coarse_depth(reading_) ? kLeastTurn : kLeastTurnOfHalf;
+    return other.turn_degrees() > least && kClear * score.turn_degrees() < other.turn_degrees() &&
+           score.explained() >= kNoBetter * other.explained();
+  }
   /// The same reading in the other space, where it is straighter.
   const NormalScore* straighter_than(const NormalScore& score, const std::vector<NormalScore>& scores) const;
   static std::string rotation_text(const NormalScore& chosen, const NormalScore& other);
@@ -97,7 +113,10 @@ class NormalSettlement : protected Settlement {
   void refuse_other_components(const std::vector<NormalScore>& scores, const NormalStatistics& statistics) const;
   static std::string text_of(const NormalScore& s);
   /// Names the file of the camera, or the header's attributes.
-  std::string from() const;
+  std::string from() const {
+    if (!source_.camera_from.empty()) return " of " + source_.camera_from;
+    return settings_.camera.empty() ? std::string() : " " + settings_.camera;
+  }
   /// As "N.X, N.Y, N.Z".
   std::string channels() const;
 

@@ -14,10 +14,7 @@
 namespace alcove {
 namespace {
 
-/// Degrees. If the best quarter of the normals is farther off than this, normals and depth are of different cameras or
-/// planes.
-constexpr double kLargestAngle = 2;
-/// The same where nothing but the turn speaks for another space.
+/// Degrees. As kLeastTurn, where nothing but the turn speaks for another space.
 constexpr double kClearTurn = 2;
 
 /// Normals are cut if none is below this, if by depth this part of them should be, and if this part of those is as
@@ -178,25 +175,6 @@ class SpaceSettlement : private NormalSettlement {
 
 }  // namespace
 
-bool NormalSettlement::agrees(const NormalScore& score) {
-  return score.explained() >= kLeastAgreement && score.angle <= kLargestAngle;
-}
-
-bool NormalSettlement::explains(const NormalScore& score, const std::vector<NormalScore>& scores) {
-  return score.agreement >= kNoBetter * scores[0].agreement || explains_most(score, scores);
-}
-
-bool NormalSettlement::explains_most(const NormalScore& score, const std::vector<NormalScore>& scores) {
-  const double most = std::ranges::max_element(scores, {}, &NormalScore::explained)->explained();
-  return score.explained() >= kAsMany * most && score.agreement >= kLeastOwn * score.explained();
-}
-
-bool NormalSettlement::is_straighter(const NormalScore& score, const NormalScore& other) const {
-  const double least = !has_coarse_depth(reading_) ? kLeastTurn : kLeastTurnOfHalf;
-  return other.turn_degrees() > least && kClear * score.turn_degrees() < other.turn_degrees() &&
-         score.explained() >= kNoBetter * other.explained();
-}
-
 const NormalScore* NormalSettlement::straighter_than(const NormalScore& score,
                                                      const std::vector<NormalScore>& scores) const {
   const auto other = score.space == NormalSpace::world ? NormalSpace::view : NormalSpace::world;
@@ -236,11 +214,6 @@ std::string NormalSettlement::text_of(const NormalScore& s) {
   return fmt::format("{} with flips {}: {:.0f} % agree with depth, {:.0f} % face the camera{}", word_of(s.space),
                      to_string(s.flips), 100 * s.agreement, 100 * s.facing,
                      s.opposite < 0.005 ? "" : fmt::format(", {:.0f} % are opposite to depth", 100 * s.opposite));
-}
-
-std::string NormalSettlement::from() const {
-  if (!source_.camera_from.empty()) return " of " + source_.camera_from;
-  return settings_.camera.empty() ? std::string() : " " + settings_.camera;
 }
 
 std::string NormalSettlement::channels() const {
