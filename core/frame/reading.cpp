@@ -186,16 +186,6 @@ double raw_of(const DepthMap& map, double planar, double ray_length) {
   }
 }
 
-bool lacks_sign(std::size_t components, NormalEncoding encoding) {
-  return components == 2 && encoding != NormalEncoding::octahedral && encoding != NormalEncoding::spheremap;
-}
-
-bool is_between_planes(DepthKind kind) {
-  return kind == DepthKind::device || kind == DepthKind::normalized || kind == DepthKind::log;
-}
-
-bool is_distance(DepthKind kind) { return kind == DepthKind::planar || kind == DepthKind::ray; }
-
 bool is_all_sky(const DepthMap& map, std::span<const float> raw) {
   if (map.form == kDepthPosition) return std::ranges::all_of(raw, [](float x) { return x == 0; });
   const auto below = float(map.sky_below);
@@ -259,17 +249,6 @@ bool list_all(std::span<const BehindPlane> planes) {
       planes, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces && plane.is_whole; });
 }
 
-Reading over(Reading reading, const Window& window) {
-  reading.data = window;
-  return reading;
-}
-
-View view_of(const Reading& reading, const Window& window) { return view_of(reading.camera, window, reading.display); }
-
-Window picture_of(const Reading& reading, const Window& part) {
-  return reduced(part, reading.display, reading.supersampling);
-}
-
 bool dims_beauty(const std::vector<AmbientReading>& lights) {
   return std::ranges::none_of(lights, [](const AmbientReading& light) { return light.weight.has_value(); });
 }
@@ -294,8 +273,6 @@ DepthPrecision hidden_precision_of(const Reading& reading) {
   for (const auto& plane : reading.behind) coarsest.depth_is_half |= plane.is_half;
   return depth_precision_of(coarsest);
 }
-
-bool has_coarse_depth(const Reading& reading) { return reading.depth_is_half || reading.depth_is_coarse; }
 
 DepthPrecision depth_precision_of(const Reading& reading) {
   const double of_type = reading.depth_is_half ? kHalfPrecision : kFloatPrecision;

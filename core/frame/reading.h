@@ -57,9 +57,11 @@ struct Disparity {
 Disparity disparity_of(const DepthRange& range);
 
 /// Whether values lie between a near and a far plane, and may be stored as integers.
-bool is_between_planes(DepthKind kind);
+inline bool is_between_planes(DepthKind kind) {
+  return kind == DepthKind::device || kind == DepthKind::normalized || kind == DepthKind::log;
+}
 /// Whether the values are distances: planar, or along the ray.
-bool is_distance(DepthKind kind);
+inline bool is_distance(DepthKind kind) { return kind == DepthKind::planar || kind == DepthKind::ray; }
 
 /// Whether every raw value plainly says that there is no surface: none is one, or has to be repaired to be none. Of
 /// positions: x, y and z are 0.
@@ -131,7 +133,9 @@ struct Evidence {
 
 /// Whether normals have two components of a vector: nothing in them tells whether the third is above or below 0, and
 /// only in view space is it above, since all that is seen faces the camera.
-bool lacks_sign(std::size_t components, NormalEncoding encoding);
+inline bool lacks_sign(std::size_t components, NormalEncoding encoding) {
+  return components == 2 && encoding != NormalEncoding::octahedral && encoding != NormalEncoding::spheremap;
+}
 
 /// The meaning of the values, as options and headers say or as the pixels settle it. It is the same for all frames of a
 /// sequence.
@@ -210,12 +214,19 @@ struct Reading : Meaning {
 };
 
 /// Gives the same reading for a part of the frame.
-Reading over(Reading reading, const Window& window);
+inline Reading over(Reading reading, const Window& window) {
+  reading.data = window;
+  return reading;
+}
 /// Gives the projection over a part of the frame.
-View view_of(const Reading& reading, const Window& window);
+inline View view_of(const Reading& reading, const Window& window) {
+  return view_of(reading.camera, window, reading.display);
+}
 
 /// The part of the picture that is written for a part of the frame: see core/base/image.h.
-Window picture_of(const Reading& reading, const Window& part);
+inline Window picture_of(const Reading& reading, const Window& part) {
+  return reduced(part, reading.display, reading.supersampling);
+}
 
 /// The largest finite half float.
 constexpr double kLargestHalf = 65504;
@@ -233,7 +244,7 @@ DepthMap behind_map_of(const Reading& reading, const BehindPlane& plane);
 DepthPrecision hidden_precision_of(const Reading& reading);
 
 /// Whether depth values are too coarse for the normals of depth to be exact.
-bool has_coarse_depth(const Reading& reading);
+inline bool has_coarse_depth(const Reading& reading) { return reading.depth_is_half || reading.depth_is_coarse; }
 
 /// The largest error of the planar depth that the map gives.
 DepthPrecision depth_precision_of(const Reading& reading);

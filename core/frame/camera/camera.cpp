@@ -575,11 +575,6 @@ Camera centred(const Window& display, double fx, double pixel_aspect) {
   return camera;
 }
 
-bool names_a_camera(const InputSettings& settings) {
-  return !settings.camera.empty() || settings.fov || settings.vertical_fov || settings.focal_px || settings.focal ||
-         settings.ortho_width;
-}
-
 Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame,
                   const std::string& view) {
   if (is_chan_file(settings.camera))

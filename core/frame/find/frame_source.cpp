@@ -563,17 +563,6 @@ void describe_pixels(FrameSource& source, const InputSettings& settings) {
 
 }  // namespace
 
-std::string FrameSource::layer_of(const ChannelRef& ref) const {
-  const std::size_t dot = ref.channel.rfind('.');
-  return dot == ref.channel.npos ? part_of(ref).name : ref.channel.substr(0, dot);
-}
-
-bool FrameSource::is_half(const ChannelRef& ref) const {
-  const auto& channels = part_of(ref).channels;
-  const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
-  return channel != channels.end() && channel->type == SampleType::half_float;
-}
-
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo) {
   FrameSource source;
   source.main_file = main_input(settings);
@@ -625,22 +614,10 @@ std::vector<std::string> other_depths(const FrameSource& source) {
   return others;
 }
 
-bool expects_world_normals(const FrameSource& source, const InputSettings& settings) {
-  return !source.channels[RawPlane::normal].empty() && source.program.rules->normal_space == NormalSpace::world &&
-         settings.normal_space != NormalSpace::view;
-}
-
 NoWorldToCamera::NoWorldToCamera(const std::string& file)
     : Error(ErrorKind::input, file +
                                   ": its normals are in world space, and the camera has no world_to_camera: give a "
                                   "--camera file with it, or --normal none to reconstruct normals from depth") {}
-
-InputSettings with_some_camera(const InputSettings& settings) {
-  InputSettings with = settings;
-  with.fov = 50;
-  if (with.normal_space == NormalSpace::automatic) with.normal_space = NormalSpace::view;
-  return with;
-}
 
 bool may_tell_camera(const InputSettings& settings) {
   std::vector<ExrFile> files;

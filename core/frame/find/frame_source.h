@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -83,9 +83,16 @@ struct FrameSource {
   /// The part of a file that a channel lies in.
   const ExrPart& part_of(const ChannelRef& ref) const { return file_of(ref).parts()[std::size_t(ref.part)]; }
   /// Whether its samples are half floats.
-  bool is_half(const ChannelRef& ref) const;
+  bool is_half(const ChannelRef& ref) const {
+    const auto& channels = part_of(ref).channels;
+    const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
+    return channel != channels.end() && channel->type == SampleType::half_float;
+  }
   /// The layer of a channel: its name without the last part, else the part's name; "" without a layer.
-  std::string layer_of(const ChannelRef& ref) const;
+  std::string layer_of(const ChannelRef& ref) const {
+    const std::size_t dot = ref.channel.rfind('.');
+    return dot == ref.channel.npos ? part_of(ref).name : ref.channel.substr(0, dot);
+  }
 
   std::string main_file;  // see main_input()
   std::vector<ExrFile> files;
@@ -113,7 +120,10 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
 std::vector<std::string> other_depths(const FrameSource& source);
 
 /// Whether the renderer's normals are in world space, and no option says otherwise: a camera must turn them.
-bool expects_world_normals(const FrameSource& source, const InputSettings& settings);
+inline bool expects_world_normals(const FrameSource& source, const InputSettings& settings) {
+  return !source.channels[RawPlane::normal].empty() && source.program.rules->normal_space == NormalSpace::world &&
+         settings.normal_space != NormalSpace::view;
+}
 
 /// ErrorKind::input: the normals of this file are in world space, and the camera has no world_to_camera.
 struct NoWorldToCamera : Error {
@@ -125,7 +135,12 @@ struct NoWorldToCamera : Error {
 bool may_tell_camera(const InputSettings& settings);
 
 /// Gives the settings with a camera that stands in for one, so that all else can be inspected without a camera.
-InputSettings with_some_camera(const InputSettings& settings);
+inline InputSettings with_some_camera(const InputSettings& settings) {
+  InputSettings with = settings;
+  with.fov = 50;
+  if (with.normal_space == NormalSpace::automatic) with.normal_space = NormalSpace::view;
+  return with;
+}
 
 /// A plane, or several one behind the other, and its destination.
 struct PlaneRead {

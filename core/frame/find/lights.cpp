@@ -183,8 +183,6 @@ void take_turn(LightsFile& file, const EstimatorSettings& settings) {
 
 }  // namespace
 
-bool turns_sun(const EstimatorSettings& settings) { return settings.sun_azimuth || settings.sun_elevation; }
-
 void LightsFile::require_frames(const std::vector<int>& frames) const {
   for (const auto& light : lights)
     for (const int frame : frames) {
@@ -231,10 +229,6 @@ std::vector<std::string> LightsFile::below_horizon(const std::vector<int>& frame
     if (entry.in_world && std::ranges::any_of(frames, is_below)) names.push_back(entry.name);
   }
   return names;
-}
-
-bool LightsFile::is_soft(std::size_t light) const {
-  return std::ranges::any_of(lights[light].of_frames, [](const auto& of_frame) { return of_frame.second.size > 0; });
 }
 
 std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::string& path,
