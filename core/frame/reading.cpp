@@ -114,6 +114,13 @@ void set_position(DepthMap& map, PositionSpace space, bool negative, const Camer
   map.eye_distance = std::hypot(offset[0], offset[1], offset[2]);
 }
 
+/// Raw depth at or beyond it is sky. Values that passed through half floats end where those end. `found`: the sky that
+/// the pixels show, of distances.
+double sky_of(DepthKind kind, bool is_half, double sky, double found = kInfinity) {
+  if (!is_distance(kind)) return sky;
+  return std::min({sky, found, is_half ? kLargestHalf : sky});
+}
+
 }  // namespace
 
 Disparity disparity_of(const DepthRange& range) {
@@ -232,17 +239,6 @@ DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double
   }
   return precision;
 }
-
-namespace {
-
-/// Raw depth at or beyond it is sky. Values that passed through half floats end where those end. `found`: the sky that
-/// the pixels show, of distances.
-double sky_of(DepthKind kind, bool is_half, double sky, double found = std::numeric_limits<double>::infinity()) {
-  if (!is_distance(kind)) return sky;
-  return std::min({sky, found, is_half ? kLargestHalf : sky});
-}
-
-}  // namespace
 
 bool list_all(std::span<const BehindPlane> planes) {
   return std::ranges::all_of(

@@ -269,7 +269,7 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
   find_ambient(source, search, file, settings);
   find_shadowed(source, search, file, settings);
-  source.reading.supersampling = supersampling_of(source, source.channels[RawPlane::beauty][0], settings);
+  source.reading.supersampling = supersampling_of(source, settings, &source.channels[RawPlane::beauty][0]);
   for (const auto* aov : {&source.channels[RawPlane::beauty], &source.channels[RawPlane::indirect],
                           &source.channels[RawPlane::diffuse_color]})
     require_common_window(source, *aov, "beauty", "--beauty",

@@ -170,12 +170,10 @@ HostFrame read_host_frame(const InputSettings& settings, int frame);
 
 // Planes of files with another data window than the depth, or of a smaller picture.
 
-/// Gives the pixels of the depth, in x and in y, per pixel of the beauty. The option says it; with auto the display
-/// windows tell, and it is 1 if they do not fit. Fails with ErrorKind::input if the depth's window cannot be divided
-/// so, or if the beauty has another one.
-int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const InputSettings& settings);
-/// Does the same without a beauty: 1 with auto.
-int supersampling_of(const FrameSource& source, const InputSettings& settings);
+/// Gives the pixels of the depth, in x and in y, per pixel of the picture that is written, as the option says; 1 with
+/// auto. Fails with ErrorKind::input if the depth's window cannot be divided so, or if the beauty, where there is one,
+/// has another window than that; with auto, if its display window is so many times smaller.
+int supersampling_of(const FrameSource& source, const InputSettings& settings, const ChannelRef* beauty = nullptr);
 
 /// Fails with ErrorKind::input if channels have another data window than the depth, and either share no pixel with it
 /// or have another display window: nothing else tells which pixels belong together. A renderer may cut each plane to

@@ -1,5 +1,5 @@
 // Settles depth: holds what is said of it against its pixels, and settles its sign, its ends, and the space of
-// positions. Takes down the choices that are made. Measures the rounding of values.
+// positions. Measures the rounding of values.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <algorithm>
@@ -345,33 +345,6 @@ class PositionSettlement : private Settlement {
 
 }  // namespace
 
-Settlement::Settlement(PlanesToSettle planes)
-    : reading_(planes.reading),
-      settings_(planes.settings),
-      raw_(planes.raw),
-      seen_(planes.seen),
-      view_(view_of(planes.reading, planes.raw.window)),
-      path_(std::move(planes.path)),
-      notes_(planes.notes),
-      file_(std::move(planes.file)) {}
-
-void Settlement::note(NoteCode code, std::string text) { notes_.push_back({code, std::move(text), file_}); }
-
-void Settlement::take_down(const std::string& what, const std::string& chosen, const std::string& why,
-                           const std::string& option, bool unusual, bool proven) {
-  seen_.guesses.push_back({what, chosen, why, option});
-  if (unusual)
-    note(proven ? NoteCode::proven_reading : NoteCode::unusual_reading,
-         fmt::format("{} taken as {}: {} ({} says otherwise)", what, chosen, why, option));
-}
-
-void Settlement::guess(const std::string& what, const std::string& chosen, const std::string& why,
-                       const std::string& option, bool unusual, bool proven) {
-  if (settings_.strict)
-    fail(ErrorKind::input, "{}: --strict, and the {} is a guess, {} ({}): give {}", path_, what, chosen, why, option);
-  take_down(what, chosen, why, option, unusual, proven);
-}
-
 DepthValues::DepthValues(std::span<const float> depth, double sky)
     : step(depth.size() < kFewPixels ? 1 : kSparse), all(statistics_of(depth, step)) {
   std::vector<float> below;
@@ -432,38 +405,6 @@ void refuse_8_bits(std::span<const float> depth, const std::string& name) {
          kDisparityHint);
 }
 
-/// Takes down how the values were rounded.
-void take_down(Reading& reading, const Grain& grain, std::span<const float> depth) {
-  reading.depth_is_coarse = grain.is_coarse;
-  const auto is_beyond = [&](float d) { return std::abs(d) > kLargestHalf && std::abs(d) < reading.sky; };
-  if (grain.is_half && std::ranges::none_of(depth, is_beyond)) reading.found_sky = kLargestHalf;
-  if (!grain.is_coarse) return;
-  if (grain.is_fixed)
-    reading.depth_step = grain.step;
-  else
-    reading.depth_rounding =
-        grain.is_half ? kHalfPrecision : 0.5 * std::exp2(std::ceil(std::log2(grain.step / grain.median)));
-}
-
-}  // namespace
-
-Grain measure_rounding(Reading& reading, const Window& window, std::span<const float> depth, const std::string& name) {
-  Grain grain;
-  if (depth.size() == window.pixels()) {
-    if (reading.depth_kind != DepthKind::disparity) refuse_8_bits(depth, name);
-    grain = grain_of(depth, reading.sky, reading.camera.orthographic);
-  }
-  take_down(reading, grain, depth);
-  return grain;
-}
-
-void measure_levels(Reading& reading, std::span<const float> depth) {
-  if (is_between_planes(reading.depth_kind) || reading.depth_kind == DepthKind::disparity)
-    reading.depth_step = std::max(reading.depth_step, step_of(depth));
-}
-
-namespace {
-
 Overflow overflow_of(const Reading& reading, std::span<const float> depth) {
   constexpr float kNear = 0.9f * float(kLargestHalf);
   if (!is_distance(reading.depth_kind) || !(reading.depth_is_half || reading.found_sky == kLargestHalf)) return {};
@@ -484,6 +425,27 @@ bool begins_behind(const Reading& reading, std::span<const float> depth) {
 }
 
 }  // namespace
+
+Grain measure_rounding(Reading& reading, const Window& window, std::span<const float> depth, const std::string& name) {
+  reading.depth_is_coarse = false;
+  if (depth.size() != window.pixels()) return {};
+  if (reading.depth_kind != DepthKind::disparity) refuse_8_bits(depth, name);
+  const Grain grain = grain_of(depth, reading.sky, reading.camera.orthographic);
+  reading.depth_is_coarse = grain.is_coarse;
+  const auto is_beyond = [&](float d) { return std::abs(d) > kLargestHalf && std::abs(d) < reading.sky; };
+  if (grain.is_half && std::ranges::none_of(depth, is_beyond)) reading.found_sky = kLargestHalf;
+  if (grain.is_coarse && grain.is_fixed)
+    reading.depth_step = grain.step;
+  else if (grain.is_coarse)
+    reading.depth_rounding =
+        grain.is_half ? kHalfPrecision : 0.5 * std::exp2(std::ceil(std::log2(grain.step / grain.median)));
+  return grain;
+}
+
+void measure_levels(Reading& reading, std::span<const float> depth) {
+  if (is_between_planes(reading.depth_kind) || reading.depth_kind == DepthKind::disparity)
+    reading.depth_step = std::max(reading.depth_step, step_of(depth));
+}
 
 Findings findings_of(const Reading& frame, const RawPart& raw, const Evidence& seen, const std::string& name,
                      bool has_read_normals) {

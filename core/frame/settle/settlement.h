@@ -8,8 +8,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/note.h"
 #include "core/base/option_words.h"
 #include "core/base/settings.h"
@@ -34,16 +36,33 @@ struct PlanesToSettle {
 
 class Settlement {
  public:
-  explicit Settlement(PlanesToSettle planes);
+  explicit Settlement(PlanesToSettle planes)
+      : reading_(planes.reading),
+        settings_(planes.settings),
+        raw_(planes.raw),
+        seen_(planes.seen),
+        view_(view_of(planes.reading, planes.raw.window)),
+        path_(std::move(planes.path)),
+        notes_(planes.notes),
+        file_(std::move(planes.file)) {}
 
  protected:
   /// Takes down a choice, and notes an unusual one: with a warning unless the pixels prove it.
   void take_down(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
-                 bool unusual, bool proven);
+                 bool unusual, bool proven) {
+    seen_.guesses.push_back({what, chosen, why, option});
+    if (unusual)
+      note(proven ? NoteCode::proven_reading : NoteCode::unusual_reading,
+           fmt::format("{} taken as {}: {} ({} says otherwise)", what, chosen, why, option));
+  }
   /// Does the same for a guess. Fails with ErrorKind::input under --strict.
   void guess(const std::string& what, const std::string& chosen, const std::string& why, const std::string& option,
-             bool unusual, bool proven = false);
-  void note(NoteCode code, std::string text);
+             bool unusual, bool proven = false) {
+    if (settings_.strict)
+      fail(ErrorKind::input, "{}: --strict, and the {} is a guess, {} ({}): give {}", path_, what, chosen, why, option);
+    take_down(what, chosen, why, option, unusual, proven);
+  }
+  void note(NoteCode code, std::string text) { notes_.push_back({code, std::move(text), file_}); }
 
   Reading& reading_;
   const InputSettings& settings_;
