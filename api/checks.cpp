@@ -8,13 +8,12 @@
 #include "core/base/error.h"
 #include "core/base/option_words.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/findings.h"
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/radius.h"
 #include "core/frame/pixels/statistics.h"
-#include "core/frame/settle/depth_settlement.h"
-#include "core/frame/settle/other_cameras.h"
-#include "core/frame/settle/precision.h"
+#include "core/frame/settle/normal_settlement.h"
+#include "core/frame/settle/settlement.h"
 
 namespace alcove {
 namespace {

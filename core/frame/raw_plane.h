@@ -3,12 +3,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/base/settings.h"
+#include "core/base/text.h"
 
 namespace alcove {
 
@@ -69,33 +72,68 @@ static_assert(rows_are_in_order());
 // Files.
 
 /// The file that a frame is called after: its INPUT, or else its depth, its positions or its deep samples.
-const std::string& main_input(const InputSettings& settings);
+inline const std::string& main_input(const InputSettings& settings) {
+  if (!settings.input.empty()) return settings.input;
+  if (!settings.depth.empty()) return settings.depth;
+  return settings.position.empty() ? settings.deep.front() : settings.position;
+}
 /// The option that names it.
-const char* main_option(const InputSettings& settings);
+inline const char* main_option(const InputSettings& settings) {
+  if (!settings.input.empty()) return "INPUT";
+  if (!settings.depth.empty()) return "--depth";
+  return settings.position.empty() ? "--deep" : "--position";
+}
 
 /// Whether the frame's normals are read; `--normal none` leaves them out.
-bool wants_normals(const InputSettings& settings);
+inline bool wants_normals(const InputSettings& settings) { return lower_case(settings.normal) != "none"; }
 
 /// Whether AO is wanted in parts of the frame only.
-bool wants_matte(const InputSettings& settings);
+inline bool wants_matte(const InputSettings& settings) {
+  return !settings.matte.empty() || !settings.matte_channel.empty() || !settings.matte_object.empty();
+}
 
 /// Whether a text names a picture by its ending, rather than objects.
-bool names_picture(const std::string& text);
+inline bool names_picture(const std::string& text) {
+  const auto dot = text.rfind('.');
+  if (dot == text.npos || text.find(',') != text.npos) return false;
+  const std::string ending = lower_case(text.substr(dot + 1));
+  return std::ranges::any_of(std::array{"exr", "dds", "npy", "png", "tif", "tiff", "tga", "bmp", "hdr"},
+                             [&](const char* known) { return ending == known; });
+}
 
 /// Whether some surfaces are no occluders.
-bool chooses_occluders(const InputSettings& settings);
+inline bool chooses_occluders(const InputSettings& settings) {
+  return !settings.occluders.empty() || !settings.occluder_objects.empty() || !settings.ignore.empty() ||
+         !settings.ignored_objects.empty();
+}
 
 /// A layer of the beauty, and the light of --lights that it is the light of.
 struct ShadowLayer {
   std::string light, layer;
 };
 /// What --set shadow-layers lists. Fails with ErrorKind::usage on a text that is no such list.
-std::vector<ShadowLayer> shadow_layers_of(const InputSettings& settings);
+inline std::vector<ShadowLayer> shadow_layers_of(const InputSettings& settings) {
+  std::vector<ShadowLayer> layers;
+  if (settings.shadow_layers.empty()) return layers;
+  for (const auto& text : split(settings.shadow_layers)) {
+    const auto colon = text.find(':');
+    if (colon == 0 || colon >= text.size() - 1)
+      fail(ErrorKind::usage,
+           "--set shadow-layers={}: it takes NAME:LAYER, a light of --lights and its layer in the beauty's file, "
+           "several with commas",
+           text);
+    layers.push_back({text.substr(0, colon), text.substr(colon + 1)});
+  }
+  return layers;
+}
 
 /// Whether --deep names a file.
-bool has_deep(const InputSettings& settings);
+inline bool has_deep(const InputSettings& settings) { return settings.deep != FileList{}; }
 
 /// Whether anything is named that may show more than the first surface of each pixel.
-bool has_hidden_sources(const InputSettings& settings);
+inline bool has_hidden_sources(const InputSettings& settings) {
+  const bool has_files = settings.behind != FileList{} || has_deep(settings);
+  return has_files || settings.around > 0 || settings.around_all || settings.other_views;
+}
 
 }  // namespace alcove

@@ -114,6 +114,13 @@ void set_position(DepthMap& map, PositionSpace space, bool negative, const Camer
   map.eye_distance = std::hypot(offset[0], offset[1], offset[2]);
 }
 
+/// Raw depth at or beyond it is sky. Values that passed through half floats end where those end. `found`: the sky that
+/// the pixels show, of distances.
+double sky_of(DepthKind kind, bool is_half, double sky, double found = kInfinity) {
+  if (!is_distance(kind)) return sky;
+  return std::min({sky, found, is_half ? kLargestHalf : sky});
+}
+
 }  // namespace
 
 Disparity disparity_of(const DepthRange& range) {
@@ -186,37 +193,6 @@ double raw_of(const DepthMap& map, double planar, double ray_length) {
   }
 }
 
-bool lacks_sign(std::size_t components, NormalEncoding encoding) {
-  return components == 2 && encoding != NormalEncoding::octahedral && encoding != NormalEncoding::spheremap;
-}
-
-bool is_between_planes(DepthKind kind) {
-  return kind == DepthKind::device || kind == DepthKind::normalized || kind == DepthKind::log;
-}
-
-bool is_distance(DepthKind kind) { return kind == DepthKind::planar || kind == DepthKind::ray; }
-
-std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind kind) {
-  const bool is_device = kind == DepthKind::device, is_log = kind == DepthKind::log;
-  const bool is_disparity = kind == DepthKind::disparity, has_planes = is_disparity || is_between_planes(kind);
-  std::vector<std::string> unused;
-  if (said.near && (is_log || !has_planes)) unused.emplace_back("--near");
-  if (said.far && !has_planes) unused.emplace_back("--far");
-  if (said.disparity_scale && !is_disparity) unused.emplace_back("--set disparity-scale");
-  if (said.disparity_shift && !is_disparity) unused.emplace_back("--set disparity-shift");
-  if (said.reversed && !is_between_planes(kind)) unused.emplace_back("--reversed-z");
-  if (said.device != DeviceRange::automatic && !is_device) unused.emplace_back("--set device-range");
-  if (said.log_constant != DepthRange{}.log_constant && !is_log) unused.emplace_back("--set log-constant");
-  return unused;
-}
-
-void refuse_range_options(const std::string& depth, std::span<const std::string> options, DepthKind kind) {
-  const bool is_one = options.size() == 1;
-  fail(ErrorKind::usage,
-       "{}: {} {} no effect, since the depth is read as {}: leave {} out, or give the depth's kind with --depth-kind",
-       depth, fmt::join(options, ", "), is_one ? "has" : "have", word_of(kind), is_one ? "it" : "them");
-}
-
 bool is_all_sky(const DepthMap& map, std::span<const float> raw) {
   if (map.form == kDepthPosition) return std::ranges::all_of(raw, [](float x) { return x == 0; });
   const auto below = float(map.sky_below);
@@ -264,39 +240,9 @@ DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double
   return precision;
 }
 
-namespace {
-
-/// Raw depth at or beyond it is sky. Values that passed through half floats end where those end. `found`: the sky that
-/// the pixels show, of distances.
-double sky_of(DepthKind kind, bool is_half, double sky, double found = std::numeric_limits<double>::infinity()) {
-  if (!is_distance(kind)) return sky;
-  return std::min({sky, found, is_half ? kLargestHalf : sky});
-}
-
-}  // namespace
-
 bool list_all(std::span<const BehindPlane> planes) {
   return std::ranges::all_of(
       planes, [](const BehindPlane& plane) { return plane.kind == BehindKind::surfaces && plane.is_whole; });
-}
-
-Reading over(Reading reading, const Window& window) {
-  reading.data = window;
-  return reading;
-}
-
-View view_of(const Reading& reading, const Window& window) { return view_of(reading.camera, window, reading.display); }
-
-Window picture_of(const Reading& reading, const Window& part) {
-  return reduced(part, reading.display, reading.supersampling);
-}
-
-void read_like(Reading& reading, const Meaning& settled) {
-  const DepthRange own = reading.depth_range;
-  static_cast<Meaning&>(reading) = settled;
-  if (reading.depth_kind == DepthKind::disparity) return;  // whose scale and shift are no camera's
-  reading.depth_range.near = own.near;
-  reading.depth_range.far = own.far;
 }
 
 bool dims_beauty(const std::vector<AmbientReading>& lights) {
@@ -323,8 +269,6 @@ DepthPrecision hidden_precision_of(const Reading& reading) {
   for (const auto& plane : reading.behind) coarsest.depth_is_half |= plane.is_half;
   return depth_precision_of(coarsest);
 }
-
-bool has_coarse_depth(const Reading& reading) { return reading.depth_is_half || reading.depth_is_coarse; }
 
 DepthPrecision depth_precision_of(const Reading& reading) {
   const double of_type = reading.depth_is_half ? kHalfPrecision : kFloatPrecision;

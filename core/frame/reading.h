@@ -1,5 +1,5 @@
-// The reading of a frame: the windows of its planes, the meaning of their values, and its camera. One map leads from
-// any kind of depth to planar depth, the same on the host and in prepare.comp.
+// The reading of a frame: the windows of its planes, the meaning of their values, and its camera; evidence for it in the
+// pixels. One map leads from any kind of depth to planar depth, the same on the host and in prepare.comp.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -57,14 +57,11 @@ struct Disparity {
 Disparity disparity_of(const DepthRange& range);
 
 /// Whether values lie between a near and a far plane, and may be stored as integers.
-bool is_between_planes(DepthKind kind);
+inline bool is_between_planes(DepthKind kind) {
+  return kind == DepthKind::device || kind == DepthKind::normalized || kind == DepthKind::log;
+}
 /// Whether the values are distances: planar, or along the ray.
-bool is_distance(DepthKind kind);
-
-/// The options of a range that depth of this kind has not.
-std::vector<std::string> unused_range_options(const DepthRange& said, DepthKind kind);
-/// Fails with ErrorKind::usage, since these options have no effect on the depth of that name.
-[[noreturn]] void refuse_range_options(const std::string& depth, std::span<const std::string> options, DepthKind kind);
+inline bool is_distance(DepthKind kind) { return kind == DepthKind::planar || kind == DepthKind::ray; }
 
 /// Whether every raw value plainly says that there is no surface: none is one, or has to be repaired to be none. Of
 /// positions: x, y and z are 0.
@@ -88,11 +85,57 @@ double step_of(std::span<const float> raw);
 /// surfaces 1000 units across are seen from a few units away (measured: 8e-6).
 DepthPrecision depth_precision(const DepthMap& map, double raw_precision, double step = 0);
 
+// Evidence in the pixels, and the choices made by it.
+
+/// The coarseness of stored values, of any sample type.
+struct Grain {
+  double median = 0;  // of the values' distances from 0; where there is a step, each of them counts once
+  double step = 0;    // from one value to the next at the median; 0: as fine as floats are, or too few values to tell
+  bool is_coarse = false;  // the step is more than a 2^14th of the median
+  bool is_fixed = false;   // the step is the same for small and large values
+  bool is_half = false;    // the steps are a half float's, or a scaled half float's
+};
+/// A way to read depth and how well the frame's flat surfaces agree with it.
+struct DepthScore {
+  DepthKind kind;
+  // The share of the smooth blocks that are flat by this kind and by no other.
+  double straight = 0;
+};
+/// The curve from places in the picture to depth values, as measured on planes at an angle. If L is affine over a
+/// plane's picture and v = f(L) is the value, then v'' / v'^2 is a function of v alone, the same for all planes: 2 / (v
+/// + c) for planar depth that counts from a plane at distance c.
+struct Curve {
+  std::size_t planes = 0;  // blocks of the picture that show one
+  // v'^2 / v'' = slope v + offset: 1/2 and 0 of distances, 0 of logarithms, p / (1 + p) of distances to the power of p
+  double slope = 0.5, offset = 0;
+  double median = 0;     // value
+  double spread = 0;     // of the planes' own numbers about that line, relative to the median value
+  bool is_wide = false;  // the values are different enough to tell the slope
+};
+/// A choice that neither settings nor camera make.
+struct Guess {
+  std::string what, chosen, why, option;  // the option makes the choice
+};
+
+/// Facts that the pixels of a frame show.
+struct Evidence {
+  bool tells = true;                     // false: the pixels left a question open
+  Grain grain;                           // of the depth's values
+  std::vector<DepthScore> depth_scores;  // of depth that is no position
+  Curve curve;                           // of the same
+  // of the surfaces, scene units; none until the frame is settled, and where all is sky
+  std::optional<double> median_depth;
+  std::optional<NormalSpace> space_by_shift;  // of normals that give the shift of a coarse disparity
+  std::vector<Guess> guesses;
+};
+
 // The whole reading.
 
 /// Whether normals have two components of a vector: nothing in them tells whether the third is above or below 0, and
 /// only in view space is it above, since all that is seen faces the camera.
-bool lacks_sign(std::size_t components, NormalEncoding encoding);
+inline bool lacks_sign(std::size_t components, NormalEncoding encoding) {
+  return components == 2 && encoding != NormalEncoding::octahedral && encoding != NormalEncoding::spheremap;
+}
 
 /// The meaning of the values, as options and headers say or as the pixels settle it. It is the same for all frames of a
 /// sequence.
@@ -100,7 +143,7 @@ struct Meaning {
   DepthKind depth_kind = DepthKind::planar;  // not automatic
   DepthRange depth_range;
   // The rounding of depth values: to multiples of a step (0: to none), and to a part of themselves, if that is more
-  // than their sample type rounds. See Grain in core/frame/evidence.h, and step_of().
+  // than their sample type rounds. See Grain and step_of().
   double depth_step = 0, depth_rounding = 0;
   bool depth_is_coarse = false;                                // either is more than a 2^14th of the median value
   double found_sky = std::numeric_limits<double>::infinity();  // raw depth at or beyond it is sky, as the pixels show
@@ -171,16 +214,19 @@ struct Reading : Meaning {
 };
 
 /// Gives the same reading for a part of the frame.
-Reading over(Reading reading, const Window& window);
+inline Reading over(Reading reading, const Window& window) {
+  reading.data = window;
+  return reading;
+}
 /// Gives the projection over a part of the frame.
-View view_of(const Reading& reading, const Window& window);
+inline View view_of(const Reading& reading, const Window& window) {
+  return view_of(reading.camera, window, reading.display);
+}
 
 /// The part of the picture that is written for a part of the frame: see core/base/image.h.
-Window picture_of(const Reading& reading, const Window& part);
-
-/// Takes over the meaning of another frame of the sequence. The clip planes stay this frame's own, as its own camera
-/// has them.
-void read_like(Reading& reading, const Meaning& settled);
+inline Window picture_of(const Reading& reading, const Window& part) {
+  return reduced(part, reading.display, reading.supersampling);
+}
 
 /// The largest finite half float.
 constexpr double kLargestHalf = 65504;
@@ -198,7 +244,7 @@ DepthMap behind_map_of(const Reading& reading, const BehindPlane& plane);
 DepthPrecision hidden_precision_of(const Reading& reading);
 
 /// Whether depth values are too coarse for the normals of depth to be exact.
-bool has_coarse_depth(const Reading& reading);
+inline bool has_coarse_depth(const Reading& reading) { return reading.depth_is_half || reading.depth_is_coarse; }
 
 /// The largest error of the planar depth that the map gives.
 DepthPrecision depth_precision_of(const Reading& reading);

@@ -14,7 +14,6 @@
 #include "core/frame/find/behind.h"
 #include "core/frame/find/channels.h"
 #include "core/frame/raw_plane.h"
-#include "core/frame/settle/faults.h"
 #include "core/frame/settle/settle.h"
 
 namespace alcove {
@@ -77,7 +76,7 @@ std::optional<BehindKind> kind_by(const std::string& name) {
 /// Whether the frame reads the channel already.
 bool is_read(const FrameSource& source, const ChannelRef& ref) {
   const auto has = [&](const std::vector<ChannelRef>& plane) { return std::ranges::find(plane, ref) != plane.end(); };
-  return std::ranges::any_of(source.channels.planes.entries, has);
+  return std::ranges::any_of(source.channels.entries, has);
 }
 
 }  // namespace

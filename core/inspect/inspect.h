@@ -15,11 +15,11 @@
 #include "core/formats/deep_surfaces.h"
 #include "core/formats/exr.h"
 #include "core/frame/camera/camera.h"
-#include "core/frame/evidence.h"
 #include "core/frame/find/frame_source.h"
 #include "core/frame/find/matte.h"
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/statistics.h"
+#include "core/frame/reading.h"
 #include "core/inspect/light_passes.h"
 #include "core/run/plan.h"
 

@@ -13,7 +13,7 @@
 
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/results/outputs.h"
-#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/findings.h"
 #include "kernels/hidden/hidden.h"
 
 namespace alcove {

@@ -124,7 +124,7 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
 
 std::uint64_t raw_bytes_of(const FrameSource& source) {
   std::uint64_t channels = 0;
-  for (const auto& plane : source.channels.planes.entries) channels += plane.size();
+  for (const auto& plane : source.channels.entries) channels += plane.size();
   return sizeof(float) * channels * source.reading.data.pixels();
 }
 

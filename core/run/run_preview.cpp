@@ -413,7 +413,7 @@ std::string plan_text(RunPreview& look, bool is_wedge) {
   // Frames of a sequence are read as one of them that shows enough.
   if (!plan.is_sequence() && !source.evidence) settle_by_rows(source, first.input, memory_of_host(first).host_bytes);
   std::vector<std::string> channels;
-  for (const auto& plane : source.channels.planes.entries)
+  for (const auto& plane : source.channels.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);
   line("channels", fmt::format("{}", fmt::join(channels, ", ")));
   const Camera& camera = source.reading.camera;

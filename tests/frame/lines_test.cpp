@@ -6,7 +6,6 @@
 #include <functional>
 #include <random>
 
-#include "core/frame/pixels/empty.h"
 #include "core/frame/pixels/walk.h"
 #include "tests/support/program.h"
 

@@ -3,7 +3,6 @@
 #include "core/frame/camera/resection.h"
 
 #include "core/formats/exr.h"
-#include "core/frame/camera/position_faults.h"
 #include "core/inspect/inspect.h"
 #include "tests/support/command_line.h"
 #include "tests/support/scenes.h"

@@ -1,11 +1,10 @@
 // The shift of disparity is told by planes at right angles, and by no others.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/pixels/right_angles.h"
+#include "core/frame/pixels/disparity.h"
 
 #include <cmath>
 
-#include "core/frame/camera/linear.h"
-#include "core/frame/pixels/places.h"
+#include "core/frame/samples.h"
 #include "tests/support/test.h"
 
 namespace alcove::right_angles_test {

@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "core/base/file.h"
 #include "core/base/option_words.h"
 #include "core/base/text.h"
-#include "core/frame/camera/foreign_camera.h"
 
 namespace alcove {
 
@@ -118,6 +118,54 @@ Camera read_chan(const std::string& path, int frame, const std::string& rotation
 
 namespace {
 
+struct ForeignCamera {
+  std::array<std::string_view, 2> marks;  // texts that such a file has, both of them
+  const char* what;
+  const char* mend;
+};
+
+constexpr const char* kExport = "export the camera as a .chan file, or write a camera file in JSON";
+
+constexpr ForeignCamera kForeignCameras[] = {
+    {{"\"transform_matrix\"", ""},
+     "a transforms.json of NeRF tools",
+     "write a camera file with its fl_x and fl_y as \"fx\" and \"fy\" (fx = w / 2 / tan(camera_angle_x / 2)), cx, cy, "
+     "the \"resolution\" [w, h], and as \"world_to_camera\" the inverse of the frame's transform_matrix"},
+    {{"\"camera_angle_x\"", ""},
+     "a transforms.json of NeRF tools",
+     "write a camera file with \"fx\" = w / 2 / tan(camera_angle_x / 2)"},
+    {{"\"intrinsic_matrix\"", ""},
+     "camera parameters of Open3D",
+     "write a camera file with fx, fy, cx and cy of its intrinsic_matrix, and as \"world_to_camera\" its extrinsic "
+     "with the second and the third row negated"},
+    {{"\"intrinsics\"", "\"poses\""}, "a scene of Meshroom (AliceVision)", kExport},
+    {{"\"cameras\"", "\"shots\""}, "a reconstruction of OpenSfM", kExport},
+    {{"\"asset\"", "\"cameras\""}, "a glTF scene", kExport},
+    {{"# Camera list with one line", ""},
+     "COLMAP's cameras.txt, which holds no places",
+     "write a camera file with its parameters as fx, fy, cx and cy"},
+    {{"# Image list with two lines", ""},
+     "COLMAP's images.txt, which holds no lens",
+     "write a camera file with a lens, and as \"world_to_camera\" the rotation and the translation with the second and "
+     "the third row negated"},
+    {{"Ogawa", "\xff"}, "an Alembic file", kExport},
+    {{"Kaydara FBX Binary", ""}, "an FBX file", kExport},
+    {{"FBXHeaderExtension", ""}, "an FBX file", kExport},
+    {{"PXR-USDC", ""}, "a USD file", kExport},
+    {{"#usda", ""}, "a USD file", kExport},
+    {{"//Maya ASCII", ""}, "a Maya scene", kExport},
+    {{"Camera", "inputs "}, "a Nuke script", kExport},
+};
+
+/// Names the program of a foreign camera file, and the way to give its camera to Alcove. "" for any other text.
+std::string why_foreign_camera(const std::string& text) {
+  if (text.find("\"fx\"") != text.npos) return "";
+  const auto* found = std::ranges::find_if(kForeignCameras, [&](const ForeignCamera& camera) {
+    return std::ranges::all_of(camera.marks, [&](std::string_view mark) { return text.find(mark) != text.npos; });
+  });
+  return found == std::end(kForeignCameras) ? "" : fmt::format("{}, no camera file: {}", found->what, found->mend);
+}
+
 using Json = nlohmann::json;
 
 // Kernels keep these numbers as floats and square them: within these limits they stay finite and above 0.
@@ -134,7 +182,7 @@ using Rows4 = std::array<Row4, 4>;
 struct CameraFile {
   std::string path;
   // Fields of the frame's own entry win over those outside it, and within either those of the view.
-  Json top, frame, view_of_top, view_of_frame;
+  Json top, frame = Json::object(), view_of_top = Json::object(), view_of_frame = Json::object();
 
   const Json* find(const char* field) const {
     for (const Json* fields : {&view_of_frame, &frame, &view_of_top, &top})
@@ -277,22 +325,14 @@ void read_view_from_world(const CameraFile& file, Camera& camera) {
       file.refuse(field, "must end in the row 0 0 0 1: it is for column vectors");
   Matrix3 m{};
   for (std::size_t row = 0; row < 3; row++) std::copy_n((*rows)[row].begin(), 3, m[row].begin());
-  const auto dot = [&](int a, int b) {
-    return m[std::size_t(a)][0] * m[std::size_t(b)][0] + m[std::size_t(a)][1] * m[std::size_t(b)][1] +
-           m[std::size_t(a)][2] * m[std::size_t(b)][2];
-  };
-  const double squared = dot(0, 0);
-  constexpr double kTolerance = 1e-3;  // matrices come from single precision, and from tools that round
-  for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++)
-      if (!(squared > 0) || !(std::abs(dot(a, b) / squared - (a == b)) < kTolerance))
-        file.refuse(field, "is no rotation with a translation");
+  const auto squared = squared_scale(m);
+  if (!squared) file.refuse(field, "is no rotation with a translation");
   if (determinant(m) < 0 && !camera.left_handed)
     file.refuse(field,
                 "mirrors space; the camera looks along -z with x right and y up, right-handed, unless \"camera_space\" "
                 "says left-handed");
   for (std::size_t row = 0; row < 3; row++) {
-    const double scale = (camera.left_handed && row == 2 ? -1 : 1) / std::sqrt(squared);
+    const double scale = (camera.left_handed && row == 2 ? -1 : 1) / std::sqrt(*squared);
     for (auto& x : m[row]) x *= scale;
     camera.view_from_world_offset[row] = (*rows)[row][3] * scale;
   }
@@ -505,19 +545,18 @@ Camera camera_in(CameraFile file, int frame, const std::string& view) {
 }  // namespace
 
 Camera read_camera(const std::string& path, int frame, const std::string& view) {
-  return camera_in({path, object_in(path), Json::object(), Json::object(), Json::object()}, frame, view);
+  return camera_in({path, object_in(path)}, frame, view);
 }
 
 Camera camera_of(const std::string& text, const std::string& name, const Window& display, int frame) {
-  CameraFile file{name, object_of(text, name), Json::object(), Json::object(), Json::object()};
-  return fitted(camera_in(std::move(file), frame, ""), display, name);
+  return fitted(camera_in({name, object_of(text, name)}, frame, ""), display, name);
 }
 
 bool lists_frames(const std::string& path) { return is_chan_file(path) || object_in(path).contains("frames"); }
 
 void require_listed(const std::string& path, int frame) {
   if (is_chan_file(path)) return void(line_of(path, frame));
-  frame_entry({path, object_in(path), Json::object(), Json::object(), Json::object()}, frame);
+  frame_entry({path, object_in(path)}, frame);
 }
 
 NoCamera::NoCamera(const std::string& file, const std::string& why)
@@ -534,11 +573,6 @@ Camera centred(const Window& display, double fx, double pixel_aspect) {
   camera.cx = 0.5 * display.width;
   camera.cy = 0.5 * display.height;
   return camera;
-}
-
-bool names_a_camera(const InputSettings& settings) {
-  return !settings.camera.empty() || settings.fov || settings.vertical_fov || settings.focal_px || settings.focal ||
-         settings.ortho_width;
 }
 
 Camera camera_for(const InputSettings& settings, const Window& display, double pixel_aspect, int frame,
@@ -575,14 +609,11 @@ Matrix3 view_from_normal(const Camera& camera, NormalSpace space, const NormalFl
 
 ViewMap view_from_view(const Camera& to, const Camera& from) {
   const Matrix3 &t = to.view_from_world.value(), &f = from.view_from_world.value();
+  const Matrix3 turn = product(t, transposed(f));  // the way back of a rotation is its transpose
   ViewMap map{};
   for (std::size_t i = 0; i < 3; i++) {
-    map[i][3] = to.view_from_world_offset[i];
-    for (std::size_t j = 0; j < 3; j++) {
-      // The way back of a rotation is its transpose.
-      for (std::size_t k = 0; k < 3; k++) map[i][j] += t[i][k] * f[j][k];
-      map[i][3] -= map[i][j] * from.view_from_world_offset[j];
-    }
+    map[i] = {turn[i][0], turn[i][1], turn[i][2], to.view_from_world_offset[i]};
+    for (std::size_t j = 0; j < 3; j++) map[i][3] -= turn[i][j] * from.view_from_world_offset[j];
   }
   return map;
 }

@@ -78,7 +78,10 @@ bool lists_frames(const std::string& path);
 void require_listed(const std::string& path, int frame);
 
 /// Whether the settings give a camera, or at least try to.
-bool names_a_camera(const InputSettings& settings);
+inline bool names_a_camera(const InputSettings& settings) {
+  return !settings.camera.empty() || settings.fov || settings.vertical_fov || settings.focal_px || settings.focal ||
+         settings.ortho_width;
+}
 
 /// Gives the camera of the settings for a frame of this display window and pixel aspect (width / height of a pixel): by
 /// its file, by fov or vertical_fov, by focal and aperture, or by ortho_width. Fails with NoCamera if there is none,

@@ -91,13 +91,9 @@ std::optional<Placement> placement(const std::vector<double>& m, To to) {
       p.rotation[row][column] = row_vectors ? m[4 * column + row] : m[4 * row + column];
     p.offset[row] = row_vectors ? m[12 + row] : m[4 * row + 3];
   }
-  const double squared = dot(p.rotation[0], p.rotation[0]);
-  constexpr double kTolerance = 1e-3;
-  for (std::size_t a = 0; a < 3; a++)
-    for (std::size_t b = 0; b < 3; b++)
-      if (!(squared > 0) || !(std::abs(dot(p.rotation[a], p.rotation[b]) / squared - (a == b)) < kTolerance))
-        return std::nullopt;
-  p.scale = std::sqrt(squared);
+  const auto squared = squared_scale(p.rotation);
+  if (!squared) return std::nullopt;
+  p.scale = std::sqrt(*squared);
   for (std::size_t row = 0; row < 3; row++) {
     for (double& x : p.rotation[row]) x /= p.scale;
     if (to == To::camera) p.offset[row] /= p.scale;
@@ -106,9 +102,8 @@ std::optional<Placement> placement(const std::vector<double>& m, To to) {
 }
 
 Placement inverted(const Placement& p) {
-  Placement inverse{transposed(p.rotation), {}, p.row_vectors};
-  for (std::size_t row = 0; row < 3; row++) inverse.offset[row] = -dot(inverse.rotation[row], p.offset);
-  return inverse;
+  const Matrix3 back = transposed(p.rotation);
+  return {back, scaled(times(back, p.offset), -1), p.row_vectors};
 }
 
 /// The place of a camera, as a header says it.
@@ -137,17 +132,13 @@ std::optional<Pose> standard_pose(const Attributes& a) {
   return Pose{*view, determinant(view->rotation) < 0, "worldToCamera"};
 }
 
-std::optional<Pose> redshift_pose(const Attributes& a) {
-  const auto world = placement(a.numbers("rs/camera/transform", 16), To::world);
-  if (!world) return std::nullopt;
-  return Pose{inverted(*world), true, "rs/camera/transform"};
+/// The place by an attribute that is the way from camera space to the world.
+std::optional<Pose> pose_in_world(const Attributes& a, const char* name, bool looks_along_z) {
+  const auto world = placement(a.numbers(name, 16), To::world);
+  return world ? std::optional(Pose{inverted(*world), looks_along_z, name}) : std::nullopt;
 }
-
-std::optional<Pose> vray_pose(const Attributes& a) {
-  const auto world = placement(a.numbers("cameraTransform", 16), To::world);
-  if (!world) return std::nullopt;
-  return Pose{inverted(*world), false, "cameraTransform"};
-}
+std::optional<Pose> redshift_pose(const Attributes& a) { return pose_in_world(a, "rs/camera/transform", true); }
+std::optional<Pose> vray_pose(const Attributes& a) { return pose_in_world(a, "cameraTransform", false); }
 
 /// Angles of a left-handed world with z up, x forward and y right: yaw turns x to y, pitch raises, roll lowers the
 /// right side. `prefix` stands before the numbers' names.

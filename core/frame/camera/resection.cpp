@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/base/ranks.h"
-#include "core/frame/camera/least_squares.h"
 
 namespace alcove {
 namespace {
@@ -24,9 +23,7 @@ struct Pinhole {
   std::array<Vector3, 3> axes{};  // rows
   Vector3 offset{};
 
-  Vector3 in_view(const Vector3& p) const {
-    return {dot(axes[0], p) + offset[0], dot(axes[1], p) + offset[1], dot(axes[2], p) + offset[2]};
-  }
+  Vector3 in_view(const Vector3& p) const { return sum(times(axes, p), offset); }
 };
 
 /// A view point's distance from its pixel.
@@ -61,18 +58,8 @@ using Projection = std::array<Row<4>, 3>;
 
 std::optional<Projection> perspective_of(const Picked& points, const ImageScale& image) {
   Square<12> sums{};
-  for (const auto* seen : points) {
-    const Row<4> p{seen->position[0], seen->position[1], seen->position[2], 1};
-    const double u = (seen->x - image.x) / image.size, v = (seen->y - image.y) / image.size;
-    Row<12> of_x{}, of_y{};
-    for (std::size_t k = 0; k < 4; k++) {
-      of_x[k] = of_y[4 + k] = p[k];
-      of_x[8 + k] = -u * p[k];
-      of_y[8 + k] = -v * p[k];
-    }
-    add_products(sums, of_x);
-    add_products(sums, of_y);
-  }
+  for (const auto* seen : points)
+    add_linear({seen->position, (seen->x - image.x) / image.size, (seen->y - image.y) / image.size}, sums);
   const Row<12> fit = least_squares(sums);
   Projection projection{};
   for (std::size_t i = 0; i < 12; i++) projection[i / 4][i % 4] = fit[i];
@@ -104,7 +91,16 @@ std::optional<Projection> orthographic_of(const Picked& points, const ImageScale
 
 Vector3 first_three(const Row<4>& row) { return {row[0], row[1], row[2]}; }
 
-/// Takes a perspective projection apart, without its skew. The points are in front.
+/// Takes focal lengths and axes from rows of a projection, without its skew.
+void take_axes(Pinhole& camera, const Vector3& x, const Vector3& y) {
+  camera.fy = length(y);
+  camera.axes[1] = scaled(y, 1 / camera.fy);
+  const Vector3 right = difference(x, scaled(camera.axes[1], dot(x, camera.axes[1])));
+  camera.fx = length(right);
+  camera.axes[0] = scaled(right, 1 / camera.fx);
+}
+
+/// Takes a perspective projection apart. The points are in front.
 std::optional<Pinhole> pinhole_of_perspective(Projection m, const Picked& points) {
   const double size = length(first_three(m[2]));
   if (!(size > 0)) return std::nullopt;
@@ -116,13 +112,7 @@ std::optional<Pinhole> pinhole_of_perspective(Projection m, const Picked& points
   const Vector3 ahead = first_three(m[2]), x = first_three(m[0]), y = first_three(m[1]);
   camera.cx = dot(x, ahead);
   camera.cy = dot(y, ahead);
-  const Vector3 down = difference(y, scaled(ahead, camera.cy));
-  camera.fy = length(down);
-  camera.axes[1] = scaled(down, 1 / camera.fy);
-  const Vector3 beside = difference(x, scaled(ahead, camera.cx));
-  const Vector3 right = difference(beside, scaled(camera.axes[1], dot(beside, camera.axes[1])));
-  camera.fx = length(right);
-  camera.axes[0] = scaled(right, 1 / camera.fx);
+  take_axes(camera, difference(x, scaled(ahead, camera.cx)), difference(y, scaled(ahead, camera.cy)));
   camera.axes[2] = ahead;
   camera.offset = {(m[0][3] - camera.cx * m[2][3]) / camera.fx, (m[1][3] - camera.cy * m[2][3]) / camera.fy, m[2][3]};
   return camera;
@@ -133,14 +123,8 @@ std::optional<Pinhole> pinhole_of_perspective(Projection m, const Picked& points
 std::optional<Pinhole> pinhole_of_orthographic(const Projection& m, const Window& display) {
   Pinhole camera;
   camera.orthographic = true;
-  const Vector3 x = first_three(m[0]), y = first_three(m[1]);
-  camera.fy = length(y);
-  if (!(camera.fy > 0)) return std::nullopt;
-  camera.axes[1] = scaled(y, 1 / camera.fy);
-  const Vector3 right = difference(x, scaled(camera.axes[1], dot(x, camera.axes[1])));
-  camera.fx = length(right);
-  if (!(camera.fx > 0)) return std::nullopt;
-  camera.axes[0] = scaled(right, 1 / camera.fx);
+  take_axes(camera, first_three(m[0]), first_three(m[1]));
+  if (!(camera.fx > 0)) return std::nullopt;  // as where fy is 0, too
   camera.axes[2] = cross(camera.axes[0], camera.axes[1]);
   camera.cx = 0.5 * display.width;
   camera.cy = 0.5 * display.height;
@@ -386,6 +370,13 @@ Resection result_of(const Pinhole& solved, const Normalized& from, const Window&
 }
 
 }  // namespace
+
+void add_linear(const SeenPoint& seen, Square<12>& sums) {
+  const auto& [x, y, z] = seen.position;
+  const double u = seen.x, v = seen.y;
+  add_products(sums, {x, y, z, 1, 0, 0, 0, 0, -u * x, -u * y, -u * z, -u});
+  add_products(sums, {0, 0, 0, 0, x, y, z, 1, -v * x, -v * y, -v * z, -v});
+}
 
 Normalized normalized(std::span<const SeenPoint> points) {
   Normalized result{{points.begin(), points.end()}, {}, 1};

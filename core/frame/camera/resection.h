@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <variant>
@@ -49,6 +48,9 @@ constexpr std::size_t kLeastPoints = 60;
 /// Zisserman, MLESAC, 2000); it is refined by least squares over all points that fit, with a camera without skew.
 std::variant<Resection, NoResection> resection_of(std::span<const SeenPoint> points, const Window& display);
 
+/// Adds the two equations that a point gives for the rows of a projection, which are linear in these.
+void add_linear(const SeenPoint& seen, Square<12>& sums);
+
 /// The points moved and scaled to be about 1 in size, and the way back.
 struct Normalized {
   std::vector<SeenPoint> points;
@@ -62,5 +64,21 @@ Normalized normalized(std::span<const SeenPoint> points);
 /// half of it in longitude and latitude, cylinders, and fish eyes. It need not be upright. For points that no camera
 /// sees.
 std::string panorama_of(std::span<const SeenPoint> points, const Window& display);
+
+// Why no camera sees points where their pixels are.
+
+/// Explains that components of the points were cut off at 0 or another value, as in formats without sign; "" if they
+/// were not.
+std::string why_cut(std::span<const SeenPoint> points, const Window& display);
+
+/// Explains that each axis was stretched by itself, as when a bounding box is mapped to 0 .. 1; "" if it was not.
+/// `camera`: a camera that fits the points all the same, or null. Its pixels have the aspect of its own numbers, and
+/// `pixel_aspect` is the file's.
+std::string why_stretched(std::span<const SeenPoint> points, const Window& display, const Resection* camera,
+                          double pixel_aspect);
+
+/// Explains that the lens bends lines: each point lies in the right direction from the picture's middle, but at another
+/// distance. "" if it does not.
+std::string why_bent(std::span<const SeenPoint> points, const Window& display);
 
 }  // namespace alcove

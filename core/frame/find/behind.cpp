@@ -104,10 +104,6 @@ ChannelRef find_channel(FrameSource& source, ChannelSearch& search, std::size_t 
   return found[0];
 }
 
-std::string base_name(const FrameSource& source, const ChannelRef& ref) {
-  return std::filesystem::path(source.file_of(ref).path()).filename().string();
-}
-
 }  // namespace
 
 void find_behind(FrameSource& source, ChannelSearch& search, const InputSettings& settings) {
@@ -135,8 +131,8 @@ std::string hidden_sources_text(const FrameSource& source) {
   std::vector<std::string> sources;
   for (std::size_t i = 0; i < source.channels[RawPlane::behind].size(); i++) {
     const ChannelRef& ref = source.channels[RawPlane::behind][i];
-    sources.push_back(
-        fmt::format("{} {} {}", base_name(source, ref), ref.channel, word_of(source.reading.behind[i].kind)));
+    sources.push_back(fmt::format("{} {} {}", std::filesystem::path(source.file_of(ref).path()).filename().string(),
+                                  ref.channel, word_of(source.reading.behind[i].kind)));
   }
   std::ranges::sort(sources);
   return fmt::format("{}", fmt::join(sources, "; "));
@@ -458,10 +454,7 @@ FirstSurfaces compare_first(FrameSource& source, const RawPart& raw) {
     deep_file(source).read(std::span(&read, 1), raw.window.y + y - whole.y, 1);
     for (std::size_t x = 0; x < width; x++) {
       const double ray = ray_length(view, int(x), y);
-      Vector3 values{};
-      for (std::size_t axis = 0; axis < source.channels[RawPlane::depth].size(); axis++)
-        values[axis] = raw.depth[axis * raw.window.pixels() + std::size_t(y) * width + x];
-      const double z = planar_depth(map, values, ray);
+      const double z = planar_depth(map, value_at(raw.depth, raw.window.pixels(), std::size_t(y) * width + x), ray);
       const double sample = row[x + std::size_t(raw.window.x - whole.x)];
       first.found += sample < double(kNoDeepSurface);
       if (!std::isfinite(z) || sample >= double(kNoDeepSurface)) continue;

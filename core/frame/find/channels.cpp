@@ -623,10 +623,6 @@ std::optional<ChannelRef> ChannelSearch::beside(const ChannelRef& ref, const std
   return found && !found->subsampled ? std::optional(found->ref) : std::nullopt;
 }
 
-bool ChannelSearch::has(const ChannelRef& ref, const std::string& component) const {
-  return find_beside(ref, component) != nullptr;
-}
-
 std::vector<ChannelRef> ChannelSearch::with_alpha(std::vector<ChannelRef> beauty) const {
   if (beauty.size() != 3) return beauty;
   auto alpha = beside(beauty[0], "a");

@@ -138,16 +138,15 @@ class ChannelSearch {
   std::vector<ChannelRef> require(std::size_t file, const AovNames& names, const std::string& chosen, bool own_file,
                                   const char* hint) const;
 
-  /// Gives the channel of the same part and layer that has this last word, in lower case; nothing if it is subsampled.
+  /// Gives the channel of the same part and layer that has this last word, in lower case; null if there is none.
+  const NamedChannel* find_beside(const ChannelRef& ref, const std::string& component) const;
+  /// The same; nothing if it is subsampled.
   std::optional<ChannelRef> beside(const ChannelRef& ref, const std::string& component) const;
-  /// Whether there is such a channel, subsampled or not.
-  bool has(const ChannelRef& ref, const std::string& component) const;
 
   /// Adds the alpha channel of the same layer to the r, g, b of a beauty, if there is one.
   std::vector<ChannelRef> with_alpha(std::vector<ChannelRef> beauty) const;
 
  private:
-  const NamedChannel* find_beside(const ChannelRef& ref, const std::string& component) const;
   /// The layer and the view that a message on a file is about.
   std::string where(std::size_t file) const;
 

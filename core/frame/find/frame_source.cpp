@@ -88,22 +88,14 @@ std::string color_of(const ChannelRef& light) {
   return "";
 }
 
-void append(std::vector<ChannelRef>& planes, const std::vector<ChannelRef>& more) {
-  planes.insert(planes.end(), more.begin(), more.end());
-}
-
 void add_light(FrameSource& source, const ChannelSearch& search, const std::vector<ChannelRef>& light,
                const std::string& said_color, std::optional<double> weight) {
   const std::string color = said_color.empty() ? color_of(light.front()) : said_color;
   auto& colors = source.channels[RawPlane::diffuse_color];
   source.reading.ambient.push_back({weight, color.empty() ? -1 : int(colors.size() / 3)});
-  append(source.channels[RawPlane::indirect], light);
-  if (!color.empty()) append(colors, search.find(light.front().file, kLightNames, color, false));
-}
-
-void add_typed(FrameSource& source, const ChannelSearch& search, std::size_t file, const std::string& text) {
-  const TypedLight typed = typed_light(text);
-  add_light(source, search, search.find(file, kLightNames, typed.light, false), typed.color, typed.weight);
+  std::ranges::copy(light, std::back_inserter(source.channels[RawPlane::indirect]));
+  if (!color.empty())
+    std::ranges::move(search.find(light.front().file, kLightNames, color, false), std::back_inserter(colors));
 }
 
 /// The indirect diffuse light; Blender's only with its colour, without which the part of the beauty is unknown.
@@ -131,7 +123,10 @@ void find_ambient(FrameSource& source, const ChannelSearch& search, std::size_t 
   if (lights.size() > kMostAmbientLights)
     fail(ErrorKind::usage, "--set ambient: it takes at most {} lights, and there are {}", kMostAmbientLights,
          lights.size());
-  for (const auto& light : lights) add_typed(source, search, file, light);
+  for (const auto& light : lights) {
+    const TypedLight typed = typed_light(light);
+    add_light(source, search, search.find(file, kLightNames, typed.light, false), typed.color, typed.weight);
+  }
   if (lights.empty()) find_usual(source, search, file);
 }
 
@@ -173,8 +168,6 @@ std::optional<Three> three_of(const ChannelSearch& search, const ChannelRef& dep
   const auto other = search.beside(depth, second), last = search.beside(depth, third);
   return other && last ? std::optional<Three>({depth, *other, *last}) : std::nullopt;
 }
-
-std::string last_word(const std::string& channel) { return lower_case(channel.substr(channel.rfind('.') + 1)); }
 
 /// The values of some rows.
 std::array<std::vector<float>, 3> sample_of(FrameSource& source, const Three& three) {
@@ -229,9 +222,10 @@ bool are_normals(const std::array<std::vector<float>, 3>& planes) {
 /// colours; adds a suspicious note where they are one in a layer that is called depth, and where the depth is the Z of
 /// X, Y and Z. Reads a few rows where there are two such channels, and nothing else.
 void doubt_depth_of_three(FrameSource& source, const ChannelSearch& search, const ChannelRef& depth) {
-  const std::string word = last_word(depth.channel), path = source.file_of(depth).path();
+  const std::string word = lower_case(depth.channel.substr(depth.channel.rfind('.') + 1));
+  const std::string& path = source.file_of(depth).path();
   const std::string layer = depth.channel.substr(0, depth.channel.size() - word.size());
-  if (word == "y" && search.has(depth, "ry") && search.has(depth, "by"))
+  if (word == "y" && search.find_beside(depth, "ry") && search.find_beside(depth, "by"))
     fail(ErrorKind::input,
          "{}: {}Y with RY and BY is the brightness of a picture of colours, and no depth: give the file of the depth "
          "with --depth, or name its channel with --depth-channel",
@@ -275,7 +269,7 @@ void find_beauty(FrameSource& source, const ChannelSearch& search, std::size_t f
       search.require(file, kBeautyNames, settings.beauty_channels, !settings.beauty.empty(), "Combined.R"));
   find_ambient(source, search, file, settings);
   find_shadowed(source, search, file, settings);
-  source.reading.supersampling = supersampling_of(source, source.channels[RawPlane::beauty][0], settings);
+  source.reading.supersampling = supersampling_of(source, settings, &source.channels[RawPlane::beauty][0]);
   for (const auto* aov : {&source.channels[RawPlane::beauty], &source.channels[RawPlane::indirect],
                           &source.channels[RawPlane::diffuse_color]})
     require_common_window(source, *aov, "beauty", "--beauty",
@@ -331,20 +325,19 @@ std::vector<ChannelRef> find_depth(FrameSource& source, const ChannelSearch& sea
                                    const InputSettings& settings, bool by_position) {
   source.program.depth_kind =
       source.program.rules->depth_kind != DepthKind::automatic ? source.program.rules->depth_kind : DepthKind::planar;
-  if (by_position)
-    if (auto [found, candidate] =
-            search.find_by_rules(file, kPositionNames, settings.position_channels, source.program.rules->position);
-        candidate)
-      return found;
-  if (!by_position)
-    if (auto [found, candidate] =
-            search.find_by_rules(file, kDepthNames, settings.depth_channel, source.program.rules->depth);
-        candidate) {
-      if (candidate->kind != DepthKind::automatic) source.program.depth_kind = candidate->kind;
-      return found;
-    }
-  if (by_position)
-    return search.require(file, kPositionNames, settings.position_channels, !settings.position.empty(), "Position.X");
+  if (by_position) {
+    const auto found =
+        search.find_by_rules(file, kPositionNames, settings.position_channels, source.program.rules->position);
+    return found.candidate ? found.channels
+                           : search.require(file, kPositionNames, settings.position_channels,
+                                            !settings.position.empty(), "Position.X");
+  }
+  if (auto [found, candidate] =
+          search.find_by_rules(file, kDepthNames, settings.depth_channel, source.program.rules->depth);
+      candidate) {
+    if (candidate->kind != DepthKind::automatic) source.program.depth_kind = candidate->kind;
+    return found;
+  }
   if (settings.depth_kind == DepthKind::automatic && settings.depth_channel.empty() &&
       search.find(file, kDepthNames, "", !settings.depth.empty()).empty())
     if (auto position = search.find(file, kPositionNames, "", false); !position.empty()) return position;
@@ -407,19 +400,6 @@ void note_scaled_camera(FrameSource& source, const std::string& camera) {
                    camera, width, height, source.reading.camera.width, source.reading.camera.height)});
 }
 
-/// Gives the camera that saw the positions, or the reason for which they tell none. Gives nothing if no positions fit
-/// the depth.
-std::optional<std::variant<Resection, NoResection>> camera_by_positions(FrameSource& source,
-                                                                        const InputSettings& settings) {
-  if (source.channels.positions.empty()) return std::nullopt;
-  const ExrFile& file = source.file_of(source.channels.positions.front());
-  const auto points = points_of(source, settings.sky, kManyBands);
-  auto found = resection_of(points, file.display());
-  const std::string why = fault_of_positions(points, file, found);
-  if (why.empty()) return found;
-  return NoResection{why};
-}
-
 /// The positions of a frame that has a camera. Where two layers hold some, none of them is needed.
 std::vector<ChannelRef> positions_beside(const ChannelSearch& search, const FrameSource& source,
                                          const InputSettings& settings) {
@@ -433,11 +413,14 @@ std::vector<ChannelRef> positions_beside(const ChannelSearch& search, const Fram
 /// Takes the camera that the positions tell. Returns false where there are none.
 bool take_camera_of_positions(FrameSource& source, const ChannelSearch& search, const InputSettings& settings) {
   source.channels.positions = find_positions(search, source, settings);
-  const auto found = camera_by_positions(source, settings);
-  if (!found) return false;
-  if (const auto* none = std::get_if<NoResection>(&*found))
-    throw NoCamera(source.depth_path(), "its positions tell none, since " + none->why);
-  source.reading.camera = std::get<Resection>(*found).camera;
+  if (source.channels.positions.empty()) return false;
+  const ExrFile& file = source.file_of(source.channels.positions.front());
+  const auto points = points_of(source, settings.sky, kManyBands);
+  const auto found = resection_of(points, file.display());
+  std::string why = fault_of_positions(points, file, found);
+  if (const auto* none = std::get_if<NoResection>(&found); none && why.empty()) why = none->why;
+  if (!why.empty()) throw NoCamera(source.depth_path(), "its positions tell none, since " + why);
+  source.reading.camera = std::get<Resection>(found).camera;
   const bool looks_around = settings.around > 0 || settings.around_all;
   if (source.reading.camera.orthographic && looks_around && source.channels[RawPlane::depth].size() == 1)
     throw NoCamera(source.depth_path(),
@@ -529,7 +512,7 @@ void note_unused_input(FrameSource& source, const InputSettings& settings) {
   if (settings.input.empty() || !source.channels[RawPlane::normal].empty() || !wants_normals(settings)) return;
   const auto is_of_input = [&](const ChannelRef& ref) { return source.file_of(ref).path() == settings.input; };
   const auto is_used = [&](const std::vector<ChannelRef>& plane) { return std::ranges::any_of(plane, is_of_input); };
-  if (std::ranges::any_of(source.channels.planes.entries, is_used)) return;
+  if (std::ranges::any_of(source.channels.entries, is_used)) return;
   source.notes.push_back({NoteCode::unused_input, fmt::format("no channel of {} is used: if it holds the normals, give "
                                                               "it to --normal, or name them with --normal-channels",
                                                               settings.input)});
@@ -579,17 +562,6 @@ void describe_pixels(FrameSource& source, const InputSettings& settings) {
 }
 
 }  // namespace
-
-std::string FrameSource::layer_of(const ChannelRef& ref) const {
-  const std::size_t dot = ref.channel.rfind('.');
-  return dot == ref.channel.npos ? part_of(ref).name : ref.channel.substr(0, dot);
-}
-
-bool FrameSource::is_half(const ChannelRef& ref) const {
-  const auto& channels = part_of(ref).channels;
-  const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
-  return channel != channels.end() && channel->type == SampleType::half_float;
-}
 
 FrameSource find_frame(const InputSettings& settings, bool with_beauty, int frame, bool with_albedo) {
   FrameSource source;
@@ -642,22 +614,10 @@ std::vector<std::string> other_depths(const FrameSource& source) {
   return others;
 }
 
-bool expects_world_normals(const FrameSource& source, const InputSettings& settings) {
-  return !source.channels[RawPlane::normal].empty() && source.program.rules->normal_space == NormalSpace::world &&
-         settings.normal_space != NormalSpace::view;
-}
-
 NoWorldToCamera::NoWorldToCamera(const std::string& file)
     : Error(ErrorKind::input, file +
                                   ": its normals are in world space, and the camera has no world_to_camera: give a "
                                   "--camera file with it, or --normal none to reconstruct normals from depth") {}
-
-InputSettings with_some_camera(const InputSettings& settings) {
-  InputSettings with = settings;
-  with.fov = 50;
-  if (with.normal_space == NormalSpace::automatic) with.normal_space = NormalSpace::view;
-  return with;
-}
 
 bool may_tell_camera(const InputSettings& settings) {
   std::vector<ExrFile> files;

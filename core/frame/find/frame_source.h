@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,7 +12,6 @@
 #include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
-#include "core/frame/evidence.h"
 #include "core/frame/find/channels.h"
 #include "core/frame/find/environment.h"
 #include "core/frame/find/input_rules.h"
@@ -36,14 +35,11 @@ struct DeepFiles {
 };
 
 /// The channels of a frame that are read.
-struct FrameChannels {
-  /// The channels of a plane, in the order of its components; none: the frame has no such plane, or nobody asked for
-  /// it. The indirect diffuse light is to be multiplied by the diffuse colour where that is there, and holds it already
-  /// where it is not.
-  std::vector<ChannelRef>& operator[](RawPlane plane) { return planes[plane]; }
-  const std::vector<ChannelRef>& operator[](RawPlane plane) const { return planes[plane]; }
-
-  RawPlaneArray<std::vector<ChannelRef>> planes;
+///
+/// Those of a plane are in the order of its components; none: the frame has no such plane, or nobody asked for it. The
+/// indirect diffuse light is to be multiplied by the diffuse colour where that is there, and holds it already where it
+/// is not.
+struct FrameChannels : RawPlaneArray<std::vector<ChannelRef>> {
   std::vector<ChannelRef> positions;  // that may tell the camera; empty: there are none
   std::optional<DeepFiles> deep;
   std::string view;  // that is read, of files with views
@@ -87,9 +83,16 @@ struct FrameSource {
   /// The part of a file that a channel lies in.
   const ExrPart& part_of(const ChannelRef& ref) const { return file_of(ref).parts()[std::size_t(ref.part)]; }
   /// Whether its samples are half floats.
-  bool is_half(const ChannelRef& ref) const;
+  bool is_half(const ChannelRef& ref) const {
+    const auto& channels = part_of(ref).channels;
+    const auto channel = std::ranges::find(channels, ref.channel, &ExrChannel::name);
+    return channel != channels.end() && channel->type == SampleType::half_float;
+  }
   /// The layer of a channel: its name without the last part, else the part's name; "" without a layer.
-  std::string layer_of(const ChannelRef& ref) const;
+  std::string layer_of(const ChannelRef& ref) const {
+    const std::size_t dot = ref.channel.rfind('.');
+    return dot == ref.channel.npos ? part_of(ref).name : ref.channel.substr(0, dot);
+  }
 
   std::string main_file;  // see main_input()
   std::vector<ExrFile> files;
@@ -117,7 +120,10 @@ FrameSource find_frame(const InputSettings& settings, bool with_beauty, int fram
 std::vector<std::string> other_depths(const FrameSource& source);
 
 /// Whether the renderer's normals are in world space, and no option says otherwise: a camera must turn them.
-bool expects_world_normals(const FrameSource& source, const InputSettings& settings);
+inline bool expects_world_normals(const FrameSource& source, const InputSettings& settings) {
+  return !source.channels[RawPlane::normal].empty() && source.program.rules->normal_space == NormalSpace::world &&
+         settings.normal_space != NormalSpace::view;
+}
 
 /// ErrorKind::input: the normals of this file are in world space, and the camera has no world_to_camera.
 struct NoWorldToCamera : Error {
@@ -129,7 +135,12 @@ struct NoWorldToCamera : Error {
 bool may_tell_camera(const InputSettings& settings);
 
 /// Gives the settings with a camera that stands in for one, so that all else can be inspected without a camera.
-InputSettings with_some_camera(const InputSettings& settings);
+inline InputSettings with_some_camera(const InputSettings& settings) {
+  InputSettings with = settings;
+  with.fov = 50;
+  if (with.normal_space == NormalSpace::automatic) with.normal_space = NormalSpace::view;
+  return with;
+}
 
 /// A plane, or several one behind the other, and its destination.
 struct PlaneRead {
@@ -159,12 +170,10 @@ HostFrame read_host_frame(const InputSettings& settings, int frame);
 
 // Planes of files with another data window than the depth, or of a smaller picture.
 
-/// Gives the pixels of the depth, in x and in y, per pixel of the beauty. The option says it; with auto the display
-/// windows tell, and it is 1 if they do not fit. Fails with ErrorKind::input if the depth's window cannot be divided
-/// so, or if the beauty has another one.
-int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const InputSettings& settings);
-/// Does the same without a beauty: 1 with auto.
-int supersampling_of(const FrameSource& source, const InputSettings& settings);
+/// Gives the pixels of the depth, in x and in y, per pixel of the picture that is written, as the option says; 1 with
+/// auto. Fails with ErrorKind::input if the depth's window cannot be divided so, or if the beauty, where there is one,
+/// has another window than that; with auto, if its display window is so many times smaller.
+int supersampling_of(const FrameSource& source, const InputSettings& settings, const ChannelRef* beauty = nullptr);
 
 /// Fails with ErrorKind::input if channels have another data window than the depth, and either share no pixel with it
 /// or have another display window: nothing else tells which pixels belong together. A renderer may cut each plane to

@@ -183,8 +183,6 @@ void take_turn(LightsFile& file, const EstimatorSettings& settings) {
 
 }  // namespace
 
-bool turns_sun(const EstimatorSettings& settings) { return settings.sun_azimuth || settings.sun_elevation; }
-
 void LightsFile::require_frames(const std::vector<int>& frames) const {
   for (const auto& light : lights)
     for (const int frame : frames) {
@@ -214,8 +212,7 @@ std::vector<Light> LightsFile::in_view(const Camera& camera, int frame) const {
       fail(ErrorKind::usage, "{}: light \"{}\" is vertical: give both --set sun-azimuth and sun-elevation", path, name);
     if (name == lights[sun].name) light.at = turned(light.at, azimuth, elevation, up);
     if (in_world) light.at = times(*camera.view_from_world, light.at);
-    if (in_world && light.is_lamp)
-      for (std::size_t i = 0; i < 3; i++) light.at[i] += camera.view_from_world_offset[i];
+    if (in_world && light.is_lamp) light.at = sum(light.at, camera.view_from_world_offset);
     result.push_back(light);
   }
   return result;
@@ -232,10 +229,6 @@ std::vector<std::string> LightsFile::below_horizon(const std::vector<int>& frame
     if (entry.in_world && std::ranges::any_of(frames, is_below)) names.push_back(entry.name);
   }
   return names;
-}
-
-bool LightsFile::is_soft(std::size_t light) const {
-  return std::ranges::any_of(lights[light].of_frames, [](const auto& of_frame) { return of_frame.second.size > 0; });
 }
 
 std::shared_ptr<const LightsFile> lights_of(const std::string& text, const std::string& path,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -50,11 +51,13 @@ struct LightsFile {
   std::vector<std::string> below_horizon(const std::vector<int>& frames) const;
   std::size_t up_of_world() const { return is_y_up ? 1 : 2; }  // the axis
   /// Whether a light has some size in any frame.
-  bool is_soft(std::size_t light) const;
+  bool is_soft(std::size_t light) const {
+    return std::ranges::any_of(lights[light].of_frames, [](const auto& of_frame) { return of_frame.second.size > 0; });
+  }
 };
 
 /// Whether the settings turn a sun.
-bool turns_sun(const EstimatorSettings& settings);
+inline bool turns_sun(const EstimatorSettings& settings) { return settings.sun_azimuth || settings.sun_elevation; }
 
 /// Reads a lights file; docs/inputs.md lists its fields. Fails with ErrorKind::input, and names file, light and field;
 /// and with ErrorKind::usage where the settings turn a sun that the file does not have.

@@ -187,7 +187,7 @@ std::string trimmed(const std::string& text) {
 }
 
 /// The meaning of a user's list in one Cryptomatte.
-struct Meaning {
+struct ListMeaning {
   /// A word of the list, and the names that it stands for: none, itself, or those that fit it as a pattern.
   struct Word {
     std::string text;
@@ -211,8 +211,8 @@ std::optional<std::string> exact_name(const Cryptomatte& matte, const std::strin
 
 /// Finds the longest runs of the list that are a name, since names may have commas; all else is words between commas,
 /// which may be patterns. So a name that is given exactly is that object.
-Meaning meaning_of(const Cryptomatte& matte, const std::string& list) {
-  Meaning meaning;
+ListMeaning meaning_of(const Cryptomatte& matte, const std::string& list) {
+  ListMeaning meaning;
   const auto parts = parts_of(list);
   for (std::size_t i = 0; i < parts.size();) {
     const auto name_to = [&](std::size_t end) {
@@ -226,7 +226,7 @@ Meaning meaning_of(const Cryptomatte& matte, const std::string& list) {
       i = end;
       continue;
     }
-    Meaning::Word word{trimmed(parts[i++]), {}, false};
+    ListMeaning::Word word{trimmed(parts[i++]), {}, false};
     for (const auto& [known, id] : matte.manifest)
       if (fits_pattern(known, word.text)) word.names.push_back(known);
     meaning.words.push_back(std::move(word));
@@ -235,7 +235,7 @@ Meaning meaning_of(const Cryptomatte& matte, const std::string& list) {
 }
 
 /// The objects that a word means, each name's identifier. Without a manifest a whole name is known by its hash.
-std::vector<std::uint32_t> objects_of(const std::string& path, const Cryptomatte& matte, const Meaning::Word& word,
+std::vector<std::uint32_t> objects_of(const std::string& path, const Cryptomatte& matte, const ListMeaning::Word& word,
                                       const char* option) {
   std::vector<std::uint32_t> objects;
   for (const auto& name : word.names) objects.push_back(matte.manifest.at(name));
@@ -259,7 +259,7 @@ const Cryptomatte& chosen(const std::vector<Cryptomatte>& mattes, const std::str
   std::vector<const Cryptomatte*> exact, fitting;
   for (const auto& matte : mattes) {
     names.push_back(matte.name);
-    const Meaning meaning = meaning_of(matte, meant.words);
+    const ListMeaning meaning = meaning_of(matte, meant.words);
     if (meant.channel.empty() ? meaning.has_any() : matte.name == meant.channel) fitting.push_back(&matte);
     if (meant.channel.empty() && meaning.has_exact()) exact.push_back(&matte);
   }

@@ -102,28 +102,24 @@ void read_channels(FrameSource& source, const Window& window, std::span<const Ch
 
 }  // namespace
 
-int supersampling_of(const FrameSource& source, const InputSettings& settings) {
-  if (settings.supersampling == "auto") return 1;
-  const int factor = std::stoi(settings.supersampling);
-  if (source.reading.display.width % factor != 0 || source.reading.display.height % factor != 0)
+int supersampling_of(const FrameSource& source, const InputSettings& settings, const ChannelRef* beauty) {
+  const Window& display = source.reading.display;
+  const int factor = settings.supersampling == "auto" ? 1 : std::stoi(settings.supersampling);
+  if (display.width % factor != 0 || display.height % factor != 0)
     fail(ErrorKind::input, "{}: the display window is {}, which --set supersampling={} cannot divide",
-         source.depth_path(), to_string(source.reading.display), factor);
-  return factor;
-}
-
-int supersampling_of(const FrameSource& source, const ChannelRef& beauty, const InputSettings& settings) {
-  const ExrFile& file = source.file_of(beauty);
-  const int factor = supersampling_of(source, settings);
+         source.depth_path(), to_string(display), factor);
+  if (!beauty) return factor;
+  const ExrFile& file = source.file_of(*beauty);
   for (const int times : {2, 3, 4})
-    if (factor == 1 && is_times(source.reading.display, file.display(), times))
+    if (factor == 1 && is_times(display, file.display(), times))
       fail(ErrorKind::input,
            "{}: the beauty's picture is {}, and the depth, {}, is {} times as large: --set supersampling={} filters "
            "all outputs down to the beauty's size; or render both at the same size",
-           file.path(), to_string(file.display()), to_string(source.reading.display), times, times);
-  if (factor > 1 && !is_times(source.reading.display, file.display(), factor))
+           file.path(), to_string(file.display()), to_string(display), times, times);
+  if (factor > 1 && !is_times(display, file.display(), factor))
     fail(ErrorKind::input, "{}: the beauty's picture is {}, and --set supersampling={} of the depth, {}, makes {}",
-         file.path(), to_string(file.display()), factor, to_string(source.reading.display),
-         to_string(reduced(source.reading.display, source.reading.display, factor)));
+         file.path(), to_string(file.display()), factor, to_string(display),
+         to_string(reduced(display, display, factor)));
   return factor;
 }
 

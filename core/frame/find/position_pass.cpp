@@ -13,8 +13,6 @@
 
 #include "core/base/error.h"
 #include "core/base/ranks.h"
-#include "core/frame/camera/position_faults.h"
-#include "core/frame/camera/resection.h"
 
 namespace alcove {
 namespace {
@@ -161,8 +159,7 @@ double beside(const Camera& lens, const Camera& standing, std::span<const SeenPo
   for (const auto& point : points) {
     Vector3 view = point.position;
     if (standing.view_from_world) {
-      view = times(*standing.view_from_world, point.position);
-      for (std::size_t k = 0; k < 3; k++) view[k] += standing.view_from_world_offset[k];
+      view = sum(times(*standing.view_from_world, point.position), standing.view_from_world_offset);
     } else if (standing.left_handed) {
       view[2] = -view[2];
     }
@@ -259,34 +256,34 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings, st
   if (by_camera <= limit) return "";
   const auto found = resection_of(points, source.reading.display);
   const auto* seen = std::get_if<Resection>(&found);
-  const std::string& held = file.path();
+  const std::string &held = file.path(), lens = name_of_lens(source, settings);
   const std::string why = fault_of_positions(points, file, found);
-  std::string text;
+  const auto noted = [&](NoteCode code, const std::string& text) {
+    source.notes.push_back({code, text});
+    return text;
+  };
   if (!seen && (std::get<NoResection>(found).median <= kNoCamera || !source.camera_from.empty())) return "";
-  if (!why.empty()) {
-    text = fmt::format("the positions of {} show no camera, since {} (--set position-channels); {} is taken", held, why,
-                       name_of_lens(source, settings));
-  } else if (!seen) {
-    text = fmt::format(
-        "no camera fits the positions of {}: by the best one half of them lie {:.3g} px and more from their pixels, so "
-        "they are a panorama's, or no positions (--set position-channels); {} is taken",
-        held, std::get<NoResection>(found).median, name_of_lens(source, settings));
-  } else {
-    const double px = beside(source.reading.camera, seen->camera, points);
-    if (px <= limit) {
-      const std::string elsewhere = why_elsewhere(source.reading.camera, seen->camera, points);
-      if (elsewhere.empty()) return "";
-      text = fmt::format("by {} most positions of {} lie up to {:.3g} px from their pixels; {}",
-                         name_of_lens(source, settings), held, by_camera, elsewhere);
-      source.notes.push_back({NoteCode::positions_disagree, text});
-      return text;
-    }
-    text = fmt::format("by {} most positions of {} lie up to {:.3g} px from their pixels; they show {}{}",
-                       name_of_lens(source, settings), held, px, text_of(seen->camera, source.reading.pixel_aspect),
-                       source.camera_from.empty() ? ": give that, or leave the option out" : "");
-  }
-  source.notes.push_back({NoteCode::field_of_view, text});
-  return text;
+  if (!why.empty())
+    return noted(NoteCode::field_of_view,
+                 fmt::format("the positions of {} show no camera, since {} (--set position-channels); {} is taken",
+                             held, why, lens));
+  if (!seen)
+    return noted(NoteCode::field_of_view,
+                 fmt::format("no camera fits the positions of {}: by the best one half of them lie {:.3g} px and more "
+                             "from their pixels, so they are a panorama's, or no positions (--set position-channels); "
+                             "{} is taken",
+                             held, std::get<NoResection>(found).median, lens));
+  const double px = beside(source.reading.camera, seen->camera, points);
+  if (px > limit)
+    return noted(NoteCode::field_of_view,
+                 fmt::format("by {} most positions of {} lie up to {:.3g} px from their pixels; they show {}{}", lens,
+                             held, px, text_of(seen->camera, source.reading.pixel_aspect),
+                             source.camera_from.empty() ? ": give that, or leave the option out" : ""));
+  const std::string elsewhere = why_elsewhere(source.reading.camera, seen->camera, points);
+  if (elsewhere.empty()) return "";
+  return noted(NoteCode::positions_disagree,
+               fmt::format("by {} most positions of {} lie up to {:.3g} px from their pixels; {}", lens, held,
+                           by_camera, elsewhere));
 }
 
 namespace {

@@ -1,6 +1,6 @@
 // The table of detectors.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/findings.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -333,46 +333,23 @@ Sentence displaced_normals(const Findings& f) {
 }
 
 constexpr std::array kTable{
-    Detector{NoteCode::no_surfaces, "depth of all pixels", "none is a surface", "rendering again; --depth-kind, --sky",
-             no_surfaces},
-    Detector{NoteCode::holes_in_depth, "pixels without a surface between surfaces of one depth",
-             "they lie all over the picture", "filling them", holes_in_depth},
-    Detector{NoteCode::enlarged_depth, "equal neighbours on slanted surfaces",
-             "they stand in the same rows or columns all over the picture", "depth in its own resolution",
-             enlarged_depth},
-    Detector{NoteCode::smoothed_depth, "outlines", "hardly any is a step between two pixels, or ramps were cut",
-             "rendering depth without a filter; --set ramps=cut; --depth-channel where the file has another depth",
-             smoothed_depth},
-    Detector{NoteCode::antialiased_depth, "steps between two smooth surfaces", "more than 30 % have a pixel in between",
-             "rendering depth without a filter; --set ramps=cut; --depth-channel where the file has another depth",
-             antialiased_depth},
-    Detector{NoteCode::noisy_depth, "second differences of 1/z", "few are small and most alternate",
-             "rendering without noise, or denoising depth", noisy_depth},
-    Detector{NoteCode::jittered_depth, "residuals of flat surfaces", "all are the same part of their slope",
-             "samples at the pixels' centres", jittered_depth},
-    Detector{NoteCode::half_depth, "differences between values", "they are multiples of a coarse step",
-             "float; --depth-channel where the file has another depth", half_depth},
-    Detector{NoteCode::letterbox_bars, "rows and columns along borders",
-             "as many are empty on two opposite sides, and the picture between is full", "cropping the data window",
-             letterbox_bars},
-    Detector{NoteCode::part_of_picture, "rows and columns along borders",
-             "they are empty on two adjacent sides, and the picture between is full", "cropping the file",
-             part_of_picture},
-    Detector{NoteCode::missing_tile, "rectangles without surfaces",
-             "the sky has another value than their 0, or their sides stand on a grid of 16 pixels", "rendering again",
-             missing_tile},
-    Detector{NoteCode::depth_offset, "planes at an angle", "they are flat by 1 / (depth + c), and c is not as read",
-             "--depth-kind normalized with --near and --far", depth_offset},
-    Detector{NoteCode::depth_curve, "planes at an angle", "they are flat by no offset, and by one curve",
-             "depth without the curve", depth_curve},
-    Detector{NoteCode::clamped_depth, "the largest value, and normals", "many have it, and look in other directions",
-             "depth without a limit; --sky", clamped_depth},
-    Detector{NoteCode::overflown_depth, "values at the end of half floats",
-             "some are infinite or 65504, and others reach up to it", "float, or larger units", overflown_depth},
-    Detector{NoteCode::wrapped_depth, "drops of depth within smooth surfaces", "most are by the whole range",
-             "float, or larger units", wrapped_depth},
-    Detector{NoteCode::displaced_normals, "outlines between planes", "most normals change beside the depth",
-             "--normal none", displaced_normals},
+    Detector{NoteCode::no_surfaces, no_surfaces},
+    Detector{NoteCode::holes_in_depth, holes_in_depth},
+    Detector{NoteCode::enlarged_depth, enlarged_depth},
+    Detector{NoteCode::smoothed_depth, smoothed_depth},
+    Detector{NoteCode::antialiased_depth, antialiased_depth},
+    Detector{NoteCode::noisy_depth, noisy_depth},
+    Detector{NoteCode::jittered_depth, jittered_depth},
+    Detector{NoteCode::half_depth, half_depth},
+    Detector{NoteCode::letterbox_bars, letterbox_bars},
+    Detector{NoteCode::part_of_picture, part_of_picture},
+    Detector{NoteCode::missing_tile, missing_tile},
+    Detector{NoteCode::depth_offset, depth_offset},
+    Detector{NoteCode::depth_curve, depth_curve},
+    Detector{NoteCode::clamped_depth, clamped_depth},
+    Detector{NoteCode::overflown_depth, overflown_depth},
+    Detector{NoteCode::wrapped_depth, wrapped_depth},
+    Detector{NoteCode::displaced_normals, displaced_normals},
 };
 
 }  // namespace

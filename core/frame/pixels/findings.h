@@ -1,15 +1,18 @@
-// The findings of one walk over the pixels of a frame, as plain numbers. Detectors judge them.
+// The findings of one walk over the pixels of a frame, as plain numbers, and the detectors that judge them: a table of
+// the faults that pixels may show.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/base/note.h"
 #include "core/base/settings.h"
-#include "core/frame/evidence.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 
@@ -117,5 +120,28 @@ struct Findings {
   std::optional<Plateau> plateau{};
   NormalOutlines normals{};
 };
+
+// Detectors.
+
+/// A row of the table. docs/troubleshooting.md lists what each looks at, when it speaks, and what mends it.
+struct Detector {
+  NoteCode code;
+  // The sentence of its note, where it speaks.
+  std::optional<std::string> (*sentence)(const Findings&);
+};
+
+/// The sentence on a frame in which nothing is a surface.
+std::string no_surfaces_text(const std::string& depth_channel);
+
+/// The number that depth must be added to be in proportion to distances, as it is read.
+double said_offset(const Reading& reading);
+/// Whether the curve of the values speaks against the kind of depth that is read.
+bool speaks_against(const Curve& curve, const Reading& reading);
+
+/// The table. A code may have several rows.
+std::span<const Detector> detectors();
+
+/// The notes of all detectors on a frame.
+Notes detected(const Findings& findings);
 
 }  // namespace alcove

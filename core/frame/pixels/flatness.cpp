@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/ranks.h"
+#include "core/frame/samples.h"
 
 namespace alcove {
 namespace {
@@ -389,9 +390,7 @@ std::optional<double> jitter_of(std::span<const float> raw, const DepthMap& map,
   ones.fill(1);
   const std::size_t plane = std::size_t(view.size.x) * std::size_t(view.size.y);
   const auto depth_of = [&](std::size_t i, double length) {
-    std::array<double, 3> values{raw[i], 0, 0};
-    if (raw.size() == 3 * plane) values = {raw[i], raw[i + plane], raw[i + 2 * plane]};
-    return planar_depth(map, values, length);
+    return planar_depth(map, value_at(raw, plane, i), length);
   };
   for_each_block(view, side, step, basis, depth_of, [&](const Samples& values, const Samples&) {
     const Fit f = fit(quotients(ones, values), basis);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/frame/camera/camera.h"
-#include "core/frame/evidence.h"
 #include "core/frame/reading.h"
 
 namespace alcove {

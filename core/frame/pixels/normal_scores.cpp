@@ -7,9 +7,8 @@
 #include <numbers>
 
 #include "core/base/ranks.h"
-#include "core/frame/camera/least_squares.h"
-#include "core/frame/pixels/places.h"
 #include "core/frame/pixels/statistics.h"
+#include "core/frame/samples.h"
 
 namespace alcove {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/frame/pixels/lines.h"
-#include "core/frame/pixels/places.h"
+#include "core/frame/samples.h"
 
 namespace alcove {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/base/ranks.h"
-#include "core/frame/pixels/places.h"
+#include "core/frame/samples.h"
 #include "kernels/geometry/geometry.h"
 
 namespace alcove {
@@ -17,14 +17,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void count_value(ValueStatistics& s, float x) {
   s.pixels++;
-  if (std::isnan(x)) {
-    s.nan++;
-    return;
-  }
-  if (std::isinf(x)) {
-    s.infinite++;
-    return;
-  }
+  if (std::isnan(x)) return void(s.nan++);
+  if (std::isinf(x)) return void(s.infinite++);
   s.negative += x < 0;
   s.zero += x == 0;
   s.one += x == 1;
@@ -133,8 +127,7 @@ std::optional<double> reprojection_error(std::span<const float> position, Positi
       Vector3 p{position[i], position[i + plane], position[i + 2 * plane]};
       if (!(dot(p, p) > 0) || !(dot(p, p) < 1e18)) continue;
       if (space == PositionSpace::world) {
-        p = times(*camera.view_from_world, p);
-        for (std::size_t c = 0; c < 3; c++) p[c] += camera.view_from_world_offset[c];
+        p = sum(times(*camera.view_from_world, p), camera.view_from_world_offset);
       } else if (camera.left_handed != mirrored) {
         p[2] = -p[2];
       }

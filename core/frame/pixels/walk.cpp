@@ -1,4 +1,4 @@
-// Takes lines out of the planes, counts along them, and adds up.
+// Takes lines out of the planes, counts along them, and adds up; finds borders and rectangles without surfaces.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/frame/pixels/walk.h"
 
@@ -10,10 +10,9 @@
 
 #include "core/base/ranks.h"
 #include "core/base/system.h"
-#include "core/frame/pixels/empty.h"
 #include "core/frame/pixels/lines.h"
-#include "core/frame/pixels/places.h"
 #include "core/frame/pixels/statistics.h"
+#include "core/frame/samples.h"
 #include "kernels/geometry/geometry.h"
 
 namespace alcove {
@@ -121,13 +120,10 @@ void add(LineCounts& all, LineCounts more) {
     to->resize(std::max(to->size(), from->size()));
     for (std::size_t i = 0; i < from->size(); i++) (*to)[i] += (*from)[i];
   }
-  all.outlines.count += more.outlines.count;
-  all.outlines.sharp += more.outlines.sharp;
-  all.outlines.steps += more.outlines.steps;
-  all.outlines.blended += more.outlines.blended;
-  all.holes.surfaces += more.holes.surfaces;
-  all.holes.between += more.holes.between;
-  all.holes.within_planes += more.holes.within_planes;
+  for (const auto count : {&Outlines::count, &Outlines::sharp, &Outlines::steps, &Outlines::blended})
+    all.outlines.*count += more.outlines.*count;
+  for (const auto count : {&Holes::surfaces, &Holes::between, &Holes::within_planes})
+    all.holes.*count += more.holes.*count;
   for (std::size_t y = 0; y < 8; y++)
     for (std::size_t x = 0; x < 8; x++) {
       all.cells[y].surfaces[x] += more.cells[y].surfaces[x];
@@ -175,13 +171,11 @@ void count_cells(LineCounts& lines) {
     }
 }
 
-Unevenness unevenness_of(BendSample rows, BendSample columns) {
-  append(rows.sizes, columns.sizes);
-  Unevenness found{.count = rows.sizes.size()};
-  if (rows.sizes.empty()) return found;
-  found.tenth = value_at_rank(rows.sizes, rows.sizes.size() / 10);
-  found.alternating =
-      double(rows.opposite + columns.opposite) / double(std::max<std::size_t>(1, rows.neighbours + columns.neighbours));
+Unevenness unevenness_of(BendSample bends) {
+  Unevenness found{.count = bends.sizes.size()};
+  if (bends.sizes.empty()) return found;
+  found.tenth = value_at_rank(bends.sizes, bends.sizes.size() / 10);
+  found.alternating = double(bends.opposite) / double(bends.neighbours);
   return found;
 }
 
@@ -244,18 +238,177 @@ void walk(const WalkedPlanes& planes, Findings& findings) {
   count_cells(rows);
   count_cells(columns);
   findings.holes = {rows.holes, columns.holes};
-  findings.unevenness = unevenness_of(std::move(rows.bends), std::move(columns.bends));
-  rows.drops.most = std::max(rows.drops.most, columns.drops.most);
-  append(rows.drops.drops, columns.drops.drops);
-  findings.wrapping = wrapping_of(std::move(rows.drops));
-  append(rows.shifts, columns.shifts);
-  findings.normals = normal_outlines(std::move(rows.shifts));
   findings.plateau = plateau_of(planes, source, rows);
   std::vector<PlacedRuns> placed;
   for (int i = 0; i < int(rows.empty.size()); i++)
     placed.push_back({source.place(false, i), std::move(rows.empty[std::size_t(i)])});
   findings.rectangle = empty_rectangle(planes.depth, planes.reading.data, planes.frame, placed,
                                        planes.reading.depth_kind == DepthKind::disparity);
+  add(rows, std::move(columns));
+  findings.unevenness = unevenness_of(std::move(rows.bends));
+  findings.wrapping = wrapping_of(std::move(rows.drops));
+  findings.normals = normal_outlines(std::move(rows.shifts));
+}
+
+// Parts without surfaces.
+
+namespace {
+
+bool is_same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+/// Rows or columns, counted from one of the borders: the upper, lower, left or right one.
+struct BorderLines {
+  std::span<const float> depth;
+  const Window& window;
+  const DepthMap& map;
+  std::size_t side;
+
+  int count() const { return side < 2 ? window.height : window.width; }
+  int size() const { return side < 2 ? window.width : window.height; }
+  float value(int line, int i) const {
+    const int at = side % 2 == 0 ? line : count() - 1 - line, x = side < 2 ? i : at, y = side < 2 ? at : i;
+    return depth[std::size_t(y) * std::size_t(window.width) + std::size_t(x)];
+  }
+  bool is_surface(int line, int i) const { return std::isfinite(planar_depth(map, {value(line, i), 0, 0}, 1)); }
+  /// How many lines have no surface and one value.
+  int empty() const {
+    const auto is_empty = [&](int line) {
+      for (int i = 0; i < size(); i++)
+        if (!is_same(value(line, i), value(line, 0)) || (i == 0 && is_surface(line, 0))) return false;
+      return true;
+    };
+    int line = 0;
+    while (line < count() && is_empty(line)) line++;
+    return line;
+  }
+  /// The part of a line's pixels from `first` to `end` that has surfaces.
+  double covered(int line, int first, int end) const {
+    if (line >= count() || first >= end) return 0;
+    int surfaces = 0;
+    for (int i = first; i < end; i++) surfaces += is_surface(line, i);
+    return double(surfaces) / (end - first);
+  }
+};
+
+}  // namespace
+
+Borders borders_of(std::span<const float> depth, const Window& window, const DepthMap& map) {
+  Borders borders;
+  for (std::size_t side = 0; side < 4; side++) borders[side].empty = BorderLines{depth, window, map, side}.empty();
+  for (std::size_t side = 0; side < 4; side++) {
+    const BorderLines lines{depth, window, map, side};
+    const std::size_t across = side < 2 ? 2 : 0;
+    borders[side].covered =
+        lines.covered(borders[side].empty, borders[across].empty, lines.size() - borders[across + 1].empty);
+  }
+  return borders;
+}
+
+namespace {
+
+/// A run of the same columns in rows one after the other.
+struct Stack {
+  EmptyRun run;
+  int first_row, last_row;
+  int rows;
+
+  double area() const { return double(run.end - run.first) * (last_row - first_row + 1); }
+};
+
+/// All stacks of at least three rows.
+std::vector<Stack> stacks_of(std::span<const PlacedRuns> rows) {
+  constexpr int kLeastRows = 3;
+  std::vector<Stack> open, found;
+  const auto keep = [&](const Stack& stack) {
+    if (stack.rows >= kLeastRows) found.push_back(stack);
+  };
+  for (const auto& [row, runs] : rows) {
+    std::vector<Stack> next;
+    for (const EmptyRun& run : runs) {
+      const auto above = std::ranges::find_if(open, [&](const Stack& s) {
+        return s.run.first == run.first && s.run.end == run.end && is_same(s.run.value, run.value);
+      });
+      if (above == open.end()) {
+        next.push_back({run, row, row, 1});
+      } else {
+        next.push_back({run, above->first_row, row, above->rows + 1});
+        open.erase(above);
+      }
+    }
+    std::ranges::for_each(open, keep);
+    open = std::move(next);
+  }
+  std::ranges::for_each(open, keep);
+  return found;
+}
+
+/// Sides that are no border of the picture, where a tile's side is always.
+int free_sides(int first, int end, int size) { return (first > 0) + (end < size); }
+
+/// The chance that two opposite sides stand on a grid of tiles as these do; 1 where they stand on none. A grid begins
+/// at one of the borders.
+double grid_chance(int first, int end, int size) {
+  double chance = 1;
+  for (const int tile : {16, 32, 64, 128}) {
+    const auto stand = [&](int origin) {
+      return (first == 0 || (first - origin) % tile == 0) && (end == size || (end - origin) % tile == 0);
+    };
+    if (stand(0) || stand(size)) chance = (size % tile == 0 ? 1 : 2) * std::pow(tile, -free_sides(first, end, size));
+  }
+  return chance;
+}
+
+/// Whether sides stand where those of tiles do, and one of so many rectangles hardly does so by chance.
+bool is_on_grid(const EmptyRectangle& r, const Window& frame, std::size_t rectangles) {
+  constexpr int kLeastSides = 3;
+  constexpr double kMostChance = 0.005;
+  const double across = grid_chance(r.left, r.right, frame.width), down = grid_chance(r.top, r.bottom, frame.height);
+  const int sides = free_sides(r.left, r.right, frame.width) + free_sides(r.top, r.bottom, frame.height);
+  return sides >= kLeastSides && std::max(across, down) < 1 && double(rectangles) * across * down < kMostChance;
+}
+
+bool has_other_values(std::span<const PlacedRuns> rows, float value) {
+  constexpr double kLeast = 0.01;  // of the empty pixels
+  std::size_t others = 0, all = 0;
+  for (const auto& row : rows)
+    for (const auto& run : row.runs) {
+      all += run.end - run.first;
+      if (!is_same(run.value, value)) others += run.end - run.first;
+    }
+  return double(others) > kLeast * double(all);
+}
+
+}  // namespace
+
+std::optional<EmptyRectangle> empty_rectangle(std::span<const float> depth, const Window& window, const Window& frame,
+                                              std::span<const PlacedRuns> rows, bool is_sky_0) {
+  if (depth.size() != window.pixels()) return std::nullopt;
+  std::optional<EmptyRectangle> best;
+  double area = 0;
+  const int above = window.y - frame.y, below = frame.height - window.height - above;
+  const std::vector<Stack> stacks = stacks_of(rows);
+  for (const Stack& stack : stacks) {
+    const bool is_whole_row = stack.run.first == 0 && stack.run.end == std::size_t(window.width);
+    if (is_whole_row || stack.area() <= area) continue;
+    const auto is_row = [&](int row) {
+      const auto* const at = &depth[std::size_t(row) * std::size_t(window.width)];
+      return std::all_of(at + stack.run.first, at + stack.run.end,
+                         [&](float v) { return is_same(v, stack.run.value); });
+    };
+    EmptyRectangle r{int(stack.run.first), stack.first_row, int(stack.run.end), stack.last_row + 1, stack.run.value};
+    while (r.top > 0 && is_row(r.top - 1)) r.top--;
+    while (r.bottom < window.height && is_row(r.bottom)) r.bottom++;
+    if ((r.top == 0 && above > 0) || (r.bottom == window.height && below > 0)) continue;
+    r.top += above;
+    r.bottom += above;
+    const bool is_nothing = (stack.run.value == 0 && !is_sky_0) || std::isnan(stack.run.value);
+    r.is_unlike_sky = is_nothing && has_other_values(rows, stack.run.value);
+    r.is_on_grid = is_on_grid(r, frame, stacks.size());
+    if (!r.is_unlike_sky && !r.is_on_grid) continue;
+    best = r;
+    area = stack.area();
+  }
+  return best;
 }
 
 }  // namespace alcove

@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/base/option_words.h"
-#include "core/frame/pixels/detectors.h"
+#include "core/frame/pixels/findings.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/samples.h"
 #include "core/frame/settle/normal_settlement.h"
-#include "core/frame/settle/other_cameras.h"
-#include "core/frame/settle/other_components.h"
 #include "core/frame/settle/settle.h"
 
 namespace alcove {
@@ -22,6 +23,25 @@ constexpr double kSurelyClose = 0.5;
 /// Degrees. By their own cameras the normals of 14 frames are turned as a whole by 0.2 at most, or do not fit better
 /// once they are turned back.
 constexpr double kOtherFrame = 0.3;
+
+/// Whether nearly all normals look the same way, as in tangent space.
+bool are_alike(const RawPart& raw, const DepthMap& map) {
+  constexpr double kAlike = 0.98;  // length of the mean of the unit vectors
+  const std::size_t pixels = raw.window.pixels(), step = even_step(raw.window, kNormalPixels);
+  std::array<Vector3, 2> sums{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pixels; i += step) {
+    if (std::isinf(planar_depth(map, value_at(raw.depth, pixels, i), 1))) continue;
+    std::size_t unorm = 0;
+    for (Vector3& sum : sums) {
+      const Vector3 n = decoded_normal(raw.normal, pixels, i, NormalEncoding::signed_float, unorm++ > 0);
+      const double size = length(n);
+      for (std::size_t c = 0; c < 3 && size > 0; c++) sum[c] += n[c] / size;
+    }
+    count++;
+  }
+  return std::ranges::any_of(sums, [&](const Vector3& sum) { return length(sum) > kAlike * double(count); });
+}
 
 class NormalDoubts : private NormalSettlement {
  public:
@@ -58,16 +78,6 @@ class NormalDoubts : private NormalSettlement {
       note(NoteCode::normals_disagree,
            fmt::format("even the best quarter of the normals is up to {:.1f} degrees off the normals of depth: {}",
                        chosen->angle, kCheck));
-  }
-
-  void refuse_turned_camera(const NormalScore& chosen, double sharpest) const {
-    const auto turned = best_turned_camera(planes(), chosen);
-    if (!turned || turned->score.close < sharpest || turned->score.agreement < kClear * chosen.agreement) return;
-    fail(ErrorKind::input,
-         "{}: the camera{} does not fit: by it {:.0f} % of the normals in {} space agree with depth; {}, then {:.0f} % "
-         "agree; {}",
-         path_, from(), 100 * chosen.agreement, word_of(chosen.space), turned->what, 100 * turned->score.agreement,
-         kWithout);
   }
 
  private:
@@ -186,8 +196,14 @@ class NormalDoubts : private NormalSettlement {
 
 }  // namespace
 
-void refuse_turned_camera(const NormalSettlement& normals, const NormalScore& chosen, double sharpest) {
-  NormalDoubts(normals).refuse_turned_camera(chosen, sharpest);
+void NormalSettlement::refuse_turned_camera(const NormalScore& chosen, double sharpest) const {
+  const auto turned = best_turned_camera(planes(), chosen);
+  if (!turned || turned->score.close < sharpest || turned->score.agreement < kClear * chosen.agreement) return;
+  fail(ErrorKind::input,
+       "{}: the camera{} does not fit: by it {:.0f} % of the normals in {} space agree with depth; {}, then {:.0f} % "
+       "agree; {}",
+       path_, from(), 100 * chosen.agreement, word_of(chosen.space), turned->what, 100 * turned->score.agreement,
+       kWithout);
 }
 
 void doubt_normals(const NormalSettlement& normals, const std::vector<NormalScore>& scores) {

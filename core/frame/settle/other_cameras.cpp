@@ -1,6 +1,6 @@
 // Tries other cameras on the normals.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/settle/other_cameras.h"
+#include "core/frame/settle/normal_settlement.h"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/base/settings.h"
-#include "core/frame/evidence.h"
 #include "core/frame/find/frame_source.h"
+#include "core/frame/reading.h"
 
 namespace alcove {
 
@@ -45,6 +45,9 @@ bool settle_like(FrameSource& source, const FrameSource& settled);
 /// by itself, with a note. It reads as settle_by_rows() does. Returns whether it is settled like the other frame.
 bool settle_like_or_alone(FrameSource& source, const FrameSource& settled, const InputSettings& settings,
                           std::uint64_t most_bytes);
+
+/// Whether the normals are vectors in x, y and z, so that they have lengths.
+bool has_lengths(const FrameSource& source);
 
 /// The word of --normal-encoding for normals of a frame that is settled.
 const char* encoding_name(NormalEncoding encoding, bool unorm);

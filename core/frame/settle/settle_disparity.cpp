@@ -9,8 +9,7 @@
 #include "core/base/option_words.h"
 #include "core/base/ranks.h"
 #include "core/frame/pixels/disparity.h"
-#include "core/frame/pixels/right_angles.h"
-#include "core/frame/settle/depth_settlement.h"
+#include "core/frame/settle/settlement.h"
 
 namespace alcove {
 namespace {
