@@ -289,15 +289,15 @@ double srgb_from_linear(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * 
 /// Makes the pictures: the first layer's colours, or without colours the first channel as grey. Scene-linear values are
 /// shown as a display would.
 ComparePictures pictures_of(const Planes& planes, const std::vector<float>& reference, bool hdr) {
-  const int width = planes.data.width, height = planes.data.height;
   const auto colors = color_layers(planes.channels);
+  const std::size_t channels = colors.empty() ? 1 : 3;
   const auto shown = [&](float x) { return hdr ? float(srgb_from_linear(x)) : x; };
   const auto picture = [&](const std::vector<float>& values) {
     std::vector<float> pixels;
     for (std::size_t i = 0; i < planes.data.pixels(); i++)
-      for (std::size_t c = 0; c < (colors.empty() ? 1 : 3); c++)
+      for (std::size_t c = 0; c < channels; c++)
         pixels.push_back(shown(planes.plane(values, colors.empty() ? 0 : colors[0][c])[i]));
-    return colors.empty() ? grey_picture(width, height, pixels) : color_picture(width, height, pixels);
+    return picture_url(planes.data.width, planes.data.height, int(channels), pixels);
   };
   return {picture(planes.values.result), picture(reference)};
 }
