@@ -4,13 +4,11 @@
 
 #include <fmt/format.h>
 #include <cstdio>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/parsing.h"
-#include "core/gpu/device_info.h"
 
 namespace alcove {
 
@@ -23,12 +21,6 @@ void print_error(fmt::format_string<Args...> format, Args&&... args) {
 /// The name with the version; how it was built; with which libraries: a line each.
 std::string version_text();
 
-/// One line without its end.
-std::string text_of(const gpu::DeviceInfo& device);
-
-/// The fields of docs/json.md.
-nlohmann::ordered_json json_of(const gpu::DeviceInfo& device);
-
 struct Subcommand {
   std::string name, sentence;
   int (*run)(const std::vector<std::string>& arguments);  // without program and subcommand; gives the exit code
@@ -37,6 +29,11 @@ struct Subcommand {
 
 /// All of them, in the order of the help.
 const std::vector<Subcommand>& subcommands();
+
+/// `alcove --generate WHAT`, which the build asks for: WHAT is `man`, with the name of a command behind it or without,
+/// `bash`, `zsh` or `fish`; or, for the completions, `preset-names` or `device-names`, a line each. Gives the exit code.
+/// Fails with ErrorKind::usage.
+int generate(const std::vector<std::string>& arguments);
 
 int run_command(const std::vector<std::string>& arguments);
 int inspect_command(const std::vector<std::string>& arguments);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/generate.h"
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/system.h"
