@@ -410,10 +410,6 @@ CameraSearch look_for_camera(const InputSettings& settings, int frame) {
   return {false, "", {}};
 }
 
-Inspection inspect_frame(const InputSettings& settings, int frame) {
-  return inspect_frame(settings, frame, {.inputs = settings});
-}
-
 Inspection inspect_frame(const InputSettings& settings, int frame, const CommandNames& run) {
   CameraSearch search = look_for_camera(settings, frame);
   const bool has_camera = search.is_found;

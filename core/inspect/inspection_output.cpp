@@ -1,17 +1,28 @@
-// An inspection as lines for people.
+// An inspection as lines for people and as one JSON document; and the contact sheet, for which the chain runs.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
+#include <vector>
 
+#include "core/base/file.h"
 #include "core/base/option_words.h"
+#include "core/base/ranks.h"
 #include "core/base/text.h"
+#include "core/chain/chain.h"
+#include "core/chain/compute.h"
+#include "core/formats/png.h"
 #include "core/formats/sequence.h"
+#include "core/frame/raw_plane.h"
 #include "core/inspect/inspect.h"
 
 namespace alcove {
+
+// Lines.
 
 const char* name_of(SampleType type) {
   switch (type) {
@@ -230,6 +241,279 @@ std::string inspection_text(const Inspection& inspection, bool has_evidence) {
   for (const auto& refused : inspection.refused) lines.add("refused: {}", refused);
   if (!inspection.command.empty()) lines.add("{}", inspection.command);
   return lines.text();
+}
+
+// JSON.
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(std::optional<double> value) { return value ? Json(*value) : Json(); }
+
+Json to_json(const InspectedPart& part) {
+  Json channels = Json::array();
+  for (const auto& channel : part.header.channels)
+    channels.push_back({{"name", channel.name}, {"type", name_of(channel.type)}});
+  return {{"name", part.header.name},
+          {"view", part.header.view},
+          {"data_window", to_string(part.header.data)},
+          {"channels", channels},
+          {"attributes", part.attributes}};
+}
+
+Json to_json(const Cryptomatte& matte) {
+  Json objects = Json::array();
+  for (const auto& [name, id] : matte.manifest) objects.push_back(name);
+  return {{"name", matte.name},
+          {"part", matte.part},
+          {"ranks", matte.ranks.size()},
+          {"objects", objects},
+          {"lacking", matte.lacking}};
+}
+
+Json to_json(const InspectedFile& file) {
+  Json parts = Json::array();
+  Json mattes = Json::array();
+  for (const auto& matte : file.cryptomattes) mattes.push_back(to_json(matte));
+  for (const auto& part : file.parts) parts.push_back(to_json(part));
+  return {{"path", file.path},
+          {"display_window", to_string(file.display)},
+          {"pixel_aspect", file.pixel_aspect},
+          {"parts", parts},
+          {"cryptomattes", mattes}};
+}
+
+Json to_json(const InspectedDeep& deep) {
+  return {{"file", deep.file},
+          {"parts", deep.parts},
+          {"storage", deep.layout.is_tiled ? "tiles" : "lines"},
+          {"compression", deep.layout.compression},
+          {"state", deep.layout.state},
+          {"samples", deep.counts.samples},
+          {"samples_per_pixel", deep.samples_per_pixel()},
+          {"most_samples", deep.counts.most},
+          {"volumes", deep.counts.volumes},
+          {"repaired", deep.counts.repaired},
+          {"hidden_share", deep.hidden_share()},
+          {"shows_nothing_hidden", deep.shows_nothing_hidden()},
+          {"depth", deep.depth}};
+}
+
+Json to_json(const InspectedSource& source) { return {{"name", source.name}, {"by", source.by}}; }
+
+Json to_json(const InspectedAov& aov) {
+  return {{"file", aov.file},
+          {"part", aov.part},
+          {"channels", aov.channels},
+          {"why", aov.is_chosen ? "named by an option" : "a usual name"}};
+}
+
+Json to_json(const InspectedCamera& inspected) {
+  const Camera& camera = inspected.camera;
+  const double half_width = 0.5 * camera.width / camera.fx;
+  return {{"from", inspected.from},
+          {"projection", camera.orthographic ? "orthographic" : "perspective"},
+          {"fx", camera.fx},
+          {"fy", camera.fy},
+          {"cx", camera.cx},
+          {"cy", camera.cy},
+          {"horizontal_fov", camera.orthographic ? Json() : Json(2 * std::atan(half_width) * 180 / std::numbers::pi)},
+          {"world_to_camera", camera.view_from_world.has_value()}};
+}
+
+Json to_json(const Distances& distances) {
+  return {{"sky_share", distances.sky_share},
+          {"nearest", number(distances.nearest)},
+          {"median", number(distances.median)},
+          {"farthest", number(distances.farthest)}};
+}
+
+Json to_json(const InspectedDepth& depth) {
+  const ValueStatistics& values = depth.values;
+  Json json = {
+      {"kind", depth.kind},          {"least", values.least},       {"most", values.most}, {"nan", values.nan},
+      {"infinite", values.infinite}, {"negative", values.negative}, {"zero", values.zero}, {"one", values.one}};
+  const Json distances = depth.distances ? to_json(*depth.distances) : Json::object();
+  for (const auto& [name, value] : distances.items())
+    if (!value.is_null()) json[name] = value;
+  if (!depth.scores) return json;
+  json["scores"] = Json::array();
+  for (const auto& score : *depth.scores)
+    json["scores"].push_back({{"kind", word_of(score.kind)}, {"straight", score.straight}});
+  return json;
+}
+
+Json to_json(const NormalScore& score) {
+  return {{"space", word_of(score.space)}, {"flips", to_string(score.flips)},
+          {"agreement", score.agreement},  {"opposite", score.opposite},
+          {"close", score.close},          {"angle", score.angle},
+          {"turn", score.turn_degrees()},  {"facing", score.facing}};
+}
+
+Json to_json(const InspectedNormals& normals) {
+  Json scores = Json::array();
+  for (const auto& score : normals.scores) scores.push_back(to_json(score));
+  Json json = {{"space", word_of(normals.space)},
+               {"encoding", normals.encoding},
+               {"flips", to_string(normals.flips)},
+               {"mean_length", number(normals.mean_length)},
+               {"unit_share", number(normals.unit_share)},
+               {"least", normals.least},
+               {"most", normals.most},
+               {"scores", scores}};
+  if (!normals.chosen) return json;
+  json["agreement"] = normals.chosen->agreement;
+  json["close"] = normals.chosen->close;
+  json["angle"] = normals.chosen->angle;
+  json["facing"] = normals.chosen->facing;
+  return json;
+}
+
+Json to_json(const Guess& guess) {
+  return {{"what", guess.what}, {"chosen", guess.chosen}, {"why", guess.why}, {"option", guess.option}};
+}
+
+Json to_json(const SequenceChange& change) {
+  Json values = Json::array();
+  for (const auto& [value, frames] : change.values)
+    values.push_back({{"value", value}, {"frames", frames_text(frames)}});
+  return {{"what", change.what}, {"values", values}};
+}
+
+Json to_json(const SequenceCamera& camera) {
+  Json json = {{"widest", camera.widest}, {"narrowest", camera.narrowest}};
+  if (!camera.is_placed) return json;
+  json["farthest"] = camera.farthest;
+  json["largest_turn"] = camera.largest_turn;
+  json["largest_step"] = camera.largest_step;
+  json["at_largest_step"] = camera.at_largest_step;
+  return json;
+}
+
+Json to_json(const SequenceDepth& depth) {
+  Json json = {{"frame", depth.frame}};
+  json.update(to_json(depth.distances));
+  return json;
+}
+
+Json to_json(const InspectedLight& light) {
+  return {{"sum", light.sum}, {"share", light.share}, {"adds_up", light.adds_up}, {"lacking", light.lacking}};
+}
+
+Json to_json(const HiddenGuess& guess) { return {{"file", guess.file}, {"channel", guess.channel}}; }
+
+template <class T>
+Json to_json(const std::optional<T>& value) {
+  return value ? to_json(*value) : Json();
+}
+
+template <class T>
+Json list_json(const std::vector<T>& values) {
+  Json list = Json::array();
+  for (const auto& value : values) list.push_back(to_json(value));
+  return list;
+}
+
+Json to_json(const InspectedSequence& sequence) {
+  return {{"shown", sequence.shown},
+          {"frames", frames_text(sequence.frames)},
+          {"count", sequence.frames.size()},
+          {"absent", frames_text(sequence.absent)},
+          {"changes", list_json(sequence.changes)},
+          {"same", sequence.same},
+          {"camera", sequence.camera ? to_json(*sequence.camera) : Json()},
+          {"depth", list_json(sequence.depth)}};
+}
+
+Json codes_of(const Notes& notes) {
+  Json codes = Json::array();
+  for (const auto& note : notes) codes.push_back(facts_of(note.code).name);
+  return codes;
+}
+
+}  // namespace
+
+std::string inspection_json(const Inspection& inspection) {
+  Json aovs = Json::object();
+  for (const auto& aov : inspection.aovs) aovs[aov.name] = to_json(aov);
+  const Json json = {{"files", list_json(inspection.files)},
+                     {"source", to_json(inspection.source)},
+                     {"aovs", aovs},
+                     {"camera", to_json(inspection.camera)},
+                     {"depth", to_json(inspection.depth)},
+                     {"normals", to_json(inspection.normals)},
+                     {"deep", list_json(inspection.deep)},
+                     {"light", to_json(inspection.light)},
+                     {"guesses", list_json(inspection.guesses)},
+                     {"hidden", list_json(inspection.hidden)},
+                     {"hidden_options", inspection.hidden_options},
+                     {"notes", texts_of(inspection.notes)},
+                     {"note_codes", codes_of(inspection.notes)},
+                     {"suspicious", texts_of(inspection.suspicious)},
+                     {"suspicious_codes", codes_of(inspection.suspicious)},
+                     {"missing", inspection.missing},
+                     {"refused", inspection.refused},
+                     {"sequence", inspection.sequence ? to_json(*inspection.sequence) : Json()},
+                     {"command", inspection.command}};
+  return json_text(json, 1) + "\n";
+}
+
+// The contact sheet.
+
+namespace {
+
+constexpr float kMostSky = 1e29f;  // depth from there on is sky
+
+/// The surfaces' depths that 1 %, 50 % and 99 % of them do not reach; 1 where there is none.
+std::array<double, 3> percentiles(std::span<const float> depth) {
+  std::vector<float> surfaces;
+  std::ranges::copy_if(depth, std::back_inserter(surfaces), [](float z) { return z < kMostSky; });
+  if (surfaces.empty()) return {1, 1, 1};
+  const auto at = [&](double part) {
+    return double(value_at_rank(surfaces, std::size_t(part * double(surfaces.size() - 1))));
+  };
+  return {at(0.01), at(0.5), at(0.99)};
+}
+
+}  // namespace
+
+void write_contact_sheet(const Settings& settings, int number) {
+  const std::string& path = settings.output.preview;
+  require_ending(path, "--preview", ".png", "PNG");
+  require_writable(path, "--preview");
+  const HostFrame frame = read_host_frame(settings.input, number);
+  gpu::Device device({settings.device.device, settings.device.require_gpu, settings.device.validate});
+  gpu::Recorder gpu(device);
+  const FrameInputs inputs = upload(gpu, frame);
+  EstimatorSettings estimator = settings.estimator;
+  if (!estimator.radius) {
+    std::vector<float> planar = planar_depths(frame.depth, inputs.depth_map, inputs.view);
+    std::ranges::replace_if(
+        planar, [](float z) { return std::isinf(z); }, kMostSky);
+    estimator.radius = 0.1 * percentiles(planar)[1];
+  }
+  OutputSettings output;
+  output.aovs = "ao,normal,depth";
+  const FrameOutputs outputs = run_chain(gpu, inputs, estimator, output);
+  gpu.run();
+
+  const auto depth = outputs.depth->as<float>(), normal = outputs.normal->as<float>(), ao = outputs.ao->as<float>();
+  const auto [near, median, far] = percentiles(depth);
+  const std::size_t width = std::size_t(frame.data.width), pixels = frame.data.pixels();
+  std::vector<float> picture(9 * pixels);
+  for (std::size_t i = 0; i < pixels; i++) {
+    const bool sky = depth[i] >= kMostSky;
+    const float bright = far > near ? float(1 - std::log(depth[i] / near) / std::log(far / near)) : 0.5f;
+    const std::array<float, 3> panels[] = {
+        {bright, bright, bright},
+        {0.5f + 0.5f * normal[i], 0.5f + 0.5f * normal[i + pixels], 0.5f + 0.5f * normal[i + 2 * pixels]},
+        {ao[i], ao[i], ao[i]}};
+    for (std::size_t panel = 0; panel < 3; panel++)
+      for (std::size_t c = 0; c < 3; c++)
+        picture[3 * (i / width * 3 * width + panel * width + i % width) + c] = sky ? kSkyColor[c] : panels[panel][c];
+  }
+  write_png(path, 3 * frame.data.width, frame.data.height, 3, picture);
 }
 
 }  // namespace alcove
