@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/error.h"
-#include "core/base/option_words.h"
-#include "core/chain/estimate/estimate.h"
 #include "core/frame/pixels/detectors.h"
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/radius.h"

@@ -5,19 +5,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
-#include <optional>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/base/half.h"
 #include "core/base/text.h"
-#include "core/chain/estimate/estimate.h"
 #include "core/frame/pixels/radius.h"
 #include "core/frame/pixels/ramps.h"
 

@@ -1,13 +1,9 @@
 // `alcove bench SUITE.toml`: run time against error, as a table, JSON, CSV and a page.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-
+#include "core/bench/bench.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "cli/parsing.h"
-#include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/bench/bench.h"
 #include "core/bench/stability.h"
 #include "core/gpu/device.h"
 #include "core/options/option_files.h"

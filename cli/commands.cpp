@@ -4,8 +4,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <functional>
@@ -14,7 +12,6 @@
 
 #include "cli/build_facts.h"
 #include "cli/options.h"
-#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/gpu/device_info.h"

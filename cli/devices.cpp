@@ -1,19 +1,14 @@
 // `alcove devices`: what this machine can compute on. `alcove doctor`: what a report of a bug needs to say of the machine,
 // and what is amiss with it; --version.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "cli/build_facts.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "core/base/error.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"

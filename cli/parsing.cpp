@@ -4,13 +4,11 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <regex>
 #include <string_view>
 
-#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
 #include "core/options/options.h"

@@ -15,9 +15,7 @@
 #include <set>
 #include <tuple>
 
-#include "core/base/error.h"
 #include "core/base/frame_list.h"
-#include "core/base/option_words.h"
 #include "core/base/ranks.h"
 #include "core/base/system.h"
 #include "core/base/text.h"

@@ -7,13 +7,9 @@
 #include <cmath>
 #include <regex>
 
-#include "core/base/option_words.h"
 #include "core/base/ranks.h"
 #include "core/base/text.h"
-#include "core/formats/exr.h"
 #include "core/frame/find/behind.h"
-#include "core/frame/find/channels.h"
-#include "core/frame/raw_plane.h"
 #include "core/frame/settle/faults.h"
 #include "core/frame/settle/settle.h"
 

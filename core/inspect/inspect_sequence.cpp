@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <set>
 
-#include "core/base/error.h"
-#include "core/base/option_words.h"
-#include "core/frame/raw_plane.h"
 #include "core/frame/settle/settle.h"
 #include "core/inspect/inspect.h"
 

@@ -7,17 +7,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <vector>
 
-#include "core/base/file.h"
-#include "core/base/option_words.h"
 #include "core/base/ranks.h"
 #include "core/base/text.h"
 #include "core/chain/chain.h"
 #include "core/chain/compute.h"
 #include "core/formats/png.h"
-#include "core/formats/sequence.h"
-#include "core/frame/raw_plane.h"
 #include "core/inspect/inspect.h"
 
 namespace alcove {

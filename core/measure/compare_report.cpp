@@ -1,7 +1,6 @@
 // Writes a comparison as JSON and as a page, and checks it against limits.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -9,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/measure/compare.h"
 #include "core/measure/report.h"

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/error.h"
 #include "core/reference/reference_slice.h"
 
 namespace alcove {

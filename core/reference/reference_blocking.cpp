@@ -9,7 +9,6 @@
 #include <cmath>
 #include <numbers>
 #include <thread>
-#include <utility>
 
 namespace alcove {
 namespace {
