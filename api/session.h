@@ -28,15 +28,6 @@ namespace alcove {
 /// not take are marked.
 std::string in_library_words(std::string_view sentence);
 
-/// Looks at the pixels as at those of files, and takes down in `reading` what they show. Fails with ErrorKind::input if
-/// depth cannot be of its kind or is too coarse for AO, if positions do not lie on the rays of their pixels, and if the
-/// normals, by their reading, are not those of the depth; with ErrorKind::usage on options that have no effect on depth
-/// of its kind. Gives sentences about doubts.
-Notes check_planes(Reading& reading, const HostPlanes& planes, const InputSettings& settings);
-
-/// Gives sentences about radii that do not suit the depth.
-Notes check_radius(const Reading& reading, std::span<const float> depth, const EstimatorSettings& settings);
-
 /// A session behind the C functions, which api/alcove/alcove.h describes. Failures are an Error.
 class Session {
  public:
