@@ -201,10 +201,10 @@ Trial far_out(double widths) {
 
 struct Axis {
   const char *name, *unit;
-  bool logarithmic;
   double plain;  // the value of the plain room, or what is nearest to it
   std::vector<double> values;
   std::function<Trial(double)> make;
+  bool logarithmic = true;
 };
 
 std::vector<Axis> all_axes() {
@@ -213,47 +213,38 @@ std::vector<Axis> all_axes() {
   return {
       {"depth scale",
        "scene units per unit of the room",
-       true,
        1,
        {1e-15, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e9, 1e15},
        at_scale},
-      {"depth range", "farthest over nearest depth", true, 1, {1, 10, 1e2, 1e3, 1e4, 1e5, 1e6}, before_background},
+      {"depth range", "farthest over nearest depth", 1, {1, 10, 1e2, 1e3, 1e4, 1e5, 1e6}, before_background},
       {"field of view",
        "degrees",
-       true,
        kFov,
        {0.5, 2, 10, 30, kFov, 90, 120, 150, 170},
        [](double fov) { return in_room(fov); }},
       {"radius in the scene",
        "of the median depth",
-       true,
        kRadius / depth,
        {1e-9, 1e-6, 1e-3, 1e-2, 0.05, 0.15, 0.5, 2, 10, 1e2, 1e4, 1e9},
        [=](double r) { return in_room(kFov, r * depth); }},
       {"radius in pixels",
        "px at the median depth",
-       true,
        kRadius / pixel,
        {0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8, 16, 32, 64, 128},
        [=](double r) { return in_room(kFov, r * pixel); }},
-      {"tilt of the surface", "degrees", false, 0, {0, 30, 60, 75, 80, 85, 88, 89, 89.9, 89.99}, tilted},
-      {"half depth",
-       "field of view of 48 pixels, degrees",
-       true,
-       kFov,
-       {0.02, 0.05, 0.15, 0.5, 1.5, 5, 15, kFov},
-       in_half},
-      {"16 bits of device depth", "median depth over near plane", true, 3, over_near,
+      {"tilt of the surface", "degrees", 0, {0, 30, 60, 75, 80, 85, 88, 89, 89.9, 89.99}, tilted, false},
+      {"half depth", "field of view of 48 pixels, degrees", kFov, {0.02, 0.05, 0.15, 0.5, 1.5, 5, 15, kFov}, in_half},
+      {"16 bits of device depth", "median depth over near plane", 3, over_near,
        [](double x) { return in_bits(16, false, x); }},
-      {"16 bits of reversed depth", "median depth over near plane", true, 3, over_near,
+      {"16 bits of reversed depth", "median depth over near plane", 3, over_near,
        [](double x) { return in_bits(16, true, x); }},
-      {"24 bits of device depth", "median depth over near plane", true, 3, over_near,
+      {"24 bits of device depth", "median depth over near plane", 3, over_near,
        [](double x) { return in_bits(24, false, x); }},
-      {"24 bits of reversed depth", "median depth over near plane", true, 3, over_near,
+      {"24 bits of reversed depth", "median depth over near plane", 3, over_near,
        [](double x) { return in_bits(24, true, x); }},
-      {"float reversed depth", "median depth over near plane", true, 3, over_near,
+      {"float reversed depth", "median depth over near plane", 3, over_near,
        [](double x) { return in_bits(32, true, x); }},
-      {"world offset", "widths of the room, of position files", true, 1, {1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, far_out}};
+      {"world offset", "widths of the room, of position files", 1, {1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, far_out}};
 }
 
 struct Candidate {
@@ -371,7 +362,7 @@ StabilityReport run_stability(gpu::Device& device, const std::function<void(cons
   for (const auto& candidate : all) report.plain.emplace_back(candidate.name, bench.rmse(at_scale(1), candidate));
   for (const Axis& axis : axes_of(part)) {
     if (say) say(fmt::format("{}: {} points", axis.name, axis.values.size()));
-    StabilityAxis& measured = report.axes.emplace_back(StabilityAxis{axis.name, axis.unit, axis.logarithmic, {}, {}});
+    StabilityAxis& measured = report.axes.emplace_back(StabilityAxis{axis.name, axis.unit, {}, {}});
     for (const auto& candidate : all) measured.curves.push_back({candidate.name, {}, {}, false});
     for (const double value : axis.values) {
       const Trial trial = axis.make(value);
