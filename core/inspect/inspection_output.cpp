@@ -41,7 +41,7 @@ std::string text_of(const Distances& distances) {
                      *distances.median, percent(distances.sky_share));
 }
 
-/// TextLines that a terminal may show.
+/// Lines that a terminal may show.
 class TextLines {
  public:
   template <class... Args>
@@ -114,15 +114,14 @@ void add(TextLines& lines, const InspectedCamera& inspected) {
             camera.view_from_world ? "with" : "without");
 }
 
-void add(TextLines& lines, const InspectedAov& aov) {
-  lines.add("{}: {}{}", aov.name, fmt::join(aov.channels, ", "), aov.is_chosen ? ", named by an option" : "");
+std::string text_of(const InspectedAov& aov) {
+  return fmt::format("{}{}", fmt::join(aov.channels, ", "), aov.is_chosen ? ", named by an option" : "");
 }
 
 /// The channels of an AOV; "" where there is none.
 std::string channels_of(const Inspection& inspection, std::initializer_list<std::string_view> names) {
   for (const auto& aov : inspection.aovs)
-    if (std::ranges::find(names, aov.name) != names.end())
-      return fmt::format(", {}{}", fmt::join(aov.channels, ", "), aov.is_chosen ? ", named by an option" : "");
+    if (std::ranges::find(names, aov.name) != names.end()) return ", " + text_of(aov);
   return "";
 }
 
@@ -216,7 +215,7 @@ std::string inspection_text(const Inspection& inspection, bool has_evidence) {
   for (const auto& aov : inspection.aovs) {
     const bool is_said = (inspection.depth && (aov.name == "depth" || aov.name == "position")) ||
                          (inspection.normals && aov.name == "normal");
-    if (!is_said) add(lines, aov);
+    if (!is_said) lines.add("{}: {}", aov.name, text_of(aov));
   }
   if (inspection.light && inspection.light->adds_up) lines.add("light passes: {} is the beauty", inspection.light->sum);
   for (const auto& deep : inspection.deep) add(lines, deep);

@@ -78,10 +78,6 @@ bool is_sequence(const CompareSettings& settings) {
          std::ranges::any_of(files_of(settings), [](const auto* path) { return pattern_of(*path).has_value(); });
 }
 
-std::string message_name(const CompareSettings& settings) {
-  return fmt::format("{} against {}", settings.result, settings.reference);
-}
-
 /// The pixels that all files of a comparison have.
 class CommonWindow {
  public:
@@ -226,8 +222,9 @@ Planes read_planes_of(const CompareSettings& settings) {
   planes.is_part = common.is_part();
   for (auto* file : {&results, &references, &references_b, &depth, &mask, &motion}) file->cut(planes.data);
   planes.depth = std::move(depth.values);
-  planes.values = make_comparable(message_name(settings), planes.data.pixels(), results.values, references.values,
-                                  references_b.values, mask_of(settings, mask.values, planes.depth));
+  planes.values = make_comparable(fmt::format("{} against {}", settings.result, settings.reference),
+                                  planes.data.pixels(), results.values, references.values, references_b.values,
+                                  mask_of(settings, mask.values, planes.depth));
   if (!motion.values.empty()) {
     const auto middle = motion.values.begin() + std::ptrdiff_t(planes.data.pixels());
     planes.motion_x.assign(motion.values.begin(), middle);
