@@ -1,6 +1,6 @@
-// The table of subcommands, and the texts that are made of it and of their rows: man pages, in the macros of man(7), and
-// completions for bash, zsh and fish. Options and their words stand in the scripts; presets and devices are asked of the
-// program when they are wanted.
+// The table of subcommands, and the texts that are made of it and of their rows: man pages, in the macros of man(7),
+// and completions for bash, zsh and fish. Options and their words stand in the scripts; presets and devices are asked
+// of the program when they are wanted.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/commands.h"
 

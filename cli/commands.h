@@ -92,8 +92,8 @@ struct Subcommand {
 const std::vector<Subcommand>& subcommands();
 
 /// `alcove --generate WHAT`, which the build asks for: WHAT is `man`, with the name of a command behind it or without,
-/// `bash`, `zsh` or `fish`; or, for the completions, `preset-names` or `device-names`, a line each. Gives the exit code.
-/// Fails with ErrorKind::usage.
+/// `bash`, `zsh` or `fish`; or, for the completions, `preset-names` or `device-names`, a line each. Gives the exit
+/// code. Fails with ErrorKind::usage.
 int generate(const std::vector<std::string>& arguments);
 
 int run_command(const std::vector<std::string>& arguments);

@@ -1,5 +1,5 @@
-// `alcove devices`: what this machine can compute on. `alcove doctor`: what a report of a bug needs to say of the machine,
-// and what is amiss with it; --version.
+// `alcove devices`: what this machine can compute on. `alcove doctor`: what a report of a bug needs to say of the
+// machine, and what is amiss with it; --version.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <chrono>
 #include <cstdlib>

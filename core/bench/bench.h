@@ -1,5 +1,5 @@
-// `alcove bench`: run time against error. A suite in TOML names frames with their truth, and candidates; every candidate
-// is measured on every frame, interleaved.
+// `alcove bench`: run time against error. A suite in TOML names frames with their truth, and candidates; every
+// candidate is measured on every frame, interleaved.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -216,7 +216,8 @@ std::string camera_file(const std::map<int, Camera>& cameras);
 void write_contact_sheet(const Settings& settings, int frame);
 
 /// Opens the files of the settings and reads depth and normals. Faults that `run` would refuse are part of the answer;
-/// it only fails if a file's header cannot be read, with ErrorKind::input. The proposed command names the files of `run`.
+/// it only fails if a file's header cannot be read, with ErrorKind::input. The proposed command names the files of
+/// `run`.
 Inspection inspect_frame(const InputSettings& settings, int frame, const CommandNames& run);
 
 /// The result of a search for a camera in the settings and the frame.

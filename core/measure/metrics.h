@@ -187,8 +187,8 @@ class Flicker {
 /// Planes of red, green and blue, of one size, row by row, all finite. For grey, use the same plane three times.
 using ColorPlanes = std::array<std::span<const float>, 3>;
 
-/// The FLIP error of every pixel, in [0, 1], of display values (sRGB-encoded, clamped to [0, 1]), as seen by the papers'
-/// default viewer, with 67 pixels per degree. Symmetric in the two images.
+/// The FLIP error of every pixel, in [0, 1], of display values (sRGB-encoded, clamped to [0, 1]), as seen by the
+/// papers' default viewer, with 67 pixels per degree. Symmetric in the two images.
 std::vector<float> ldr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference);
 
 /// The exposures of HDR-FLIP, in stops: from that where the brightest reference pixel is just below white to that where

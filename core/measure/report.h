@@ -53,8 +53,8 @@ std::string report_page(const std::string& json);
 /// bright. An error of 0 is white.
 inline constexpr float kFullColorError = 0.25f;
 
-/// Shows width x height values in [0, 1]: of 1 channel as grey, unconverted, since AO is data; of 3 as interleaved r, g,
-/// b display values.
+/// Shows width x height values in [0, 1]: of 1 channel as grey, unconverted, since AO is data; of 3 as interleaved r,
+/// g, b display values.
 std::string picture_url(int width, int height, int channels, std::span<const float> values);
 /// The bytes of a PNG that shows result - reference in colours, an error of `full` in the strongest; grey if the
 /// difference is not finite.
