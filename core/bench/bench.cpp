@@ -296,8 +296,7 @@ class References {
   const std::vector<float>& of_one_radius(const EstimatorSettings& settings) {
     ReferenceSettings wanted = reference_settings_of(settings, !frame_.host.behind.empty());
     wanted.slices = slices_;
-    auto& reference = made_[{wanted.radius, wanted.falloff, wanted.falloff_start, wanted.thickness,
-                             wanted.thickness_length, wanted.bias, wanted.complete, wanted.hidden}];
+    auto& reference = made_[fmt::format("{} hidden {}", text_of(wanted), wanted.hidden)];
     if (reference.empty() && !kept_.empty()) reference = read_kept_reference(kept_, wanted, frame_.host.data);
     if (reference.empty()) reference = reference_ao(frame_.host, wanted);
     return reference;
@@ -306,8 +305,7 @@ class References {
   const LoadedFrame& frame_;
   int slices_;
   std::string kept_;
-  std::map<std::tuple<double, Falloff, double, ThicknessRule, double, double, Completion, int>, std::vector<float>>
-      made_;
+  std::map<std::string, std::vector<float>> made_;
 };
 
 /// Empty where there is one truth.
