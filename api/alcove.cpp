@@ -7,7 +7,6 @@
 #include <new>
 
 #include "api/session.h"
-#include "core/base/error.h"
 #include "core/base/version.h"
 
 struct alcove_session {

@@ -1,4 +1,4 @@
-// Options, planes and camera -> a reading -> the chain -> results.
+// Options, planes of any layout and camera -> a reading -> the chain -> results.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "api/session.h"
 
@@ -6,15 +6,125 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <utility>
 
-#include "core/base/error.h"
+#include "core/base/half.h"
 #include "core/base/text.h"
-#include "core/chain/estimate/estimate.h"
+#include "core/frame/pixels/findings.h"
+#include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/radius.h"
 #include "core/frame/pixels/ramps.h"
+#include "core/frame/pixels/statistics.h"
+#include "core/frame/settle/normal_settlement.h"
+#include "core/frame/settle/settlement.h"
 
 namespace alcove {
 namespace {
+
+// The caller's planes, of any layout, and ours, one component behind the other.
+
+constexpr int kMostSide = 1 << 24, kMostComponents = 64;
+// Bytes. By the largest side, and three times that, it is a ptrdiff_t still.
+constexpr std::ptrdiff_t kMostStride = std::numeric_limits<std::ptrdiff_t>::max() / kMostSide / 4;
+
+std::size_t bytes_of(int type) { return type == ALCOVE_HALF ? 2 : 4; }
+
+struct Strides {
+  std::ptrdiff_t pixel, row, component;
+};
+
+Strides strides_of(const alcove_layout& layout) {
+  const auto bytes = std::ptrdiff_t(bytes_of(layout.type));
+  Strides strides{layout.pixel_stride, layout.row_stride, layout.component_stride ? layout.component_stride : bytes};
+  if (!strides.pixel) strides.pixel = bytes * layout.components;
+  if (!strides.row) strides.row = strides.pixel * layout.width;
+  return strides;
+}
+
+/// Calls use(place, byte, stride) for each row of each component, in our order.
+template <class Byte, class Use>
+void for_rows(Byte* data, const alcove_layout& layout, const Use& use) {
+  const Strides strides = strides_of(layout);
+  std::size_t place = 0;
+  for (int c = 0; c < layout.components; c++)
+    for (int y = 0; y < layout.height; y++, place += std::size_t(layout.width))
+      use(place, data + c * strides.component + y * strides.row, strides.pixel);
+}
+
+/// Checks a layout. Fails with ErrorKind::usage, naming the plane, on no pixels or too many, no components, an unknown
+/// type, or strides by which values share bytes.
+void check_layout(const std::string& name, const alcove_layout& layout) {
+  if (layout.width < 1 || layout.height < 1 || layout.width > kMostSide || layout.height > kMostSide)
+    fail(ErrorKind::usage, "{}: a plane of {} x {} pixels", name, layout.width, layout.height);
+  if (layout.components < 1 || layout.components > kMostComponents)
+    fail(ErrorKind::usage, "{}: a plane of {} components", name, layout.components);
+  constexpr std::int64_t kMostValues = std::int64_t(1) << 32;  // more than a buffer of any device holds
+  if (std::int64_t(layout.width) * layout.height > kMostValues / layout.components)
+    fail(ErrorKind::usage, "{}: a plane of {} x {} x {} values, more than any device takes", name, layout.width,
+         layout.height, layout.components);
+  if (layout.type != ALCOVE_FLOAT && layout.type != ALCOVE_HALF)
+    fail(ErrorKind::usage, "{}: a plane of type {}, which is neither ALCOVE_FLOAT nor ALCOVE_HALF", name, layout.type);
+  const auto is_endless = [](std::ptrdiff_t stride) { return stride < -kMostStride || stride > kMostStride; };
+  if (is_endless(layout.component_stride) || is_endless(layout.pixel_stride) || is_endless(strides_of(layout).row))
+    fail(ErrorKind::usage,
+         "{}: strides of {}, {} and {} bytes from component, pixel and row to the next: beyond memory", name,
+         layout.component_stride, layout.pixel_stride, layout.row_stride);
+  // From the shortest stride on, each must reach beyond all that lies within it.
+  const Strides strides = strides_of(layout);
+  std::array<std::pair<std::int64_t, int>, 3> steps{
+      std::pair<std::int64_t, int>{std::abs(strides.component), layout.components},
+      {std::abs(strides.pixel), layout.width},
+      {std::abs(strides.row), layout.height}};
+  std::ranges::sort(steps);
+  auto extent = std::int64_t(bytes_of(layout.type));
+  for (const auto& [stride, count] : steps) {
+    if (count > 1 && stride < extent)
+      fail(ErrorKind::usage, "{}: a stride of {} bytes over values of {} bytes: strides are in bytes, 0 is packed",
+           name, stride, extent);
+    extent += stride * (count - 1);
+  }
+}
+
+/// Copies the caller's values. The layout must have been checked.
+std::vector<float> planes_from(const void* data, const alcove_layout& layout) {
+  const auto width = std::size_t(layout.width);
+  std::vector<float> planes(width * std::size_t(layout.height) * std::size_t(layout.components));
+  for_rows(static_cast<const std::byte*>(data), layout,
+           [&](std::size_t place, const std::byte* from, std::ptrdiff_t stride) {
+             for (std::size_t x = 0; x < width; x++) {
+               const std::byte* const at = from + std::ptrdiff_t(x) * stride;
+               std::uint16_t half = 0;
+               if (layout.type == ALCOVE_FLOAT)
+                 std::memcpy(&planes[place + x], at, sizeof(float));
+               else
+                 std::memcpy(&half, at, sizeof half), planes[place + x] = from_half(half);
+             }
+           });
+  return planes;
+}
+
+/// Copies as many planes as the layout has components into the caller's memory; half floats are rounded to the nearest,
+/// to even.
+void planes_to(std::span<const float> planes, void* data, const alcove_layout& layout) {
+  const auto width = std::size_t(layout.width);
+  for_rows(static_cast<std::byte*>(data), layout, [&](std::size_t place, std::byte* to, std::ptrdiff_t stride) {
+    for (std::size_t x = 0; x < width; x++) {
+      std::byte* const at = to + std::ptrdiff_t(x) * stride;
+      const float value = planes[place + x];
+      const std::uint16_t half = layout.type == ALCOVE_FLOAT ? std::uint16_t(0) : to_half(value);
+      if (layout.type == ALCOVE_FLOAT)
+        std::memcpy(at, &value, sizeof value);
+      else
+        std::memcpy(at, &half, sizeof half);
+    }
+  });
+}
+
+// Names.
 
 /// Values in 0 to 1 throughout are 0.5 + 0.5 n, as they are where frames are read from files.
 bool is_unorm(const std::vector<float>& values) {
@@ -45,6 +155,10 @@ constexpr PlaneFacts kPlanes[] = {
     {"albedo", 3, 3, RawPlane::albedo, &InputSettings::albedo},
 };
 
+bool is_plane(std::string_view name) {
+  return std::ranges::find(kPlanes, name, &PlaneFacts::name) != std::end(kPlanes);
+}
+
 const PlaneFacts& facts_of_plane(const std::string& name) {
   std::vector<std::string> names;
   for (const auto& facts : kPlanes) {
@@ -68,10 +182,135 @@ const SettingRow& row_of(const std::string& option) {
   fail(ErrorKind::usage, "{} is not available in the library", key);
 }
 
+// Sentences of the core, which call an option --KEY or --set KEY=VALUE, in the library's words.
+
+/// An option in a sentence.
+struct Mention {
+  std::size_t size;   // of the sentence's own spelling
+  std::string words;  // the library's
+};
+
+bool is_parameter(const SettingRow& row) {
+  return row.in_library || is_plane(row.key()) || row.key() == "camera" || row.key() == "preset";
+}
+
+/// The option that `text` begins with. Other words with dashes are the caller's own.
+std::optional<Mention> mention_at(std::string_view text) {
+  constexpr std::string_view kOption = "--", kSet = "--set ", kOfKeys = "abcdefghijklmnopqrstuvwxyz-";
+  if (!text.starts_with(kOption)) return std::nullopt;
+  std::string_view rest = text.substr((text.starts_with(kSet) ? kSet : kOption).size());
+  const std::string_view key = rest.substr(0, rest.find_first_not_of(kOfKeys));
+  const auto row = std::ranges::find(option_table(), key, &SettingRow::key);
+  if (row == option_table().end()) return std::nullopt;
+  rest.remove_prefix(key.size());
+  const bool has_value = rest.starts_with('=');
+  return Mention{text.size() - rest.size() + has_value,
+                 fmt::format("'{}'{}{}", key, is_parameter(*row) ? "" : " (not in the library)", has_value ? " " : "")};
+}
+
+// The pixels are asked, as for frames from files; nothing is guessed, since whoever has planes knows what they are.
+
+constexpr double kUnit = 0.9, kFew = 0.5;  // shares of normals of unit length that tell an encoding
+constexpr std::size_t kStep = 16;          // one pixel of so many is looked at
+
+/// Refuses values that are no depth of their kind at all.
+void check_depth(const Reading& reading, std::span<const float> depth) {
+  const auto is_surface = [&](float z) { return z > 0 && z < reading.sky; };
+  const auto is_negative = [](float z) { return std::isfinite(z) && z < 0; };
+  if (is_distance(reading.depth_kind) && std::ranges::none_of(depth, is_surface) &&
+      std::ranges::any_of(depth, is_negative))
+    fail(ErrorKind::input, "depth: all surfaces have negative values: distances are positive, so give -depth");
+  const auto is_fraction = [](float z) { return z > -1 && z < 1 && z != 0; };
+  const auto is_beyond = [](float z) { return std::isfinite(z) && z > 1; };
+  if (is_between_planes(reading.depth_kind) && std::ranges::none_of(depth, is_fraction) &&
+      std::ranges::any_of(depth, is_beyond))
+    fail(ErrorKind::input,
+         "depth: {} depth lies within 0 to 1, and no value does: divide integers by their largest one",
+         word_of(reading.depth_kind));
+}
+
+std::string text_of(const NormalScore& score) {
+  const std::string flips = to_string(score.flips);
+  return fmt::format("--normal-space {}{} ({:.0f} % agree)", word_of(score.space),
+                     flips == "none" ? "" : " with --flip-normal " + flips, 100 * score.agreement);
+}
+
+void check_normals(const Reading& reading, const HostPlanes& planes, Notes& notes) {
+  const auto normal = planes[RawPlane::normal], depth = planes[RawPlane::depth];
+  const DepthMap map = depth_map_of(reading);
+  const bool has_vectors = normal.size() == 3 * reading.data.pixels() &&
+                           reading.normal_encoding != NormalEncoding::octahedral &&
+                           reading.normal_encoding != NormalEncoding::spheremap;
+  const NormalStatistics lengths = normal_statistics(normal, depth, map, kStep);
+  if (has_vectors && !reading.normal_unorm && lengths.unorm_unit_share > kUnit && lengths.unit_share < kFew)
+    fail(ErrorKind::input, "normal: 2 n - 1 is of unit length on {:.0f} %, and n is not: set --normal-encoding unorm",
+         100 * lengths.unorm_unit_share);
+  if (has_vectors && reading.normal_unorm && lengths.unit_share > kUnit && lengths.unorm_unit_share < kFew)
+    fail(ErrorKind::input, "normal: n is of unit length on {:.0f} %, and 2 n - 1 is not: set --normal-encoding signed",
+         100 * lengths.unit_share);
+  if (lacks_sign(normal.size() / reading.data.pixels(), reading.normal_encoding) &&
+      reading.normal_space == NormalSpace::world)
+    fail(ErrorKind::input,
+         "normal: two components do not tell the sign of z in world space: give three, or set --normal-space view, or "
+         "--normal-encoding octahedral or spheremap");
+  const auto scores = score_normals({reading, normal, depth});
+  const NormalScore* chosen = score_of(scores, reading.normal_space, reading.flip_normal);
+  if (!chosen || chosen->agreement >= kLeastAgreement) return;
+  const std::string said =
+      fmt::format("normal: {:.0f} % agree with depth, in {} space", 100 * chosen->agreement, word_of(chosen->space));
+  if (scores[0].clearly_beats(*chosen)) fail(ErrorKind::input, "{}; better fits {}", said, text_of(scores[0]));
+  const auto turned = best_turned_camera({reading, normal, depth}, *chosen);
+  if (turned && turned->score.clearly_beats(*chosen))
+    fail(ErrorKind::input, "{}; {}, then {:.0f} % agree", said, turned->what, 100 * turned->score.agreement);
+  const std::string check = "check --normal-space, --normal-encoding and the camera";
+  if (chosen->explained() < kUsable && !reading.depth_is_half)
+    fail(ErrorKind::input, "{}, and no more in another space: {}; without the plane, normals are those of depth", said,
+         check);
+  notes.push_back({NoteCode::normals_disagree, said + ": " + check});
+}
+
+/// Looks at the pixels as at those of files, and takes down in `reading` what they show. Fails with ErrorKind::input if
+/// depth cannot be of its kind or is too coarse for AO, if positions do not lie on the rays of their pixels, and if the
+/// normals, by their reading, are not those of the depth; with ErrorKind::usage on options that have no effect on depth
+/// of its kind. Gives sentences about doubts.
+Notes check_planes(Reading& reading, const HostPlanes& planes, const InputSettings& settings) {
+  const auto depth = planes[RawPlane::depth], normal = planes[RawPlane::normal];
+  const std::string name = reading.depth_kind == DepthKind::position ? "position" : "depth";
+  check_depth(reading, depth);
+  const RawPart raw{reading.data, depth, normal};
+  Notes notes;
+  Evidence seen;
+  DepthFacts said;
+  said.program.rules = &input_rules("generic");
+  said.said_by = "--depth-kind, the camera or default";
+  seen.grain = measure_rounding(reading, raw.window, depth, name);
+  settle_depth({reading, notes, settings, raw, seen, name}, said);
+  // Coarse disparity has been held against them for its shift, which is all that it can tell.
+  if (!normal.empty() && !seen.space_by_shift) check_normals(reading, planes, notes);
+  add_new(notes, detected(findings_of(reading, raw, seen, name, true)));
+  measure_levels(reading, depth);
+  return notes;
+}
+
+/// Gives sentences about radii that do not suit the depth.
+Notes check_radius(const Reading& reading, std::span<const float> depth, const EstimatorSettings& settings) {
+  if (!settings.radius) return {};
+  DepthSample sample;
+  sample.add(view_of(reading, reading.data), depth_map_of(reading), depth_precision_of(reading), depth);
+  const auto radii = radii_of(settings);
+  return sample.notes(radii.front(), radii.back(), reading.data.width, reading.data.height);
+}
+
 }  // namespace
 
-bool is_plane(std::string_view name) {
-  return std::ranges::find(kPlanes, name, &PlaneFacts::name) != std::end(kPlanes);
+std::string in_library_words(std::string_view sentence) {
+  std::string text;
+  while (!sentence.empty()) {
+    const auto mention = mention_at(sentence);
+    text += mention ? mention->words : std::string(1, sentence.front());
+    sentence.remove_prefix(mention ? mention->size : 1);
+  }
+  return text;
 }
 
 void Session::set(const std::string& option, const char* value) {

@@ -24,34 +24,9 @@
 
 namespace alcove {
 
-// Conversion between the caller's planes, of any layout, and ours, one component behind the other.
-
-/// Checks a layout. Fails with ErrorKind::usage, naming the plane, on no pixels or too many, no components, an unknown
-/// type, or strides by which values share bytes.
-void check_layout(const std::string& name, const alcove_layout& layout);
-
-/// Copies the caller's values. The layout must have been checked.
-std::vector<float> planes_from(const void* data, const alcove_layout& layout);
-
-/// Copies as many planes as the layout has components into the caller's memory; half floats are rounded to the nearest,
-/// to even.
-void planes_to(std::span<const float> planes, void* data, const alcove_layout& layout);
-
-/// Whether a plane has that name.
-bool is_plane(std::string_view name);
-
 /// The sentence with 'key' for each option --key: the core writes for the command line. Options that the library does
 /// not take are marked.
 std::string in_library_words(std::string_view sentence);
-
-/// Looks at the pixels as at those of files, and takes down in `reading` what they show. Fails with ErrorKind::input if
-/// depth cannot be of its kind or is too coarse for AO, if positions do not lie on the rays of their pixels, and if the
-/// normals, by their reading, are not those of the depth; with ErrorKind::usage on options that have no effect on depth
-/// of its kind. Gives sentences about doubts.
-Notes check_planes(Reading& reading, const HostPlanes& planes, const InputSettings& settings);
-
-/// Gives sentences about radii that do not suit the depth.
-Notes check_radius(const Reading& reading, std::span<const float> depth, const EstimatorSettings& settings);
 
 /// A session behind the C functions, which api/alcove/alcove.h describes. Failures are an Error.
 class Session {

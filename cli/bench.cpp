@@ -1,15 +1,10 @@
 // `alcove bench SUITE.toml`: run time against error, as a table, JSON, CSV and a page.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench/bench.h"
-#include "core/bench/stability.h"
-
-#include <algorithm>
-
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "cli/parsing.h"
-#include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/bench/stability.h"
 #include "core/gpu/device.h"
 #include "core/options/option_files.h"
 #include "core/options/options.h"
@@ -148,8 +143,8 @@ void print_table(const BenchReport& report) {
     const auto number = [](std::optional<double> value) { return value ? fmt::format("{:.4f}", *value) : "-"; };
     fmt::print("{:<14} {:<24} {:>9.2f} {:>7} {:>8.4f} {:>+8.4f} {:>8.4f} {:>8} {:>8} {:>9} {:>9}\n", row.frame,
                row.candidate, row.ms, frame.yardstick_ms ? fmt::format("{:.2f}", row.ms / *frame.yardstick_ms) : "-",
-               row.rmse, row.bias, row.p99, number(row.grain), number(row.mottle), number(row.estimator_rmse),
-               number(row.geometry_rmse));
+               row.errors.rmse, row.errors.bias, row.errors.p99, number(row.grain), number(row.mottle),
+               number(row.estimator_rmse), number(row.geometry_rmse));
   }
 }
 

@@ -3,15 +3,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/compare.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "cli/commands.h"
-#include "cli/parsing.h"
-#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/frame_list.h"
 #include "core/base/text.h"

@@ -1,14 +1,10 @@
 // `alcove inspect INPUT [--json] [-v] [--preview FILE.png] [--write-camera FILE.json] [input options of run]`: what a
 // frame holds and how it would be read.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
 #include <map>
-#include <utility>
 
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/formats/sequence.h"
 #include "core/frame/find/environment.h"

@@ -1,17 +1,8 @@
 // Picks the subcommand, catches errors once, returns the exit code.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cstdio>
 #include <new>
-#include <string>
-#include <vector>
 
 #include "cli/commands.h"
-#include "cli/generate.h"
-#include "cli/parsing.h"
-#include "core/base/error.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"

@@ -2,18 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/options.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <filesystem>
-#include <functional>
 
 #include "cli/commands.h"
-#include "cli/parsing.h"
-#include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/formats/sequence.h"
-#include "core/options/option_files.h"
 
 namespace alcove {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/parsing.h"
+#include "cli/commands.h"
 #include "core/inspect/inspect.h"
 #include "core/options/options.h"
 

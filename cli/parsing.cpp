@@ -1,16 +1,13 @@
 // CLI11 finds the words that belong to each option, and the rows read them. Its complaints are put into our words.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/parsing.h"
+#include "cli/commands.h"
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <regex>
 #include <string_view>
 
-#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
 #include "core/options/options.h"
@@ -18,6 +15,9 @@
 
 namespace alcove {
 namespace {
+
+/// Behind a message: where the options of the command stand.
+std::string see_help(const std::string& command) { return fmt::format("; see {} --help", command); }
 
 constexpr int kHelpColumn = 34;  // where the sentences begin
 
@@ -137,8 +137,6 @@ void print_help(const Command& command, bool shows_all) {
 }  // namespace
 
 bool has_common_rows(const Command& command) { return std::ranges::any_of(command.rows, &OptionRow::is_common); }
-
-std::string see_help(const std::string& command) { return fmt::format("; see {} --help", command); }
 
 std::optional<std::vector<TypedOption>> typed_options(const Command& command,
                                                       const std::vector<std::string>& arguments) {

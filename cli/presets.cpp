@@ -1,6 +1,5 @@
 // Where presets lie and what they say; `alcove presets` lists them, or prints one.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -9,8 +8,6 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "cli/parsing.h"
-#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/flat_toml.h"
 #include "core/base/system.h"

@@ -9,12 +9,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <utility>
 
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "core/base/error.h"
-#include "core/base/system.h"
 #include "core/base/text.h"
 
 namespace alcove {

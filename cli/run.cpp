@@ -1,7 +1,5 @@
 // `alcove run`: options in, frames out, one line of summary.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <filesystem>

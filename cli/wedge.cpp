@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/wedge/wedge.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <set>
 
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/formats/sequence.h"

@@ -1,6 +1,13 @@
 // Alcove as a C library: ambient occlusion of one frame, from planes in memory and into planes in memory.
 // SPDX-License-Identifier: BSD-3-Clause
 //
+//     alcove_session *ao = alcove_new();
+//     alcove_layout one = {1920, 1080, 1, ALCOVE_FLOAT, 0, 0, 0};
+//     alcove_set(ao, "radius", "0.5");
+//     alcove_set(ao, "fov", "40");
+//     alcove_plane(ao, "depth", depth, &one);
+//     if (alcove_run(ao, 0) || alcove_get(ao, "ao", result, &one)) fprintf(stderr, "%s\n", alcove_error(ao));
+//     alcove_free(ao);
 //
 // The library reads no files except presets, which are compiled in, and writes none; drivers keep compiled kernels in
 // caches of their own. It leaves locale, environment and signals alone, and prints nothing unless "validate" asks for
@@ -66,6 +73,16 @@ ALCOVE_API alcove_code alcove_set(alcove_session* handle, const char* option, co
 ALCOVE_API alcove_code alcove_preset(alcove_session* handle, const char* name);
 
 // Sets a plane, which is copied. All planes of a frame have one size. Null data removes the plane. Names:
+//   depth        1 component, of depth-kind, planar by default; distances above 0, other kinds within 0 to 1. Integers
+//                must be converted: 16 bits are few for distances, and 8 bits are refused
+//   position     3, instead of a depth; in position-space, which must be set if the camera has a position
+//   normal       3, or 2 by normal-encoding, signed by default; in normal-space, which must be set unless the
+//                camera has no position or a camera file says it; without this plane, normals come from depth
+//   behind       1, depth behind the first surface, of behind-kind; each call adds one, at most 8
+//   material-ao  1, multiplied in
+//   matte        1, 0 to 1: where AO is wanted
+//   occluders    1, 0 to 1: only these block;  ignore: these do not
+//   albedo       3, for multi-bounce with ao-channels rgb
 ALCOVE_API alcove_code alcove_plane(alcove_session* handle, const char* name, const void* data,
                                     const alcove_layout* layout);
 

@@ -1,4 +1,4 @@
-// Measuring: interleaved timing, errors and their two parts.
+// Suites from TOML; interleaved timing, errors and their two parts; the report as JSON, as CSV and as a page.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench/bench.h"
 
@@ -6,13 +6,17 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <tuple>
 
-#include "core/base/error.h"
-#include "core/base/option_words.h"
+#include "core/base/frame_list.h"
+#include "core/base/ranks.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/chain/chain.h"
@@ -22,9 +26,124 @@
 #include "core/frame/find/frame_source.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/gpu/recorder.h"
-#include "core/measure/metrics.h"
+#include "core/measure/report.h"
 
 namespace alcove {
+
+// Suites.
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A TOML value as an option's argument.
+std::string argument_of(const TomlTable& table, std::string_view key, const toml::node& node) {
+  if (const auto text = node.value_exact<std::string>()) return *text;
+  if (const auto number = node.value_exact<std::int64_t>()) return fmt::format("{}", *number);
+  if (const auto number = node.value_exact<double>()) return fmt::format("{}", *number);
+  if (const auto flag = node.value_exact<bool>(); flag && *flag) return "true";
+  table.refuse(key, "must be a string, a number or true");
+}
+
+SuiteFrame frame_of(const ListedFrame& listed, const std::string& path) {
+  const auto require = [&](bool is_there, const char* key) {
+    if (!is_there) fail(ErrorKind::input, "{}: frame {} has no \"{}\"", path, listed.name, key);
+  };
+  require(!listed.camera.empty(), "camera");
+  require(listed.radius.has_value(), "radius");
+  require(!listed.truth.empty(), "truth");
+  // Suites of before lists were those of compare, too, have it as "reference".
+  const bool is_old = listed.cpu_reference.empty() && listed.reference.size() == 1;
+  const std::string& kept = is_old ? listed.reference.front() : listed.cpu_reference;
+  return {listed.name, listed.input, listed.camera, *listed.radius, listed.truth, kept};
+}
+
+/// A setting as alcove run takes it.
+std::string argument(const std::string& key, const std::string& value) {
+  return key == "preset" ? "--preset=" + value : fmt::format("--set={}={}", key, value);
+}
+
+SuiteCandidate candidate_of(const TomlTable& table) {
+  SuiteCandidate candidate{table.text("name"), {}};
+  for (const auto& [key, value] : table.values)
+    if (key.str() != "name") {
+      candidate.arguments.push_back(argument(std::string(key.str()), argument_of(table, key.str(), value)));
+    }
+  return candidate;
+}
+
+/// One candidate for every combination of the listed values, named by them.
+std::vector<SuiteCandidate> candidates_of_sweep(const TomlTable& table) {
+  std::vector<SuiteCandidate> candidates(1);
+  for (const auto& [key, value] : table.values) {
+    std::vector<std::string> choices;
+    if (const auto* list = value.as_array())
+      for (const auto& entry : *list) choices.push_back(argument_of(table, key.str(), entry));
+    else
+      choices.push_back(argument_of(table, key.str(), value));
+    if (choices.empty()) table.refuse(key.str(), "must not be empty");
+    std::vector<SuiteCandidate> longer;
+    for (const auto& candidate : candidates)
+      for (const auto& choice : choices) {
+        longer.push_back(candidate);
+        longer.back().name += fmt::format("{}{} {}", candidate.name.empty() ? "" : ", ", key.str(), choice);
+        longer.back().arguments.push_back(argument(std::string(key.str()), choice));
+      }
+    candidates = std::move(longer);
+  }
+  return candidates;
+}
+
+}  // namespace
+
+Suite read_suite(const std::string& path, const std::string& data) {
+  const toml::table root = read_toml(path, "suite", "SUITE");
+  const TomlTable top{path, "the suite", root};
+  Suite suite;
+  suite.title = top.text("title");
+  suite.repeats = top.count("repeats", suite.repeats, 1);
+  suite.reference_slices = top.count("reference-slices", suite.reference_slices, 0);
+  for (const auto& frame : frames_in(root, path, data.empty() ? fs::path(path).parent_path().string() : data))
+    suite.frames.push_back(frame_of(frame, path));
+  for_each_table(path, root, "candidate",
+                 [&](const TomlTable& table) { suite.candidates.push_back(candidate_of(table)); });
+  for_each_table(path, root, "sweep", [&](const TomlTable& table) {
+    for (auto& candidate : candidates_of_sweep(table)) suite.candidates.push_back(std::move(candidate));
+  });
+  require_unique_names(path, suite.candidates, "candidate");
+  return suite;
+}
+
+std::vector<Limit> read_limits(const std::string& path) {
+  const toml::table root = read_toml(path, "limits", "--limits");
+  TomlTable{path, "the limits", root}.require_keys({"limit"});
+  std::vector<Limit> limits;
+  for_each_table(path, root, "limit", [&](const TomlTable& table) {
+    const std::set<std::string> measures = {"rmse", "mae", "p99", "bias", "grain", "mottle", "estimator-rmse"};
+    auto known = measures;
+    known.insert({"frame", "candidate"});
+    table.require_keys(known);
+    for (const auto& measure : measures)
+      if (table.values.contains(measure))
+        limits.push_back({table.text("frame"), table.text("candidate"), measure, table.positive(measure)});
+  });
+  if (limits.empty()) fail(ErrorKind::input, "{}: there is no [[limit]] with a measure (--limits)", path);
+  return limits;
+}
+
+void require_known(const std::vector<Limit>& limits, const Suite& suite, const std::string& path) {
+  std::vector<std::string> frames, candidates;
+  std::ranges::transform(suite.frames, std::back_inserter(frames), &SuiteFrame::name);
+  std::ranges::transform(suite.candidates, std::back_inserter(candidates), &SuiteCandidate::name);
+  for (const auto& limit : limits) {
+    if (limit.measure == "estimator-rmse" && suite.reference_slices == 0)
+      fail(ErrorKind::usage, "{}: a limit for estimator-rmse needs --reference-slices above 0 (--limits)", path);
+    for (const auto& [what, name, names] :
+         {std::tuple("frame", &limit.frame, &frames), {"candidate", &limit.candidate, &candidates}})
+      if (std::ranges::find(*names, *name) == names->end())
+        fail(ErrorKind::input, "{}: the suite has no {} {}{} (--limits)", path, what, *name, suggestion(*name, *names));
+  }
+}
 
 // References in EXR files: one channel, and the settings as an attribute.
 
@@ -119,11 +238,6 @@ EstimatorSettings settings_for(const BenchCandidate& candidate, const SuiteFrame
   return settings;
 }
 
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
 /// The timings of one candidate on one frame, run by run.
 struct Timings {
   std::vector<std::vector<gpu::PassTime>> runs;
@@ -135,14 +249,14 @@ struct Timings {
       for (const auto& pass : run) total += pass.ms;
       totals.push_back(total);
     }
-    row.ms = median(totals);
+    row.ms = median_of(totals);
     const auto [least, most] = std::ranges::minmax(totals);
     row.ms_min = least;
     row.ms_max = most;
     for (std::size_t pass = 0; pass < runs[0].size(); pass++) {
       std::vector<double> times;
       for (const auto& run : runs) times.push_back(run[pass].ms);
-      row.passes.push_back({runs[0][pass].name, median(times), *std::ranges::min_element(times),
+      row.passes.push_back({runs[0][pass].name, median_of(times), *std::ranges::min_element(times),
                             runs[0][pass].bytes_read, runs[0][pass].bytes_written});
     }
   }
@@ -182,8 +296,7 @@ class References {
   const std::vector<float>& of_one_radius(const EstimatorSettings& settings) {
     ReferenceSettings wanted = reference_settings_of(settings, !frame_.host.behind.empty());
     wanted.slices = slices_;
-    auto& reference = made_[{wanted.radius, wanted.falloff, wanted.falloff_start, wanted.thickness,
-                             wanted.thickness_length, wanted.bias, wanted.complete, wanted.hidden}];
+    auto& reference = made_[fmt::format("{} hidden {}", text_of(wanted), wanted.hidden)];
     if (reference.empty() && !kept_.empty()) reference = read_kept_reference(kept_, wanted, frame_.host.data);
     if (reference.empty()) reference = reference_ao(frame_.host, wanted);
     return reference;
@@ -192,8 +305,7 @@ class References {
   const LoadedFrame& frame_;
   int slices_;
   std::string kept_;
-  std::map<std::tuple<double, Falloff, double, ThicknessRule, double, double, Completion, int>, std::vector<float>>
-      made_;
+  std::map<std::string, std::vector<float>> made_;
 };
 
 /// Empty where there is one truth.
@@ -224,11 +336,7 @@ std::optional<double> mottle_of(gpu::Recorder& gpu, const LoadedFrame& frame, Es
 }
 
 void measure(BenchRow& row, const LoadedFrame& frame, const EstimatorSettings& settings, References* references) {
-  const PlaneErrors errors = against_truth(row.ao, frame);
-  row.rmse = errors.rmse;
-  row.mae = errors.mae;
-  row.bias = errors.bias;
-  row.p99 = errors.p99;
+  row.errors = against_truth(row.ao, frame);
   row.grain = grain_of(row, frame);
   if (!references) return;
   const auto reference = references->of(settings);
@@ -258,7 +366,7 @@ BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector
         if (round > 0) timings[c].runs.push_back(gpu.passes());
       }
     }
-    if (!yardsticks.empty()) described.yardstick_ms = median(yardsticks);
+    if (!yardsticks.empty()) described.yardstick_ms = median_of(yardsticks);
     if (options.say && suite.reference_slices) options.say(fmt::format("{}: CPU reference", frame.name));
     References references(loaded, suite.reference_slices, frame.reference);
     for (std::size_t c = 0; c < candidates.size(); c++) {
@@ -280,6 +388,160 @@ BenchReport run_bench(gpu::Device& device, const Suite& suite, const std::vector
     report.frames.push_back(std::move(described));
   }
   return report;
+}
+
+// Reports.
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
+
+Json to_json(const BenchRow& row) {
+  Json passes = Json::array();
+  for (const auto& pass : row.passes)
+    passes.push_back({{"name", pass.name},
+                      {"ms", pass.ms},
+                      {"ms_min", pass.ms_min},
+                      {"bytes_read", pass.bytes_read},
+                      {"bytes_written", pass.bytes_written}});
+  return {{"frame", row.frame},
+          {"candidate", row.candidate},
+          {"ms", row.ms},
+          {"ms_min", row.ms_min},
+          {"ms_max", row.ms_max},
+          {"samples_per_pixel", row.samples_per_pixel},
+          {"rmse", row.errors.rmse},
+          {"mae", row.errors.mae},
+          {"bias", row.errors.bias},
+          {"p99", row.errors.p99},
+          {"grain", number(row.grain)},
+          {"mottle", number(row.mottle)},
+          {"estimator_rmse", number(row.estimator_rmse)},
+          {"geometry_rmse", number(row.geometry_rmse)},
+          {"passes", passes}};
+}
+
+/// A candidate's mean over the frames that have the measure; null where none has.
+Json mean_of(const Json& rows, const std::string& candidate, const char* measure) {
+  double sum = 0;
+  int count = 0;
+  for (const auto& row : rows) {
+    if (row["candidate"] != candidate || row[measure].is_null()) continue;
+    sum += double(row[measure]);
+    count++;
+  }
+  return count ? Json(sum / count) : Json(nullptr);
+}
+
+/// A candidate's means over the frames.
+Json to_json(const BenchCandidate& candidate, const Json& rows) {
+  Json json = {{"name", candidate.name}, {"settings", candidate.settings_text}};
+  for (const char* measure : {"ms", "ms_min", "samples_per_pixel", "rmse", "mae", "bias", "p99", "grain", "mottle"})
+    json[measure] = mean_of(rows, candidate.name, measure);
+  return json;
+}
+
+Json to_json(const BenchReport& report) {
+  Json frames = Json::array(), candidates = Json::array(), rows = Json::array();
+  for (const auto& frame : report.frames)
+    frames.push_back({{"name", frame.name},
+                      {"width", frame.width},
+                      {"height", frame.height},
+                      {"yardstick_ms", number(frame.yardstick_ms)}});
+  for (const auto& row : report.rows) rows.push_back(to_json(row));
+  for (const auto& candidate : report.candidates) candidates.push_back(to_json(candidate, rows));
+  return {{"title", report.title}, {"device", report.device},  {"repeats", report.repeats},
+          {"frames", frames},      {"candidates", candidates}, {"rows", rows}};
+}
+
+/// A CSV field: quoted where it must be.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == text.npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+/// `lack` says what a frame without the measure does not show.
+double measured(const BenchRow& row, const std::string& measure, std::optional<double> value, const char* lack) {
+  if (!value)
+    fail(ErrorKind::input, "{} on {}: {} has a limit and cannot be measured: the frame shows no {} (--limits)",
+         row.candidate, row.frame, measure, lack);
+  return *value;
+}
+
+double measured(const BenchRow& row, const std::string& measure) {
+  if (measure == "rmse") return row.errors.rmse;
+  if (measure == "mae") return row.errors.mae;
+  if (measure == "p99") return row.errors.p99;
+  if (measure == "bias") return std::abs(row.errors.bias);
+  if (measure == "grain") return measured(row, measure, row.grain, "15 x 15 pixels of one plane");
+  if (measure == "mottle") return measured(row, measure, row.mottle, "smooth surface in half shadow");
+  return row.estimator_rmse.value();  // require_known() has seen to it
+}
+
+}  // namespace
+
+std::string bench_json(const BenchReport& report) { return json_text(to_json(report), 1) + "\n"; }
+
+std::string bench_csv(const BenchReport& report) {
+  std::string text =
+      "frame,candidate,ms,ms_min,ms_max,yardsticks,samples_per_pixel,rmse,mae,bias,p99,estimator_rmse,geometry_rmse,"
+      "bytes_read,bytes_written,grain,mottle\n";
+  const auto optional = [](std::optional<double> value) { return value ? fmt::format("{}", *value) : ""; };
+  for (const auto& row : report.rows) {
+    const auto& frame = *std::ranges::find(report.frames, row.frame, &BenchFrame::name);
+    std::uint64_t read = 0, written = 0;
+    for (const auto& pass : row.passes) {
+      read += pass.bytes_read;
+      written += pass.bytes_written;
+    }
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", field(row.frame), field(row.candidate),
+                    row.ms, row.ms_min, row.ms_max,
+                    frame.yardstick_ms ? fmt::format("{}", row.ms / *frame.yardstick_ms) : "", row.samples_per_pixel,
+                    row.errors.rmse, row.errors.mae, row.errors.bias, row.errors.p99, optional(row.estimator_rmse),
+                    optional(row.geometry_rmse), read, written, optional(row.grain), optional(row.mottle));
+  }
+  return text;
+}
+
+std::string bench_page(const BenchReport& report) {
+  Json page = to_json(report);
+  page["kind"] = "bench";
+  double yardsticks = 0;
+  for (const auto& frame : report.frames) yardsticks += frame.yardstick_ms.value_or(NAN) / double(report.frames.size());
+  page["yardstick_ms"] = number(yardsticks);
+  for (auto& row : page["rows"]) row.erase("passes");
+  Json images = Json::array();
+  for (const auto& row : report.rows) {
+    const auto& frame = *std::ranges::find(report.frames, row.frame, &BenchFrame::name);
+    const bool first = row.candidate == report.candidates.front().name;
+    images.push_back({{"frame", row.frame},
+                      {"candidate", row.candidate},
+                      {"width", frame.width},
+                      {"height", frame.height},
+                      {"result", picture_url(frame.width, frame.height, 1, row.ao)},
+                      {"truth", first ? Json(picture_url(frame.width, frame.height, 1, frame.truth)) : Json(nullptr)},
+                      {"error", url_of_png(error_png(frame.width, frame.height, row.ao, frame.truth))}});
+  }
+  page["images"] = std::move(images);
+  return report_page(json_text(page, 1));
+}
+
+std::vector<std::string> broken_limits(const BenchReport& report, const std::vector<Limit>& limits) {
+  std::vector<std::string> broken;
+  for (const auto& limit : limits) {
+    const auto row = std::ranges::find_if(
+        report.rows, [&](const auto& r) { return r.frame == limit.frame && r.candidate == limit.candidate; });
+    const double value = measured(*row, limit.measure);
+    if (!(value <= limit.most))
+      broken.push_back(fmt::format("{} on {}: {} is {:.4f}, and may be {:.4f}", limit.candidate, limit.frame,
+                                   limit.measure, value, limit.most));
+  }
+  return broken;
 }
 
 }  // namespace alcove

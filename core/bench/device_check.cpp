@@ -9,7 +9,6 @@
 #include <string_view>
 #include <thread>
 
-#include "core/base/error.h"
 #include "core/chain/compute.h"
 
 namespace alcove {

@@ -1,16 +1,21 @@
-// A room and a step, seen in every extreme way.
+// A room and a step, seen in every extreme way; and the report as text, JSON and a page.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/bench/stability.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "core/base/text.h"
 #include "core/chain/compute.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/frame/pixels/radius.h"
+#include "core/measure/report.h"
 #include "core/reference/reference.h"
 #include "core/reference/reference_scene.h"
 
@@ -84,6 +89,12 @@ Axes axes_of_view() {
   const Vector back = normalized({3.5, -1.5, 1.8}), right = normalized(cross({0, 0, 1}, back));
   return {right, cross(back, right), back};
 }
+/// The view ray of a pixel, 1 long along the optical axis.
+Vector ray_of(const Camera& camera, const Axes& view, std::size_t pixel) {
+  const double x = (double(pixel % kWidth) + 0.5 - camera.cx) / camera.fx,
+               y = (camera.cy - double(pixel / kWidth) - 0.5) / camera.fy;
+  return x * view.right + y * view.up - view.back;
+}
 /// Gives the distance from which the room fills a picture of this field of view.
 double distance_of(double fov) { return 0.5 * kRoomWidth / std::tan(fov * std::numbers::pi / 360); }
 
@@ -94,10 +105,8 @@ HostFrame room(double fov) {
   const Axes view = axes_of_view();
   const Vector eye = kTarget + distance_of(fov) * view.back;
   for (std::size_t i = 0; i < frame.data.pixels(); i++) {
-    const double x = (double(i % kWidth) + 0.5 - frame.camera.cx) / frame.camera.fx,
-                 y = (frame.camera.cy - double(i / kWidth) - 0.5) / frame.camera.fy;
     Vector n;
-    const double z = hit_of(eye, x * view.right + y * view.up - view.back, n);
+    const double z = hit_of(eye, ray_of(frame.camera, view, i), n);
     if (std::isfinite(z)) set_pixel(frame, i, z, {dot(n, view.right), dot(n, view.up), dot(n, view.back)});
   }
   return frame;
@@ -107,8 +116,10 @@ Trial trial(const std::string& picture, const HostFrame& frame, double radius) {
   return {frame, frame, radius, radius, picture};
 }
 
+Trial in_room(double fov, double radius = kRadius) { return trial(fmt::format("room {}", fov), room(fov), radius); }
+
 Trial at_scale(double scale) {
-  Trial made = trial(fmt::format("room {}", kFov), room(kFov), kRadius);
+  Trial made = in_room(kFov);
   for (float& z : made.tried.depth) z = z < kSky ? float(z * scale) : kSky;
   made.radius *= scale;
   return made;
@@ -137,8 +148,6 @@ Trial tilted(double degrees) {
   return trial(fmt::format("tilt {}", degrees), frame, radius);
 }
 
-Trial with_radius(double radius) { return trial(fmt::format("room {}", kFov), room(kFov), radius); }
-
 /// Rounds to so many bits of mantissa.
 double rounded(double x, int bits) {
   int exponent = 0;
@@ -147,7 +156,7 @@ double rounded(double x, int bits) {
 }
 
 Trial in_half(double fov) {
-  Trial made = trial(fmt::format("room {}", fov), room(fov), kRadius);
+  Trial made = in_room(fov);
   for (float& z : made.tried.depth) z = z < 65504 ? float(rounded(z, 11)) : kSky;
   made.tried.depth_is_half = true;
   return made;
@@ -156,7 +165,7 @@ Trial in_half(double fov) {
 /// Stores the room as device depth of so many bits. The far plane is 10^5 times as far as the near plane, and the room
 /// `over_near` times.
 Trial in_bits(int bits, bool reversed, double over_near) {
-  Trial made = trial(fmt::format("room {}", kNarrowFov), room(kNarrowFov), kRadius);
+  Trial made = in_room(kNarrowFov);
   const double near = distance_of(kNarrowFov) / over_near, far = 1e5 * near, steps = std::exp2(bits) - 1;
   HostFrame& frame = made.tried;
   frame.depth_kind = DepthKind::device;
@@ -171,7 +180,7 @@ Trial in_bits(int bits, bool reversed, double over_near) {
 
 /// Stores the room as world positions, so many room widths from the origin.
 Trial far_out(double widths) {
-  Trial made = trial(fmt::format("room {}", kFov), room(kFov), kRadius);
+  Trial made = in_room(kFov);
   HostFrame& frame = made.tried;
   const Axes view = axes_of_view();
   const Vector out = widths * kRoomWidth * normalized(view.right + 0.1 * view.up),
@@ -185,19 +194,17 @@ Trial far_out(double widths) {
   for (std::size_t i = 0; i < frame.data.pixels(); i++) {
     const double z = made.exact.depth[i];
     if (z >= kSky) continue;
-    const double x = (double(i % kWidth) + 0.5 - frame.camera.cx) / frame.camera.fx,
-                 y = (frame.camera.cy - double(i / kWidth) - 0.5) / frame.camera.fy;
-    set_vector(frame.depth, i, eye + z * (x * view.right + y * view.up - view.back));
+    set_vector(frame.depth, i, eye + z * ray_of(frame.camera, view, i));
   }
   return made;
 }
 
 struct Axis {
   const char *name, *unit;
-  bool logarithmic;
   double plain;  // the value of the plain room, or what is nearest to it
   std::vector<double> values;
   std::function<Trial(double)> make;
+  bool logarithmic = true;
 };
 
 std::vector<Axis> all_axes() {
@@ -206,47 +213,38 @@ std::vector<Axis> all_axes() {
   return {
       {"depth scale",
        "scene units per unit of the room",
-       true,
        1,
        {1e-15, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e9, 1e15},
        at_scale},
-      {"depth range", "farthest over nearest depth", true, 1, {1, 10, 1e2, 1e3, 1e4, 1e5, 1e6}, before_background},
+      {"depth range", "farthest over nearest depth", 1, {1, 10, 1e2, 1e3, 1e4, 1e5, 1e6}, before_background},
       {"field of view",
        "degrees",
-       true,
        kFov,
        {0.5, 2, 10, 30, kFov, 90, 120, 150, 170},
-       [](double fov) { return trial(fmt::format("room {}", fov), room(fov), kRadius); }},
+       [](double fov) { return in_room(fov); }},
       {"radius in the scene",
        "of the median depth",
-       true,
        kRadius / depth,
        {1e-9, 1e-6, 1e-3, 1e-2, 0.05, 0.15, 0.5, 2, 10, 1e2, 1e4, 1e9},
-       [=](double r) { return with_radius(r * depth); }},
+       [=](double r) { return in_room(kFov, r * depth); }},
       {"radius in pixels",
        "px at the median depth",
-       true,
        kRadius / pixel,
        {0.25, 0.5, 1, 1.5, 2, 3, 4, 6, 8, 16, 32, 64, 128},
-       [=](double r) { return with_radius(r * pixel); }},
-      {"tilt of the surface", "degrees", false, 0, {0, 30, 60, 75, 80, 85, 88, 89, 89.9, 89.99}, tilted},
-      {"half depth",
-       "field of view of 48 pixels, degrees",
-       true,
-       kFov,
-       {0.02, 0.05, 0.15, 0.5, 1.5, 5, 15, kFov},
-       in_half},
-      {"16 bits of device depth", "median depth over near plane", true, 3, over_near,
+       [=](double r) { return in_room(kFov, r * pixel); }},
+      {"tilt of the surface", "degrees", 0, {0, 30, 60, 75, 80, 85, 88, 89, 89.9, 89.99}, tilted, false},
+      {"half depth", "field of view of 48 pixels, degrees", kFov, {0.02, 0.05, 0.15, 0.5, 1.5, 5, 15, kFov}, in_half},
+      {"16 bits of device depth", "median depth over near plane", 3, over_near,
        [](double x) { return in_bits(16, false, x); }},
-      {"16 bits of reversed depth", "median depth over near plane", true, 3, over_near,
+      {"16 bits of reversed depth", "median depth over near plane", 3, over_near,
        [](double x) { return in_bits(16, true, x); }},
-      {"24 bits of device depth", "median depth over near plane", true, 3, over_near,
+      {"24 bits of device depth", "median depth over near plane", 3, over_near,
        [](double x) { return in_bits(24, false, x); }},
-      {"24 bits of reversed depth", "median depth over near plane", true, 3, over_near,
+      {"24 bits of reversed depth", "median depth over near plane", 3, over_near,
        [](double x) { return in_bits(24, true, x); }},
-      {"float reversed depth", "median depth over near plane", true, 3, over_near,
+      {"float reversed depth", "median depth over near plane", 3, over_near,
        [](double x) { return in_bits(32, true, x); }},
-      {"world offset", "widths of the room, of position files", true, 1, {1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, far_out}};
+      {"world offset", "widths of the room, of position files", 1, {1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7}, far_out}};
 }
 
 struct Candidate {
@@ -329,16 +327,11 @@ class Bench {
 std::vector<std::size_t> breaks_of(const std::vector<double>& rmse, std::size_t plain_point, double plain) {
   const auto breaks = [&](std::size_t i) { return !(rmse[i] <= plain + kBreakdown); };
   std::vector<std::size_t> places;
-  for (std::size_t i = plain_point + 1; i-- > 0;)
-    if (breaks(i)) {
-      places.push_back(i);
-      break;
-    }
-  for (std::size_t i = plain_point + 1; i < rmse.size(); i++)
-    if (breaks(i)) {
-      places.push_back(i);
-      break;
-    }
+  std::size_t before = plain_point + 1, after = plain_point + 1;
+  while (before > 0 && !breaks(before - 1)) before--;
+  while (after < rmse.size() && !breaks(after)) after++;
+  if (before > 0) places.push_back(before - 1);
+  if (after < rmse.size()) places.push_back(after);
   return places;
 }
 
@@ -369,7 +362,7 @@ StabilityReport run_stability(gpu::Device& device, const std::function<void(cons
   for (const auto& candidate : all) report.plain.emplace_back(candidate.name, bench.rmse(at_scale(1), candidate));
   for (const Axis& axis : axes_of(part)) {
     if (say) say(fmt::format("{}: {} points", axis.name, axis.values.size()));
-    StabilityAxis& measured = report.axes.emplace_back(StabilityAxis{axis.name, axis.unit, axis.logarithmic, {}, {}});
+    StabilityAxis& measured = report.axes.emplace_back(StabilityAxis{axis.name, axis.unit, {}, {}});
     for (const auto& candidate : all) measured.curves.push_back({candidate.name, {}, {}, false});
     for (const double value : axis.values) {
       const Trial trial = axis.make(value);
@@ -386,6 +379,75 @@ StabilityReport run_stability(gpu::Device& device, const std::function<void(cons
     }
   }
   return report;
+}
+
+// Reports.
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Where the curve breaks down: values of the axis.
+std::string breaks_text(const StabilityAxis& axis, const StabilityCurve& curve) {
+  if (curve.breaks.empty()) return "-";
+  std::vector<std::string> places;
+  for (const std::size_t i : curve.breaks) places.push_back(fmt::format("{:g}", axis.points[i].at));
+  return fmt::format("{}, {}", fmt::join(places, ", "), curve.said ? "said" : "NOT said");
+}
+
+}  // namespace
+
+std::string stability_text(const StabilityReport& report) {
+  std::string text = fmt::format("{:<28} {:<16} {:>10} {}\n", "axis", "estimator", "worst", "breaks down at");
+  for (const auto& axis : report.axes)
+    for (const auto& curve : axis.curves)
+      text += fmt::format("{:<28} {:<16} {:>10.4f} {}\n", axis.name, curve.estimator, std::ranges::max(curve.rmse),
+                          breaks_text(axis, curve));
+  return text;
+}
+
+std::string stability_json(const StabilityReport& report) {
+  Json plain = Json::array(), axes = Json::array();
+  for (const auto& [estimator, rmse] : report.plain) plain.push_back({{"estimator", estimator}, {"rmse", rmse}});
+  for (const auto& axis : report.axes) {
+    Json points = Json::array(), curves = Json::array();
+    for (const auto& point : axis.points) points.push_back({{"at", point.at}, {"notes", texts_of(point.notes)}});
+    for (const auto& curve : axis.curves) {
+      Json breaks = Json::array();
+      for (const std::size_t i : curve.breaks) breaks.push_back(axis.points[i].at);
+      curves.push_back(
+          {{"estimator", curve.estimator}, {"rmse", curve.rmse}, {"breaks_at", breaks}, {"said", curve.said}});
+    }
+    axes.push_back({{"name", axis.name}, {"unit", axis.unit}, {"points", points}, {"curves", curves}});
+  }
+  return json_text({{"device", report.device}, {"breakdown", kBreakdown}, {"plain", plain}, {"axes", axes}}, 1) + "\n";
+}
+
+std::string stability_page(const StabilityReport& report) {
+  Json candidates = Json::array(), rows = Json::array();
+  for (std::size_t c = 0; c < report.plain.size(); c++) {
+    const auto& [estimator, rmse] = report.plain[c];
+    std::string settings = "breaks down along";
+    for (const auto& axis : report.axes) {
+      const StabilityCurve& curve = axis.curves[c];
+      if (!curve.breaks.empty()) settings += fmt::format(" {} at {};", axis.name, breaks_text(axis, curve));
+      for (std::size_t i = 0; i < axis.points.size(); i++)
+        rows.push_back({{"frame", fmt::format("{} {:g} {}", axis.name, axis.points[i].at, axis.unit)},
+                        {"candidate", estimator},
+                        {"rmse", curve.rmse[i]},
+                        {"warnings", axis.points[i].notes.size()},
+                        {"fails", std::ranges::find(curve.breaks, i) != curve.breaks.end()}});
+    }
+    candidates.push_back({{"name", estimator}, {"settings", settings}, {"rmse", rmse}});
+  }
+  return report_page(json_text({{"title", "stability"},
+                                {"kind", "bench"},
+                                {"device", report.device},
+                                {"yardstick_ms", nullptr},
+                                {"candidates", candidates},
+                                {"rows", rows},
+                                {"images", Json::array()}},
+                               1));
 }
 
 }  // namespace alcove

@@ -36,7 +36,6 @@ struct StabilityCurve {
 
 struct StabilityAxis {
   std::string name, unit;
-  bool logarithmic = true;
   std::vector<StabilityPoint> points;
   std::vector<StabilityCurve> curves;
 };

@@ -3,12 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
-#include "core/base/option_words.h"
 #include "core/base/text.h"
-#include "core/frame/camera/camera.h"
 #include "core/frame/pixels/radius.h"
-#include "core/frame/raw_plane.h"
 #include "core/frame/settle/settle.h"
 #include "core/inspect/inspect.h"
 

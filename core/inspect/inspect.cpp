@@ -7,13 +7,9 @@
 #include <cmath>
 #include <regex>
 
-#include "core/base/option_words.h"
 #include "core/base/ranks.h"
 #include "core/base/text.h"
-#include "core/formats/exr.h"
 #include "core/frame/find/behind.h"
-#include "core/frame/find/channels.h"
-#include "core/frame/raw_plane.h"
 #include "core/frame/settle/settle.h"
 
 namespace alcove {
@@ -407,10 +403,6 @@ CameraSearch look_for_camera(const InputSettings& settings, int frame) {
     // So is this.
   }
   return {false, "", {}};
-}
-
-Inspection inspect_frame(const InputSettings& settings, int frame) {
-  return inspect_frame(settings, frame, {.inputs = settings});
 }
 
 Inspection inspect_frame(const InputSettings& settings, int frame, const CommandNames& run) {

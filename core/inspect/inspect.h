@@ -20,7 +20,6 @@
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/reading.h"
-#include "core/inspect/light_passes.h"
 #include "core/run/plan.h"
 
 namespace alcove {
@@ -97,6 +96,17 @@ struct InspectedNormals {
   std::optional<NormalScore> chosen;              // the score of the chosen reading
 };
 
+/// Whether the light passes beside the beauty add up to it, as a composite of them needs.
+struct InspectedLight {
+  std::string renderer;              // whose passes they are by their names
+  std::string sum;                   // such as "(DiffDir + DiffInd) x DiffCol + Emit"
+  std::vector<std::string> lacking;  // passes of that renderer that the file does not hold
+  double share = 0;                  // of the beauty that the sum is, over the surfaces
+  double other_part = 0;             // of the surfaces, where the sum is another light than the beauty
+  double other_share = 1;            // of the beauty there that the sum is
+  bool adds_up = false;              // the sum is the beauty all over the surfaces, up to noise
+};
+
 /// A property that changes along a sequence.
 struct SequenceChange {
   std::string what;
@@ -169,6 +179,14 @@ const char* name_of(SampleType type);
 /// Only the frame's view and the settings' layer count, since a run finds no others.
 std::vector<HiddenGuess> hidden_guesses(const FrameSource& source, const InputSettings& settings);
 
+/// Adds up the light passes beside the beauty at some rows. `planar` is the depth over the beauty's pixels, infinite
+/// where there is no surface: a background is light of no surface. None if no renderer is known by the names of the
+/// passes, or if they cover other pixels than the depth.
+std::optional<InspectedLight> light_passes_of(FrameSource& source, std::span<const float> planar);
+
+/// The sentence on passes that do not add up.
+std::string missing_light_text(const InspectedLight& light);
+
 /// An option of a proposed run, and the words that give it: "--slices" and "--slices 8".
 struct ProposedOption {
   std::string option, words;
@@ -198,10 +216,8 @@ std::string camera_file(const std::map<int, Camera>& cameras);
 void write_contact_sheet(const Settings& settings, int frame);
 
 /// Opens the files of the settings and reads depth and normals. Faults that `run` would refuse are part of the answer;
-/// it only fails if a file's header cannot be read, with ErrorKind::input.
-Inspection inspect_frame(const InputSettings& settings, int frame);
-
-/// Inspects a frame of a sequence. The proposed command names the files of `run` instead of the frame's.
+/// it only fails if a file's header cannot be read, with ErrorKind::input. The proposed command names the files of
+/// `run`.
 Inspection inspect_frame(const InputSettings& settings, int frame, const CommandNames& run);
 
 /// The result of a search for a camera in the settings and the frame.

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <set>
 
-#include "core/base/error.h"
-#include "core/base/option_words.h"
-#include "core/frame/raw_plane.h"
 #include "core/frame/settle/settle.h"
 #include "core/inspect/inspect.h"
 
@@ -67,28 +63,16 @@ std::string reading_of(const FrameSource& source) {
   return text;
 }
 
-std::array<double, 3> eye_of(const Camera& camera) {
-  std::array<double, 3> eye{};
-  for (std::size_t axis = 0; axis < 3; axis++)
-    for (std::size_t row = 0; row < 3; row++)
-      eye[axis] -= (*camera.view_from_world)[row][axis] * camera.view_from_world_offset[row];
-  return eye;
-}
-
-double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+Vector3 eye_of(const Camera& camera) {
+  return scaled(times(transposed(*camera.view_from_world), camera.view_from_world_offset), -1);
 }
 
 /// The angle of the rotation from one camera to the other, in degrees. Its sine is by what differs between entries
 /// across the diagonal: of equal matrices that is 0, also where rounding has made them no exact rotations.
 double turn(const Camera& a, const Camera& b) {
-  const auto entry = [&](std::size_t i, std::size_t j) {
-    double sum = 0;
-    for (std::size_t k = 0; k < 3; k++) sum += (*a.view_from_world)[i][k] * (*b.view_from_world)[j][k];
-    return sum;
-  };
-  const double sine = 0.5 * std::hypot(entry(2, 1) - entry(1, 2), entry(0, 2) - entry(2, 0), entry(1, 0) - entry(0, 1));
-  const double cosine = 0.5 * (entry(0, 0) + entry(1, 1) + entry(2, 2) - 1);
+  const Matrix3 m = product(*a.view_from_world, transposed(*b.view_from_world));
+  const double sine = 0.5 * std::hypot(m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]);
+  const double cosine = 0.5 * (m[0][0] + m[1][1] + m[2][2] - 1);
   return std::atan2(sine, cosine) * kDegrees;
 }
 
@@ -98,8 +82,8 @@ constexpr double kLeastTurn = 2e-5, kLeastWay = 4e-7;
 
 /// The way from one camera to the other; 0 below what single precision can tell.
 double way(const Camera& a, const Camera& b) {
-  const auto from = eye_of(a), to = eye_of(b);
-  const double way = distance(from, to);
+  const Vector3 from = eye_of(a), path = difference(from, eye_of(b));
+  const double way = std::hypot(path[0], path[1], path[2]);
   return way > kLeastWay * std::hypot(from[0], from[1], from[2]) ? way : 0;
 }
 

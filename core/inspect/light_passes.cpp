@@ -1,6 +1,6 @@
 // The light passes of renderers by name, and their sums over blocks of pixels.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/inspect/light_passes.h"
+#include "core/inspect/inspect.h"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -12,13 +12,11 @@
 #include <utility>
 
 #include "core/base/frame_list.h"
-#include "core/base/image.h"
 #include "core/base/text.h"
 #include "core/formats/absent_frames.h"
 #include "core/formats/picture.h"
 #include "core/formats/sequence.h"
 #include "core/frame/find/frame_source.h"
-#include "core/measure/metrics.h"
 #include "core/measure/report.h"
 
 namespace alcove {
@@ -42,14 +40,10 @@ auto files_of(Settings& settings) {
                     &settings.mask,   &settings.depth,     &settings.motion};
 }
 
-std::string path_of(const std::string& path, int frame) {
-  const auto pattern = pattern_of(path);
-  return pattern ? pattern->path(frame) : path;
-}
-
 CompareSettings settings_of_frame(CompareSettings settings, int frame) {
   settings.name = std::to_string(frame);
-  for (auto* path : files_of(settings)) *path = path_of(*path, frame);
+  for (auto* path : files_of(settings))
+    if (const auto pattern = pattern_of(*path)) *path = pattern->path(frame);
   return settings;
 }
 
@@ -80,14 +74,8 @@ std::map<int, std::string> missing_frames(const CompareSettings& settings, const
 }
 
 bool is_sequence(const CompareSettings& settings) {
-  if (!settings.frames.empty()) return true;
-  for (const std::string* path : files_of(settings))
-    if (!path->empty() && pattern_of(*path)) return true;
-  return false;
-}
-
-std::string message_name(const CompareSettings& settings) {
-  return fmt::format("{} against {}", settings.result, settings.reference);
+  return !settings.frames.empty() ||
+         std::ranges::any_of(files_of(settings), [](const auto* path) { return pattern_of(*path).has_value(); });
 }
 
 /// The pixels that all files of a comparison have.
@@ -234,8 +222,9 @@ Planes read_planes_of(const CompareSettings& settings) {
   planes.is_part = common.is_part();
   for (auto* file : {&results, &references, &references_b, &depth, &mask, &motion}) file->cut(planes.data);
   planes.depth = std::move(depth.values);
-  planes.values = make_comparable(message_name(settings), planes.data.pixels(), results.values, references.values,
-                                  references_b.values, mask_of(settings, mask.values, planes.depth));
+  planes.values = make_comparable(fmt::format("{} against {}", settings.result, settings.reference),
+                                  planes.data.pixels(), results.values, references.values, references_b.values,
+                                  mask_of(settings, mask.values, planes.depth));
   if (!motion.values.empty()) {
     const auto middle = motion.values.begin() + std::ptrdiff_t(planes.data.pixels());
     planes.motion_x.assign(motion.values.begin(), middle);
@@ -271,7 +260,7 @@ double mean_flip(const Planes& planes, const std::vector<float>& reference, bool
       a[c] = planes.plane(planes.values.result, channels[c]);
       b[c] = planes.plane(reference, channels[c]);
     }
-    const auto map = (hdr ? hdr_flip : ldr_flip)(planes.data.width, planes.data.height, a, b, kFlipPixelsPerDegree);
+    const auto map = (hdr ? hdr_flip : ldr_flip)(planes.data.width, planes.data.height, a, b);
     for (std::size_t i = 0; i < map.size(); i++)
       if (planes.values.mask[i]) {
         sum += map[i];
@@ -289,15 +278,15 @@ double srgb_from_linear(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * 
 /// Makes the pictures: the first layer's colours, or without colours the first channel as grey. Scene-linear values are
 /// shown as a display would.
 ComparePictures pictures_of(const Planes& planes, const std::vector<float>& reference, bool hdr) {
-  const int width = planes.data.width, height = planes.data.height;
   const auto colors = color_layers(planes.channels);
+  const std::size_t channels = colors.empty() ? 1 : 3;
   const auto shown = [&](float x) { return hdr ? float(srgb_from_linear(x)) : x; };
   const auto picture = [&](const std::vector<float>& values) {
     std::vector<float> pixels;
     for (std::size_t i = 0; i < planes.data.pixels(); i++)
-      for (std::size_t c = 0; c < (colors.empty() ? 1 : 3); c++)
+      for (std::size_t c = 0; c < channels; c++)
         pixels.push_back(shown(planes.plane(values, colors.empty() ? 0 : colors[0][c])[i]));
-    return colors.empty() ? grey_picture(width, height, pixels) : color_picture(width, height, pixels);
+    return picture_url(planes.data.width, planes.data.height, int(channels), pixels);
   };
   return {picture(planes.values.result), picture(reference)};
 }
@@ -421,6 +410,11 @@ ErrorFrame error_frame(Planes planes) {
   return frame;
 }
 
+/// The number of a frame of a sequence, else 0.
+int number_of(const CompareReport& report, const CompareSettings& here) {
+  return report.is_sequence ? std::stoi(here.name) : 0;
+}
+
 /// Drops the pictures of the frame with the least error when there are too many; but that of a failure if those are
 /// wanted.
 void limit_pictures(std::vector<FrameComparison>& frames, bool keeps_failures) {
@@ -433,50 +427,22 @@ void limit_pictures(std::vector<FrameComparison>& frames, bool keeps_failures) {
   if (!keeps_failures || !is_broken(least)) least.error_png.clear();
 }
 
-void add_failed(CompareReport& report, const CompareSettings& here, const std::string& error) {
-  report.failed.push_back({name_of(here), here.result, here.reference, error});
-}
-
-/// The planes of a frame; none where they cannot be compared, which the report then says.
-std::optional<Planes> planes_or_failure(CompareReport& report, const CompareSettings& here) {
+/// The planes of a frame; none where they cannot be compared, which the report then says. `missing`: the sentences of
+/// frames that lack a file.
+std::optional<Planes> planes_or_failure(CompareReport& report, const CompareSettings& here,
+                                        const std::map<int, std::string>& missing) {
   try {
+    if (const auto sentence = missing.find(number_of(report, here)); sentence != missing.end())
+      fail(ErrorKind::input, "{}", sentence->second);
+    if (here.reference.empty())
+      fail(ErrorKind::input, "{}: frame {} has neither \"reference\" nor \"truth\"", report.reference, here.name);
     return read_planes_of(here);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::input) throw;
-    add_failed(report, here, error.what());
+    report.failed.push_back({name_of(here), error.what()});
     return std::nullopt;
   }
 }
-
-CompareReport compare_sequence(const CompareSettings& settings) {
-  CompareReport report{.result = settings.result, .reference = settings.reference, .is_sequence = true};
-  Flicker flicker;
-  std::optional<ErrorFrame> previous;
-  const auto frames = frames_of(settings);
-  const auto missing = missing_frames(settings, frames);
-  for (const int frame : frames) {
-    const CompareSettings here = settings_of_frame(settings, frame);
-    if (const auto sentence = missing.find(frame); sentence != missing.end()) {
-      add_failed(report, here, sentence->second);
-      continue;
-    }
-    auto planes = planes_or_failure(report, here);
-    if (!planes) continue;
-    const bool follows = previous && report.frames.back().frame == frame - 1;
-    report.frames.push_back(measure(here, *planes, frame));
-    limit_pictures(report.frames, settings.failures);
-    ErrorFrame errors = error_frame(std::move(*planes));
-    if (follows && previous->error.size() == errors.error.size() && previous->width == errors.width)
-      flicker.add(*previous, errors);
-    previous = std::move(errors);
-  }
-  if (flicker.count()) report.flicker = flicker.rms();
-  return report;
-}
-
-}  // namespace
-
-namespace {
 
 /// The settings of each frame of a list; "" is the reference of one that has none.
 std::vector<CompareSettings> settings_of_list(const CompareSettings& settings) {
@@ -496,22 +462,6 @@ std::vector<CompareSettings> settings_of_list(const CompareSettings& settings) {
   return all;
 }
 
-CompareReport compare_list(const CompareSettings& settings) {
-  CompareReport report{.result = settings.result, .reference = settings.reference, .is_list = true};
-  for (const auto& here : settings_of_list(settings)) {
-    if (here.reference.empty()) {
-      add_failed(report, here,
-                 fmt::format("{}: frame {} has neither \"reference\" nor \"truth\"", settings.reference, here.name));
-      continue;
-    }
-    const auto planes = planes_or_failure(report, here);
-    if (!planes) continue;
-    report.frames.push_back(measure(here, *planes, 0));
-    limit_pictures(report.frames, settings.failures);
-  }
-  return report;
-}
-
 }  // namespace
 
 std::vector<CompareSettings> settings_of_frames(const CompareSettings& settings) {
@@ -527,13 +477,30 @@ std::string name_of(const CompareSettings& of_frame) {
 }
 
 CompareReport compare_pictures(const CompareSettings& settings) {
-  if (is_frame_list(settings.reference)) return compare_list(settings);
-  if (is_sequence(settings)) return compare_sequence(settings);
-  if (!settings.motion.empty())
+  CompareReport report{
+      .result = settings.result, .reference = settings.reference, .is_list = is_frame_list(settings.reference)};
+  report.is_sequence = !report.is_list && is_sequence(settings);
+  if (!report.has_several() && !settings.motion.empty())
     fail(ErrorKind::usage, "--motion {}: it is for the flicker of a sequence, and RESULT is one picture",
          settings.motion);
-  CompareReport report{.result = settings.result, .reference = settings.reference};
-  if (const auto planes = planes_or_failure(report, settings)) report.frames.push_back(measure(settings, *planes, 0));
+  std::map<int, std::string> missing;
+  if (report.is_sequence) missing = missing_frames(settings, frames_of(settings));
+  Flicker flicker;
+  std::optional<ErrorFrame> previous;
+  for (const auto& here : settings_of_frames(settings)) {
+    auto planes = planes_or_failure(report, here, missing);
+    if (!planes) continue;
+    const int frame = number_of(report, here);
+    const bool follows = previous && report.frames.back().frame == frame - 1;
+    report.frames.push_back(measure(here, *planes, frame));
+    limit_pictures(report.frames, settings.failures);
+    if (!report.is_sequence) continue;
+    ErrorFrame errors = error_frame(std::move(*planes));
+    if (follows && previous->error.size() == errors.error.size() && previous->width == errors.width)
+      flicker.add(*previous, errors);
+    previous = std::move(errors);
+  }
+  if (flicker.count()) report.flicker = flicker.rms();
   return report;
 }
 

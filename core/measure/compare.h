@@ -82,7 +82,7 @@ struct FrameComparison {
 
 /// A frame that could not be compared.
 struct FailedFrame {
-  std::string name, result, reference;
+  std::string name;
   std::string error;  // a sentence
 };
 

@@ -1,7 +1,6 @@
 // Writes a comparison as JSON and as a page, and checks it against limits.
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -9,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/measure/compare.h"
 #include "core/measure/report.h"
@@ -18,9 +16,6 @@ namespace alcove {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// JSON has no infinity and no NaN.
-Json number(std::optional<double> value) { return value && std::isfinite(*value) ? Json(*value) : Json(nullptr); }
 
 /// A measure of a frame; NaN if it could not be measured.
 struct Measure {
@@ -72,7 +67,7 @@ Json sky_json(const FrameComparison& frame) {
   const SkyDifference& sky = *frame.sky_differs;
   return {{"count", sky.count},
           {"zero_in", sky.zero_in_result ? "result" : "reference"},
-          {"rmse_without", number(sky.rmse_without)}};
+          {"rmse_without", sky.rmse_without}};
 }
 
 const char* file_of(const HoleAt& hole) { return hole.in_result ? "result" : "reference"; }
@@ -87,8 +82,20 @@ Json window_json(const std::optional<Window>& window) {
   return {{"x", window->x}, {"y", window->y}, {"width", window->width}, {"height", window->height}};
 }
 
-/// Bands, sky, edges and window of a frame.
-void add_parts(Json& json, const FrameComparison& frame) {
+/// Adds the measures; a value that is not finite becomes null where the JSON is written.
+template <class Value>
+void add_measures(Json& json, const Value& value) {
+  for (const auto& measure : kMeasures) json[measure.name] = value(measure);
+}
+
+void add_counts(Json& json, const FrameComparison& frame) {
+  json.update({{"count", frame.count}, {"excluded", frame.excluded}, {"masked", frame.masked}, {"holes", frame.holes}});
+}
+
+/// Counts, measures, bands, sky, edges and window of a frame.
+void add_all(Json& json, const FrameComparison& frame) {
+  add_counts(json, frame);
+  add_measures(json, [&](const Measure& measure) { return measure.of(frame); });
   Json bands = Json::array();
   for (const auto& band : frame.bands) {
     Json entry = {{"from", band.from}, {"to", band.to}};
@@ -103,11 +110,6 @@ void add_parts(Json& json, const FrameComparison& frame) {
   json["common_window"] = window_json(frame.common);
 }
 
-void add_measures(Json& json, const FrameComparison& frame) {
-  json.update({{"count", frame.count}, {"excluded", frame.excluded}, {"masked", frame.masked}, {"holes", frame.holes}});
-  for (const auto& measure : kMeasures) json[measure.name] = number(measure.of(frame));
-}
-
 /// A frame's number, or in a list its name.
 Json id_of(const FrameComparison& frame, const CompareReport& report) {
   return report.is_list ? Json(frame.name) : Json(frame.frame);
@@ -115,31 +117,28 @@ Json id_of(const FrameComparison& frame, const CompareReport& report) {
 
 Json frame_json(const FrameComparison& frame, const CompareReport& report) {
   Json json = {{"frame", id_of(frame, report)}, {"result", frame.result}, {"reference", frame.reference}};
-  add_measures(json, frame);
-  add_parts(json, frame);
+  add_all(json, frame);
   return json;
 }
 
 /// A sequence's own numbers: each is the worst of all frames, the counts are sums.
 void add_worst_measures(Json& json, const CompareReport& report) {
-  std::size_t count = 0, excluded = 0, masked = 0, holes = 0;
-  for (const auto& frame : report.frames) {
-    count += frame.count;
-    excluded += frame.excluded;
-    masked += frame.masked;
-    holes += frame.holes;
-  }
-  json.update({{"count", count}, {"excluded", excluded}, {"masked", masked}, {"holes", holes}});
-  for (const auto& measure : kMeasures) json[measure.name] = number(measure.of(worst_in(report, measure)));
+  FrameComparison all;
+  for (const auto& frame : report.frames)
+    for (const auto count :
+         {&FrameComparison::count, &FrameComparison::excluded, &FrameComparison::masked, &FrameComparison::holes})
+      all.*count += frame.*count;
+  add_counts(json, all);
+  add_measures(json, [&](const Measure& measure) { return measure.of(worst_in(report, measure)); });
 }
 
 Json mean_json(const CompareReport& report) {
   Json json;
-  for (const auto& measure : kMeasures) {
+  add_measures(json, [&](const Measure& measure) {
     double sum = 0;
     for (const auto& frame : report.frames) sum += measure.of(frame);
-    json[measure.name] = number(sum / double(report.frames.size()));
-  }
+    return sum / double(report.frames.size());
+  });
   return json;
 }
 
@@ -158,7 +157,7 @@ Json limits_json(const std::vector<CheckedLimit>& limits) {
   for (const auto& limit : limits)
     list.push_back({{"option", limit.option},
                     {"limit", limit.limit},
-                    {"value", number(limit.value)},
+                    {"value", limit.value},
                     {"frame", limit.frame},
                     {"holds", limit.broken.empty()}});
   return list;
@@ -280,10 +279,9 @@ std::string compare_json(const CompareReport& report, const std::vector<CheckedL
     const auto& worst = worst_frame(report);
     json["worst"] = {{"frame", id_of(worst, report)}, {"rmse", worst.errors.rmse}};
     json["mean"] = mean_json(report);
-    if (report.is_sequence) json["flicker"] = number(report.flicker);
+    if (report.is_sequence) json["flicker"] = report.flicker.value_or(NAN);
   } else if (has_frames) {
-    add_measures(json, report.frames[0]);
-    add_parts(json, report.frames[0]);
+    add_all(json, report.frames[0]);
   }
   const auto broken = broken_limits(limits);
   json["pass"] = broken.empty() && report.failed.empty();
@@ -300,7 +298,7 @@ namespace {
 Json row_json(const FrameComparison& frame, const CompareReport& report, const std::string& candidate) {
   Json row = {{"frame", frame.name}, {"candidate", candidate}, {"fails", fails(frame, report)}};
   if (frame.holes) row["holes"] = frame.holes;
-  for (const auto& measure : kMeasures) row[measure.name] = number(measure.of(frame));
+  add_measures(row, [&](const Measure& measure) { return measure.of(frame); });
   return row;
 }
 
@@ -319,8 +317,8 @@ Json sequence_json(const CompareReport& report) {
   if (!report.has_several()) return nullptr;
   const FrameComparison& worst = worst_frame(report);
   Json json = {
-      {"worst_frame", worst.name}, {"worst_rmse", number(worst.errors.rmse)}, {"mean_rmse", mean_json(report)["rmse"]}};
-  if (report.is_sequence) json["flicker"] = number(report.flicker);
+      {"worst_frame", worst.name}, {"worst_rmse", worst.errors.rmse}, {"mean_rmse", mean_json(report)["rmse"]}};
+  if (report.is_sequence) json["flicker"] = report.flicker.value_or(NAN);
   return json;
 }
 

@@ -15,6 +15,9 @@ using Matrix = std::array<Triple, 3>;
 using Plane = std::vector<double>;
 using Planes = std::array<Plane, 3>;
 
+/// The pixels per degree of the viewer's sight: the papers' default, a 0.7 m wide 4K monitor seen from 0.7 m.
+constexpr double kPixelsPerDegree = 67;
+
 // Colour.
 
 Triple operator*(const Matrix& m, const Triple& v) {
@@ -98,8 +101,8 @@ constexpr Sensitivity kAchromatic{1, 0.0047, 0, 1e-5}, kRedGreen{1, 0.0053, 0, 1
 constexpr double kWidestSensitivity = 0.04;
 
 /// Filters a plane by a sensitivity. Both Gaussians are separable; their normalised sum is not, so it is split.
-Plane filter(int width, int height, const Plane& plane, const Sensitivity& s, double pixels_per_degree) {
-  const auto sigma_px = [&](double b) { return std::sqrt(b / 2) / std::numbers::pi * pixels_per_degree; };
+Plane filter(int width, int height, const Plane& plane, const Sensitivity& s) {
+  const auto sigma_px = [&](double b) { return std::sqrt(b / 2) / std::numbers::pi * kPixelsPerDegree; };
   const int radius = int(std::ceil(3 * sigma_px(kWidestSensitivity)));
   const auto weight = [&](double a, double b) {  // the sum of the Gaussian's weights over the kernel's square
     double row = 0;
@@ -117,10 +120,9 @@ Plane filter(int width, int height, const Plane& plane, const Sensitivity& s, do
 }
 
 /// Turns opponent colours into Hunt-adjusted L*a*b* as the eye resolves it.
-Planes seen_colors(int width, int height, const Planes& opponent, double pixels_per_degree) {
-  Planes seen{filter(width, height, opponent[0], kAchromatic, pixels_per_degree),
-              filter(width, height, opponent[1], kRedGreen, pixels_per_degree),
-              filter(width, height, opponent[2], kBlueYellow, pixels_per_degree)};
+Planes seen_colors(int width, int height, const Planes& opponent) {
+  Planes seen{filter(width, height, opponent[0], kAchromatic), filter(width, height, opponent[1], kRedGreen),
+              filter(width, height, opponent[2], kBlueYellow)};
   for (std::size_t i = 0; i < seen[0].size(); i++) {
     Triple rgb = rgb_from_opponent({seen[0][i], seen[1][i], seen[2][i]});
     for (auto& value : rgb) value = std::clamp(value, 0.0, 1.0);
@@ -154,9 +156,9 @@ std::vector<double> balanced(std::vector<double> weights) {
   return weights;
 }
 
-Features features_of(int width, int height, const Plane& lightness, double pixels_per_degree) {
+Features features_of(int width, int height, const Plane& lightness) {
   constexpr double kWidthOfEdgeDetector = 0.082;  // degrees, from the positive to the negative peak
-  const double sigma = 0.5 * kWidthOfEdgeDetector * pixels_per_degree;
+  const double sigma = 0.5 * kWidthOfEdgeDetector * kPixelsPerDegree;
   const int radius = int(std::ceil(3 * sigma));
   const auto gaussian = gaussian_kernel(sigma, radius);
   std::vector<double> first, second;
@@ -183,17 +185,16 @@ struct Seen {
 };
 
 /// Makes the image that FLIP sees. `linear` makes linear values in [0, 1] of those of the image.
-Seen see(int width, int height, const ColorPlanes& image, const std::function<double(float)>& linear,
-         double pixels_per_degree) {
+Seen see(int width, int height, const ColorPlanes& image, const std::function<double(float)>& linear) {
   const std::size_t pixels = std::size_t(width) * std::size_t(height);
   Planes opponent{Plane(pixels), Plane(pixels), Plane(pixels)};
   for (std::size_t i = 0; i < pixels; i++) {
     const Triple color = opponent_from_rgb({linear(image[0][i]), linear(image[1][i]), linear(image[2][i])});
     for (std::size_t c = 0; c < 3; c++) opponent[c][i] = color[c];
   }
-  Seen seen{seen_colors(width, height, opponent, pixels_per_degree), {}};
+  Seen seen{seen_colors(width, height, opponent), {}};
   for (auto& y : opponent[0]) y = (y + 16) / 116;
-  seen.features = features_of(width, height, opponent[0], pixels_per_degree);
+  seen.features = features_of(width, height, opponent[0]);
   return seen;
 }
 
@@ -229,11 +230,9 @@ constexpr double kLeastLuminance = 1e-5;
 
 }  // namespace
 
-std::vector<float> ldr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference,
-                            double pixels_per_degree) {
+std::vector<float> ldr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference) {
   const auto displayed = [](float value) { return linear_from_srgb(std::clamp(double(value), 0.0, 1.0)); };
-  const Seen a = see(width, height, result, displayed, pixels_per_degree),
-             b = see(width, height, reference, displayed, pixels_per_degree);
+  const Seen a = see(width, height, result, displayed), b = see(width, height, reference, displayed);
   std::vector<float> error(result[0].size());
   for (std::size_t i = 0; i < error.size(); i++) error[i] = float(flip_at(a, b, i));
   return error;
@@ -254,15 +253,13 @@ ExposureRange hdr_flip_exposures(const ColorPlanes& reference) {
   return range;
 }
 
-std::vector<float> hdr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference,
-                            double pixels_per_degree) {
+std::vector<float> hdr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference) {
   const ExposureRange range = hdr_flip_exposures(reference);
   std::vector<float> error(result[0].size());
   for (int step = 0; step < range.count; step++) {
     const double gain = std::exp2(range.start + (range.stop - range.start) * step / (range.count - 1));
     const auto exposed = [gain](float value) { return tone_mapped(gain * light(value)); };
-    const Seen a = see(width, height, result, exposed, pixels_per_degree),
-               b = see(width, height, reference, exposed, pixels_per_degree);
+    const Seen a = see(width, height, result, exposed), b = see(width, height, reference, exposed);
     for (std::size_t i = 0; i < error.size(); i++) error[i] = std::max(error[i], float(flip_at(a, b, i)));
   }
   return error;

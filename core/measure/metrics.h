@@ -184,16 +184,12 @@ class Flicker {
   std::size_t count_ = 0;
 };
 
-/// The pixels per degree of the viewer's sight: the papers' default, a 0.7 m wide 4K monitor seen from 0.7 m.
-inline constexpr double kFlipPixelsPerDegree = 67;
-
 /// Planes of red, green and blue, of one size, row by row, all finite. For grey, use the same plane three times.
 using ColorPlanes = std::array<std::span<const float>, 3>;
 
-/// The FLIP error of every pixel, in [0, 1], of display values (sRGB-encoded, clamped to [0, 1]). Symmetric in the two
-/// images.
-std::vector<float> ldr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference,
-                            double pixels_per_degree = kFlipPixelsPerDegree);
+/// The FLIP error of every pixel, in [0, 1], of display values (sRGB-encoded, clamped to [0, 1]), as seen by the
+/// papers' default viewer, with 67 pixels per degree. Symmetric in the two images.
+std::vector<float> ldr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference);
 
 /// The exposures of HDR-FLIP, in stops: from that where the brightest reference pixel is just below white to that where
 /// the median is.
@@ -205,7 +201,6 @@ ExposureRange hdr_flip_exposures(const ColorPlanes& reference);
 
 /// The HDR-FLIP error of every pixel, in [0, 1], of scene-linear Rec.709 values (clamped to [0, 65536]): the largest
 /// LDR-FLIP over the exposures, each after the ACES tone curve. Not symmetric: the exposures are the reference's.
-std::vector<float> hdr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference,
-                            double pixels_per_degree = kFlipPixelsPerDegree);
+std::vector<float> hdr_flip(int width, int height, const ColorPlanes& result, const ColorPlanes& reference);
 
 }  // namespace alcove

@@ -28,10 +28,6 @@ std::string base64(std::span<const char> bytes) {
   return text;
 }
 
-std::string url_of(int width, int height, int channels, std::span<const float> pixels) {
-  return url_of_png(encode_png("picture", width, height, channels, pixels));
-}
-
 }  // namespace
 
 std::string url_of_png(std::span<const char> png) { return "data:image/png;base64," + base64(png); }
@@ -39,31 +35,16 @@ std::string url_of_png(std::span<const char> png) { return "data:image/png;base6
 std::string report_page(const std::string& json) {
   const std::string_view page = report_template();
   const std::size_t mark = page.find(kJsonMark);
-  std::string text;
-  text.reserve(page.size() + json.size() + json.size() / 64);
-  text += page.substr(0, mark);
+  std::string text(page.substr(0, mark));
   // In JSON a '<' can only stand inside a string. Escaped, neither "</script>" nor "<!--" can end or change the block
   // it is in.
-  for (const char c : json) {
-    if (c == '<') {
-      text += "\\u003c";
-    } else {
-      text += c;
-    }
-  }
+  for (const char c : json) c == '<' ? text += "\\u003c" : text += c;
   text += page.substr(mark + kJsonMark.size());
   return text;
 }
 
-std::string grey_picture(int width, int height, std::span<const float> values) {
-  return url_of(width, height, 1, values);
-}
-
-std::string color_picture(int width, int height, std::span<const float> rgb) { return url_of(width, height, 3, rgb); }
-
-std::string error_picture(int width, int height, std::span<const float> result, std::span<const float> reference,
-                          float full) {
-  return url_of_png(error_png(width, height, result, reference, full));
+std::string picture_url(int width, int height, int channels, std::span<const float> values) {
+  return url_of_png(encode_png("picture", width, height, channels, values));
 }
 
 std::string error_png(int width, int height, std::span<const float> result, std::span<const float> reference,

@@ -31,7 +31,7 @@ namespace alcove {
 ///                   "result": PICTURE, "truth": PICTURE, "error": PICTURE or null}. PICTURE is a
 ///                   "data:image/png;base64,..." URL; all three are of one size. "truth" may be null or absent where
 ///                   another image of the same frame has it, so that a frame's truth is stored once. "error" is
-///                   result - truth in the colours of error_picture(), which the page's legend explains, with an
+///                   result - truth in the colours of error_png(), which the page's legend explains, with an
 ///                   error of "full" in the strongest, else of kFullColorError. "composite" is optional: a PICTURE or
 ///                   null.
 ///   "verdict"       optional, or null: {"pass": bool, "limits": list of {"option": string, "limit": number, "value":
@@ -53,16 +53,13 @@ std::string report_page(const std::string& json);
 /// bright. An error of 0 is white.
 inline constexpr float kFullColorError = 0.25f;
 
-/// Shows width x height values in [0, 1] as grey, unconverted, since AO is data.
-std::string grey_picture(int width, int height, std::span<const float> values);
-/// Shows interleaved r, g, b display values.
-std::string color_picture(int width, int height, std::span<const float> rgb);
-/// Shows result - reference in colours, an error of `full` in the strongest; grey if the difference is not finite.
-std::string error_picture(int width, int height, std::span<const float> result, std::span<const float> reference,
-                          float full = kFullColorError);
-/// The same as the bytes of a PNG.
+/// Shows width x height values in [0, 1]: of 1 channel as grey, unconverted, since AO is data; of 3 as interleaved r,
+/// g, b display values.
+std::string picture_url(int width, int height, int channels, std::span<const float> values);
+/// The bytes of a PNG that shows result - reference in colours, an error of `full` in the strongest; grey if the
+/// difference is not finite.
 std::string error_png(int width, int height, std::span<const float> result, std::span<const float> reference,
-                      float full);
+                      float full = kFullColorError);
 /// The URL of a PNG with these bytes.
 std::string url_of_png(std::span<const char> png);
 

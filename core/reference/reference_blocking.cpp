@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Written for reading, not for speed, and apart from the kernels: nothing but the formulas is shared.
-#include "core/reference/reference_blocking.h"
+#include "core/reference/reference_slice.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <numbers>
 #include <thread>
-#include <utility>
 
 namespace alcove {
 namespace {

@@ -6,9 +6,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <utility>
-
-#include "core/base/error.h"
 
 namespace alcove {
 

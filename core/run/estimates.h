@@ -1,4 +1,4 @@
-// The estimates of the frames around one, whose mean the frame is, and their form in upload buffers.
+// The estimates of the frames around one frame, which is their mean; and the upload buffers of estimates.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -31,11 +31,11 @@ struct EstimatedFrame {
   Neighbours others;                  // the names of the frames and views that show its hidden surfaces
 };
 
-/// Whether each frame sees past more of what the other one shows than it sees the same: sets that lie at the same place
-/// of the world, before and behind a cut. None between frames that see nothing of each other: neither harms the other.
+/// Whether a cut lies between two frames: two sets may stand at one place of the world. Each frame then sees past most
+/// surfaces of the other one. Frames without a common view have no cut, since neither harms the other.
 bool is_cut_between(const EstimatedFrame& a, const EstimatedFrame& b);
 
-/// The estimates whose mean a frame is, its own among them.
+/// The estimates whose mean is a frame, with the frame's own estimate.
 struct NeighbourEstimates {
   ReadPlanes read;  // of the frame itself; empty: not kept
   std::vector<std::shared_ptr<const EstimatedFrame>> of;

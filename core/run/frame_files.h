@@ -18,12 +18,12 @@
 
 namespace alcove {
 
-/// Opens the frame that the settings name, with all planes that its outputs need; reads headers alone. Fails with
-/// ErrorKind::input if it lacks a plane for an output, with ErrorKind::usage if --roi is not within it or the estimator
-/// cannot use its --deep.
+/// Opens the frame that the settings name, with all planes for its outputs. Reads headers alone. Fails with
+/// ErrorKind::input if the frame lacks a plane for an output. Fails with ErrorKind::usage if --roi is not within the
+/// frame, or if the estimator cannot use --deep.
 FrameSource open_frame(const Settings& settings, int frame);
 
-/// The window that is written of a frame: its region, or all of it.
+/// The written window of a frame: its region, or the whole frame.
 const Window& written_of(const FrameSource& source);
 /// The window of its output files, smaller by the factor of supersampling.
 Window written_picture(const FrameSource& source);
@@ -32,11 +32,12 @@ Window written_picture(const FrameSource& source);
 using ReadPlanes = RawPlaneArray<std::vector<float>>;
 /// The decoded planes of a frame that is computed at once.
 ReadPlanes kept_planes(const FrameInputs& inputs);
-/// Reads all planes unless `known` has them, and settles the frame's reading, within so many bytes.
+/// Reads all planes into `known`, unless it has them, and settles the frame's reading with at most so many bytes.
 void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& known, std::uint64_t most_bytes);
 
-/// Puts the planes over a window into upload buffers, from `known` if it has all planes, else from the files, and gives
-/// them with their meaning. Settles the frame's reading if it is open: then the window must be the whole frame.
+/// Puts the planes over a window into upload buffers, and gives the planes with their meaning. The planes are from
+/// `known` if it has all of them, else from the files. Settles the frame's reading if it is open; in this case the
+/// window must be the whole frame.
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& window, const Settings& settings,
                        int frame, const ReadPlanes* known = nullptr);
 
@@ -59,15 +60,15 @@ struct Provenance {
 /// The radii of all scales, as headers have them; "" where none is known.
 std::string radius_text(const EstimatorSettings& estimator);
 
-/// The text in a picture that identifies its options and inputs: --resume keeps a picture that has it.
+/// The text that identifies a picture's options and inputs. --resume keeps a picture with this text.
 std::string made_by(const std::string& options, const std::string& inputs);
 
-/// The results over a window, plane by plane: the AO file's channels, then the composite's, the AO last where it is one
-/// of them.
+/// The results over a window, plane by plane: the channels of the AO file, then the channels of the composite. If the
+/// AO is a channel of the composite, it is the last one.
 std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, const Window& computed,
                                                   const OutputSettings& settings);
 
-/// The bytes for assembling a composite whose window is not that of the AO; else 0.
+/// The bytes for assembling a composite with another window than the AO; else 0.
 std::uint64_t composite_bytes(const FrameSource& source);
 
 /// Writes the next rows of a composite, plane by plane.
@@ -97,14 +98,14 @@ class CompositeRows {
 /// The AO file and the composite, written from top to bottom, each whole or not at all. Fails with ErrorKind::output.
 class FrameWriter {
  public:
-  /// The source must outlive this: it is read where the beauty's window is larger than the written one.
+  /// The source must outlive the writer, which reads the source if the beauty's window is larger than the written one.
   FrameWriter(FrameSource& source, const Settings& settings, const Provenance& provenance);
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
   /// The next rows of result_planes(), as wide as the written window.
   void write(std::span<const std::span<const float>> planes);
-  /// `notes`: those after all is computed; see header_text().
+  /// `notes`: the notes after all computing; see header_text().
   void finish(const std::string& notes);
   void finish() { finish(notes_); }
 
@@ -125,15 +126,15 @@ class FrameWriter {
 /// A plane over a window, as it is, in the picture's display window; 0 where there are no pixels.
 ShownPicture shown_plane(const FrameSource& source, const Window& window, const gpu::Buffer& planes,
                          std::size_t plane = 0);
-/// The composite that is computed over a window, or the beauty where that is null, through the view transform.
+/// The computed composite over a window, through the view transform; the beauty if `computed` is null.
 ShownPicture shown_colors(FrameSource& source, const Window& window, const gpu::Buffer* computed,
                           const DisplayTransform* transform);
 
 /// Takes a preview instead of its file.
 using TakePreview = std::function<void(const ShownPicture&)>;
 
-/// Writes the preview and the debug views of a frame that was computed at once, over a window; each picture is written
-/// whole or not at all. `transform` is for the preview of a composite, and may be null, `take_preview` may be empty.
+/// Writes the preview and the debug views over a window, of a frame that was computed at once. Each picture is written
+/// whole or not at all. `transform` is for the preview of a composite, and may be null. `take_preview` may be empty.
 /// Fails with ErrorKind::output.
 void write_pictures(FrameSource& source, const Window& computed, const FrameOutputs& outputs,
                     const DisplayTransform* transform, const OutputSettings& settings, const Provenance& provenance,

@@ -19,7 +19,7 @@
 
 namespace alcove {
 
-/// The device time of a look; the sum is that of a run with it alone.
+/// The device time of a look. The sum is the time of a run with this look alone.
 struct LookTime {
   double estimate_ms = 0;  // of the passes that all looks share, and of other frames
   double own_ms = 0;
@@ -41,9 +41,9 @@ struct RunContext {
   std::function<bool()> stop = {};              // asked between steps: true drops the frame
   // Takes the preview of a frame instead of its file; may be empty. Any thread calls it.
   std::function<void(int frame, const ShownPicture&)> take_preview = {};
-  // Looks that take_look receives one after the other, instead of files, of a frame that is computed at once. They
-  // differ from the plan's settings in the shaping and the composite's look alone, so one estimate serves all. A frame
-  // that is tried again delivers them again.
+  // The looks of a frame that is computed at once. take_look receives one after the other, and no file is written.
+  // Looks differ from the plan's settings in the shaping and the composite's look alone, so one estimate serves all
+  // looks. If a frame is tried again, take_look receives all looks again.
   std::vector<Settings> looks = {};
   TakeLook take_look = {};
   ReadPlanes* planes = nullptr;  // of the only frame, from run to run; null: they are read
@@ -52,15 +52,15 @@ struct RunContext {
 /// The report of a frame before any work.
 FrameReport report_of(const FramePlan& plan, int frame);
 
-/// Called with the part that is computed, the number of parts, and the share of that part that is done, 0 to 1.
+/// Called with the number of the part in work, the number of parts, and the part's share of work that is done, 0 to 1.
 using PartWatch = std::function<void(int part, int parts, double done)>;
 
-/// Estimates a frame for those around it. Fails with ErrorKind::input as open_frame() does, and without the position of
-/// its camera.
+/// Estimates a frame for the frames around it. Fails as open_frame() does, and with ErrorKind::input if the position of
+/// the frame's camera is unknown.
 EstimatedFrame estimate_frame(Lane& lane, const RunContext& run, const MemoryBudget& budget, int frame,
                               PreparationCost& cost);
 
-/// Reads, computes and writes one frame on a lane, within the room. Never throws: the report has the error.
+/// Reads, computes and writes one frame on a lane, within the budget. Never throws: the report has the error.
 FrameReport run_frame(Lanes& lanes, const RunContext& run, const MemoryBudget& budget, int frame,
                       const PartWatch& watch);
 

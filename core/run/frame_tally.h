@@ -15,10 +15,10 @@
 
 namespace alcove {
 
-/// Counts over all windows of one frame. Pixels that windows share count in each.
+/// Counts over all windows of one frame. A pixel of several windows counts in each of them.
 class FrameTally {
  public:
-  /// `taker`: of the frame that an estimate is computed for; its windows count there, too.
+  /// `taker`: if this frame is estimated for another one, the tally of the other one, in which the windows count too.
   explicit FrameTally(FrameReport& report, FrameTally* taker = nullptr) : report_(report), taker_(taker) {}
 
   /// A window is about to be computed.
@@ -36,8 +36,8 @@ class FrameTally {
   /// The notes on the frame before it is computed.
   static Notes notes_on(const FrameSource& source, const InputSettings& settings);
 
-  /// Writes the sums and the notes into the report. Fails with ErrorKind::input where the pixels show
-  /// that a layer of hidden surfaces cannot be one.
+  /// Writes the sums and the notes into the report. Fails with ErrorKind::input if the pixels contradict a layer of
+  /// hidden surfaces.
   void finish(const FrameSource& source, const Settings& settings);
 
  private:
@@ -45,7 +45,8 @@ class FrameTally {
   void add_errors(const FrameOutputs& outputs, const Window& computed);
   void add_lights(const FrameOutputs& outputs, const Window& computed);
   void add_work(const FrameOutputs& outputs, bool is_same);
-  /// The number of pixels with an estimate; if each has its own, of pixels that show surfaces.
+  /// The number of pixels with an estimate of their own. If no pixels share one, these are the pixels that show
+  /// surfaces.
   double estimates_of(const EstimatorSettings& settings) const;
   void note_repairs(const FrameSource& source);
   void note_dark_lights(const FrameSource& source, const LightsFile& lights);

@@ -1,5 +1,5 @@
-// The memory of a frame, known before its pixels are read; the memory limit of a run, and the number of frames at once
-// that it allows.
+// The memory of a frame, before its pixels are read; and the memory limit of a run, with the number of frames that it
+// allows at once.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -36,9 +36,9 @@ struct FrameMemory {
   };
   /// Rehearses the chain for a window.
   Bytes of(const Window& computed) const;
-  /// Host memory of the codecs of the frame's files if `room` bytes are left for the frame.
+  /// Host memory of the codecs of the frame's files if `budget` bytes are left for the frame.
   std::uint64_t codec_bytes(std::uint64_t budget) const;
-  /// Takes over the settings; a radius that is unknown yet counts as 1.
+  /// Takes over the settings. An unknown radius counts as 1.
   void take(const Settings& settings);
 
   Reading reading;
@@ -99,18 +99,18 @@ MemoryBudget budget_of_lane(const RunMemory& memory, int lanes, const gpu::Devic
 /// The largest number of other frames and views that a frame uses.
 std::size_t most_others(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings);
 
-/// The memory of a frame of the plan, with the share of its lane in its others.
+/// The memory of a frame of the plan, with the memory that its lane takes for the frame's others.
 FrameMemory memory_with_others(const FramePlan& plan, const FrameSource& frame, const Settings& settings);
 
 /// Bytes of host memory of the prepared frames that so many lanes keep.
 std::uint64_t bytes_of_shot(const FramePlan& plan, const FrameSource& frame, const InputSettings& settings, int lanes);
 
-/// Bytes of host memory of the estimates that so many lanes keep for the means of these frames, which are computed in
-/// this order.
+/// Bytes of host memory of the estimates that so many lanes keep for the means of these frames. The frames are computed
+/// in this order.
 std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame, const Settings& settings,
                                  std::span<const int> frames, int lanes);
 
-/// The memory that is left when prepared frames and estimates are taken off.
+/// The memory without the part for prepared frames and estimates.
 RunMemory without_shared_frames(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
                                 const Settings& settings, std::span<const int> frames, int lanes);
 
@@ -121,13 +121,13 @@ int frames_at_once(const RunMemory& memory, const FramePlan& plan, const FrameSo
 /// The threads of the process: as many as --threads says, else one per core.
 int threads_of(const DeviceSettings& settings);
 
-/// Fails with ErrorKind::usage if --memory has no room for the frames around one, naming the number that fits and the
-/// memory that would be enough; with ErrorKind::device without --memory.
+/// Fails if the memory has no room for the frames around one: with ErrorKind::usage if --memory was given, else with
+/// ErrorKind::device. The message names the number of frames that fit, and the memory that is enough.
 void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
                              const Settings& settings, std::span<const int> frames);
 
-/// Fails with ErrorKind::device if a plane of a frame does not fit into a buffer of `most_bytes`. Frames that others
-/// use are prepared whole; only frames that are computed are cut into tiles.
+/// Fails with ErrorKind::device if a plane of a frame does not fit into a buffer of `most_bytes`. A frame for others is
+/// prepared whole: only computed frames are cut into tiles.
 void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const Settings& settings);
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// Surfaces of a frame that other frames and views show. Every frame is prepared once for all that use it.
+// Surfaces of a frame that other frames and views show. Every frame is prepared once for all its users.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -28,7 +28,7 @@ struct NeighbourView {
   std::uint64_t hash = 0;             // of both planes
 };
 
-/// Pixels of a frame that other frames must not use, since they move.
+/// The moving pixels of a frame, which other frames must not use.
 struct Movement {
   std::vector<std::uint32_t> flags;  // of each pixel, see OtherView::moving
   std::uint64_t hash = 0;            // of them
@@ -54,19 +54,20 @@ struct PreparationCost {
 void require_place(const FrameSource& source, int frame, const char* option);
 
 /// Prepared frames of a shot and the movement in them, for all threads of a run. The results depend neither on the
-/// thread that asks nor on the order.
+/// asking thread nor on the order.
 class NeighbourViews {
  public:
-  /// All frames are read as `settled` is; null: each by itself.
+  /// `settled` has the reading of all frames; null: each frame has its own.
   NeighbourViews(const FramePlan& plan, const FrameSource* settled) : plan_(plan), settled_(settled) {}
 
-  /// Gives the surfaces that others show of a frame, in upload buffers of the recorder, which is idle before and after.
-  /// Fails with ErrorKind::input, naming the file, if one cannot be read or has no position of its camera.
+  /// Gives the surfaces of a frame that other frames and views show, in upload buffers of the recorder. The recorder is
+  /// idle before and after. Fails with ErrorKind::input, naming the file, if a file cannot be read, or if the position
+  /// of its camera is unknown.
   Neighbours of(gpu::Recorder& gpu, const FrameSource& target, int frame, PreparationCost& cost);
 
   /// Marks pixels that move by their motion vectors, and up to `around` pixels beside each, with 1, all others with 0.
-  /// None if the settings name no vectors, and at the end of a shot that they lead out of. Fails if no interpretation
-  /// of the vectors matches the cameras.
+  /// Gives none if the settings name no vectors, or if the vectors lead out of the shot at its end. Fails if no
+  /// interpretation of the vectors matches the cameras.
   std::optional<std::vector<std::uint8_t>> moving_by_vectors(gpu::Recorder& gpu, int frame, PreparationCost& cost,
                                                              int around);
 

@@ -29,14 +29,13 @@ const char* shot_option(const InputSettings& settings);
 /// A run's frames and the names of their files.
 class FramePlan {
  public:
-  /// Finds the frames and looks for their inputs; opens nothing. A name is a pattern (core/formats/sequence.h) unless
-  /// it is an input that is there.
-  /// Fails with ErrorKind::usage where all frames would write one file, or be computed from the same files; with
-  /// ErrorKind::input where inputs are missing, listing the frames of each, unless the settings say to skip them, and
-  /// where no frame is left.
+  /// Finds the frames and looks for their inputs. Opens nothing. A name is a pattern (core/formats/sequence.h), unless
+  /// it is the name of an existing input. Fails with ErrorKind::usage if all frames would write one file, or would be
+  /// computed from the same files. Fails with ErrorKind::input if inputs are missing, listing the frames of each,
+  /// unless the settings skip such frames; and if no frame is left.
   explicit FramePlan(const Settings& settings);
 
-  /// False for one frame, whose files' names have no place for its number.
+  /// False for a single frame: the names of its files have no place for a number.
   bool is_sequence() const { return is_sequence_; }
   /// The frames to compute, in order.
   const std::vector<int>& frames() const { return frames_; }
@@ -49,24 +48,25 @@ class FramePlan {
   const std::vector<int>& holes() const { return holes_; }
   /// All frames on the disk by the first input with a pattern; none without a pattern.
   std::vector<int> on_disk() const;
-  /// A few frames of the whole sequence, from its beginning to its end, whatever the chunk. Guesses are made by the
-  /// first of them that shows enough, so that all chunks make the same guesses.
+  /// A few frames from the beginning to the end of the whole sequence, the same ones for every chunk. The first of
+  /// these frames that shows enough decides all guesses, so all chunks make the same guesses.
   const std::vector<int>& evidence() const { return evidence_; }
   /// Up to `count` frames of the shot to each side. The shot is all frames on the disk and the holes between them, so
   /// neither --frames nor --chunk changes a result.
   FramesAround around(int frame, int count) const;
-  /// The 2 `count` frames nearest to `frame`, those without a file left out, shifted inward near the ends of the shot.
+  /// The 2 `count` frames nearest to `frame`, without the frames that lack a file. Near an end of the shot, the frames
+  /// are shifted inward.
   std::vector<int> nearest(int frame, int count) const;
   /// The 2 N + 1 frames averaged for `frame` by --accumulate N, shifted inward near the ends of the shot; else none.
   FramesAround accumulated(int frame) const;
-  /// Whether `other` is one of them.
+  /// Whether `other` is one of the averaged frames.
   bool is_accumulated(int other, int frame) const;
   /// The size of a mean, and a frame's slot in it; slots in one mean are distinct.
   int turns() const { return 2 * settings_.input.accumulate + 1; }
   int slot_of(int frame) const;
   /// Frames around those to compute that have no file, if the settings skip them.
   std::vector<int> missing_around() const;
-  /// All of the shot.
+  /// All frames of the shot.
   const std::vector<int>& shot() const { return shot_; }
   /// The settings of all frames.
   const Settings& settings() const { return settings_; }
@@ -112,8 +112,8 @@ class FramePlan {
   std::set<int> absent_;  // of the shot
 };
 
-/// The pattern of the sequence that a single file belongs to by the number in its name, such as shot.####.exr; ""
-/// without a number, and for a version or a size. The number may be that of a frame or of a shot.
+/// The pattern of the sequence of a single file, by the number in its name, such as shot.####.exr. "" if the name has
+/// no number, or only that of a version or a size. The number may be of a frame or of a shot.
 std::string pattern_for(const std::string& path);
 
 /// The number of a single file's frame by its name (core/formats/sequence.h); 0 where there is none.
@@ -121,10 +121,10 @@ int frame_number_of(const std::string& path);
 
 /// Whether a frame with a warning fails.
 bool fails_on_warnings(const Settings& settings);
-/// Fails with ErrorKind::input, naming the file, where there is a warning and it counts as an error.
+/// Fails with ErrorKind::input, naming the file, if there is a warning, and if warnings count as errors.
 void refuse_warnings(const Notes& notes, const Settings& settings, const std::string& file);
 
-/// The parts of a list, as long as each other to within one frame. 1 <= chunk <= chunks.
+/// A part of a list. The lengths of all parts differ by one frame at most. 1 <= chunk <= chunks.
 std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks);
 
 }  // namespace alcove

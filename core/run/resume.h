@@ -18,9 +18,9 @@ namespace alcove {
 std::string options_digest(const Settings& settings);
 
 /// Identities of the inputs of a plan's frames: inputs_of() of each, and of the frames around it that it uses. An
-/// identity is a hash of the contents of the files or, of an EXR or a large file, of its size, beginning and end; the
-/// beginning of an EXR file holds the places of all its chunks. A file that cannot be read counts as empty. Each file
-/// is read once. Any thread may ask.
+/// identity is a hash of the contents of the files. Of an EXR file or a large file, it is a hash of size, beginning and
+/// end: the beginning of an EXR file holds the places of all its chunks. A file that cannot be read counts as empty.
+/// Each file is read once. Any thread may ask.
 class InputIdentities {
  public:
   explicit InputIdentities(const FramePlan& plan) : plan_(plan) {}
@@ -48,8 +48,8 @@ struct FramesToCompute {
   Notes notes;  // why existing outputs are made again
 };
 
-/// The frames of the plan to compute: with --resume all but those with whole and current outputs. `digest` is that of
-/// the first frame.
+/// The frames of the plan to compute: with --resume all but those with whole and current outputs. `digest`: of the
+/// first frame.
 FramesToCompute frames_to_compute(const FramePlan& plan, const std::string& digest, InputIdentities& identities);
 
 }  // namespace alcove

@@ -1,4 +1,4 @@
-// The files of a run: what is read of each frame, and the outputs, which are checked before any work.
+// The files of a run: the inputs of each frame, and the outputs, which are checked before any work.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -14,15 +14,15 @@ namespace alcove {
 /// Whether the preview is the composite as a display shows it, and not the AO as data.
 bool shows_composite(const OutputSettings& output);
 
-/// All input files of a frame: those that options name, manifests of Cryptomattes, and the display configuration
-/// without the tables that it names. Opens files with Cryptomattes; an unreadable one has no manifest.
+/// All input files of a frame: the files that options name, manifests of Cryptomattes, and the display configuration,
+/// without its tables. Opens files with Cryptomattes. An unreadable file has no manifest.
 std::vector<NamedFile> inputs_of(const Settings& frame);
 
 /// Adds the inputs of the frames of all chunks, of the frames around them, and of all frames on the disk: another run
 /// may compute any of them.
 void add_inputs(FileUses& uses, const FramePlan& plan);
 
-/// Adds all that the run writes. `run` names it in messages where there are several.
+/// Adds all files that the run writes. `run` names the run in messages if there are several.
 void add_outputs(FileUses& uses, const FramePlan& plan, const std::string& run = "");
 
 /// Fails with ErrorKind::usage where the run would write a file that it reads, or one file twice.

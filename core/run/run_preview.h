@@ -42,19 +42,19 @@ class RunPreview {
   /// make no sense.
   MissingOptions missing_options();
 
-  /// Checks the settings, reads the lights of all frames, and finds radii by a frame's depth (--radius auto, 5%), the
-  /// same for every chunk. Gives the notes on all frames. Fails on contradicting settings, as notes_on_number() does,
-  /// and with ErrorKind::input if lights lack a frame, if no examined frame shows a surface for the radius, or if a
-  /// warning counts as an error.
+  /// Checks the settings, and reads the lights of all frames. Finds radii by a frame's depth (--radius auto, 5%), the
+  /// same ones for every chunk. Gives the notes on all frames. Fails on contradicting settings, and as
+  /// notes_on_number() does. Fails with ErrorKind::input if lights lack a frame, if no examined frame shows a surface
+  /// for the radius, or if a warning counts as an error.
   Notes prepare();
 
-  /// Settles the reading of one frame, which all others share: the first one whose pixels decide everything that files
-  /// and options leave open. None if no frame can be read, or if some cannot and the others show nothing: then each is
-  /// settled by itself. Closes all files.
+  /// Settles the reading that all frames share. It is the reading of the first frame whose pixels decide everything
+  /// that files and options leave open. Gives none if no frame can be read, or if some frames cannot be read and the
+  /// others show nothing. In this case each frame is settled by itself. Closes all files.
   std::optional<FrameSource> settle(std::uint64_t most_bytes);
 
-  /// Gives a frame of the plan, opened if it is not open already. Fails as open_frame() does. After settle() any thread
-  /// may call it.
+  /// Opens a frame of the plan, unless it is open already. Fails as open_frame() does. After settle() any thread may
+  /// call it.
   FrameSource open(const Settings& settings, int frame);
 
  private:
@@ -85,7 +85,7 @@ class RunPreview {
   std::map<int, FrameSource> opened_;
 };
 
-/// The note on the number in a single file's name, if it chooses the frame's camera from a list. Fails with
+/// The note on the number in a single file's name, if this number chooses the frame's camera from a list. Fails with
 /// ErrorKind::usage if the name has no clear number, and with ErrorKind::input if the list has no such frame or cannot
 /// be read.
 Notes notes_on_number(const FramePlan& plan);

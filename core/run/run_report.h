@@ -47,7 +47,7 @@ struct FrameReport {
   std::uint64_t rows_read = 0;  // decoded rows of the input, each as often as it was decoded
   // frames of the shot whose surfaces it uses; none without --around
   std::optional<std::vector<int>> frames_around;
-  // pixels of others that are left out: they move, or no other frame confirms them
+  // left-out pixels of others: a pixel moves, or no other frame confirms it
   std::uint64_t moved = 0, unconfirmed = 0;
   int parts = 1;  // of the frame; pixels that they share count in each
   /// Numbers of tiles of 8 x 8 pixels.
@@ -56,16 +56,16 @@ struct FrameReport {
     std::uint64_t kept = 0;      // the same as in the frame before
     std::uint64_t computed = 0;  // estimated
   } tiles;
-  // The sum of squared errors of an estimate with a tolerance, and the pixels that it is over.
+  // The sum of squared errors of an estimate with a tolerance, and the number of its pixels.
   double error_squares = 0, error_pixels = 0;
   std::optional<TakenVisibility> occlusion;  // of a frame with an estimate, where --stats asks for it
   std::optional<HiddenCounts> hidden;        // of a frame with known hidden surfaces
-  // Pixels with an estimate of their own, by the widest lattice that they lie on, of spacing 16, 8, 4, 2 and 1; if
-  // pixels share estimates. Of several radii for the largest.
+  // If pixels share estimates: the pixels with an estimate of their own, by the widest lattice of each pixel, of
+  // spacing 16, 8, 4, 2 and 1. Of several radii, for the largest.
   std::optional<std::array<std::uint64_t, kLattices>> estimates;
   std::string search;  // along slices, a word of --search; empty: the estimator has no such choice
-  // Depth samples, averaged over all pixels: the actual ones if pixels share estimates, else those that the settings
-  // ask for at surfaces.
+  // Depth samples, averaged over all pixels: the actual samples if pixels share estimates, else the samples that the
+  // settings ask for at surfaces.
   double samples_per_pixel = 0;
   double accumulated = 0;            // the number of averaged estimates, summed over its pixels
   std::uint64_t pixels_at_once = 0;  // the most that were computed at once

@@ -19,21 +19,21 @@ namespace alcove {
 /// data window.
 Window region_of(const FrameSource& source, const Region& roi);
 
-/// The margins around parts of a frame within which pixels influence their results: by the radius at the nearest depth,
-/// and by the filters of the settings.
+/// The margins around parts of a frame. Pixels within a margin influence the results of its part. A margin follows from
+/// the radius at the nearest depth, and from the filters of the settings.
 class Surroundings {
  public:
   /// Gives the depth of whole rows, as it is read.
   using DepthRows = std::function<std::vector<float>(const Window& rows)>;
 
-  /// Of a settled frame; `depth` is called when it is needed.
+  /// Of a settled frame. `depth` is called for the rows that are needed.
   Surroundings(const FrameSource& source, const Settings& settings, DepthRows depth);
   /// The same with the depth of the whole frame, which must outlive this.
   Surroundings(const FrameSource& source, const Settings& settings, std::span<const float> depth);
 
   /// The window to compute so that the results in a part have the bits of the whole frame.
   Window around(const Window& part);
-  /// Whether surfaces beyond the radius block: those of lights do.
+  /// Whether surfaces beyond the radius block, as they do before lights.
   bool reaches_beyond_radius() const { return occluders_ > radius_; }
 
  private:
@@ -51,7 +51,7 @@ class Surroundings {
   const std::vector<Block>& blocks_of(int block_row);
   Window window_of(int block_row, int column) const;
   std::vector<float> nearest_depths(int block_row);
-  /// The part with the reach of the filters: its depths decide how far the surroundings extend.
+  /// The part with the reach of the filters. The depths in this window decide how far the surroundings extend.
   Window direct(const Window& part) const;
   Reach reach(double distance, double nearest, const Window& block) const;
   /// A window enlarged by the reaches of its blocks.
@@ -93,8 +93,8 @@ struct WindowLimits {
   int longest_side = std::numeric_limits<int>::max();  // px
   std::uint64_t kept = 0;                              // bytes of host memory that are in use for any window
 
-  /// The limits of a frame's parts while its decoded planes stay in host memory. Fails as refuse() does if they do not
-  /// fit.
+  /// The limits of a frame's parts while the frame's decoded planes stay in host memory. Fails as refuse() does if the
+  /// planes do not fit.
   WindowLimits in_parts(FrameSource& source, const Settings& settings) const;
 
   /// `beside`: further bytes of host memory in use meanwhile.
@@ -103,7 +103,8 @@ struct WindowLimits {
   std::string why_not(const Window& computed) const;
   /// Fails for a frame whose smallest window is too large. `what` says so, and names remedies other than more memory.
   [[noreturn]] void refuse(const std::string& what, const Window& computed) const;
-  /// The same if `needs` would be enough. The kind is ErrorKind::usage if the user has given less.
+  /// The same, and the message names `needs`, which would be enough. The kind is ErrorKind::usage if the user has given
+  /// less.
   [[noreturn]] void refuse(const std::string& what, const MemoryNeeds& needs) const;
 
   /// The --memory that leaves a frame so many bytes, including the growth of the codecs' share: "395M".
@@ -122,9 +123,9 @@ MemoryNeeds tiles_within(FrameSource& source, const Settings& settings, const Wi
 /// Rows of tiles from the top, each from the left.
 using TileRows = std::vector<std::vector<Window>>;
 
-/// Cuts the window of all results into rows of tiles, from the top, and each row into tiles, from the left, so that
-/// each tile is allowed with its surroundings, and few pixels are computed twice. Fails as WindowLimits::refuse() does
-/// where the radius reaches so far that no tile is small enough.
+/// Cuts the window of all results into rows of tiles, from the top, and each row into tiles, from the left. The limits
+/// allow each tile with its surroundings, and few pixels are computed twice. Fails as WindowLimits::refuse() does if
+/// the radius reaches so far that no tile is small enough.
 TileRows tiles_of(const Window& whole, Surroundings& surroundings, const WindowLimits& limits,
                   const FrameSource& source);
 

@@ -30,8 +30,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string url_of(const ShownPicture& picture) {
-  const auto url = picture.channels == 1 ? grey_picture : color_picture;
-  return url(picture.width, picture.height, picture.pixels);
+  return picture_url(picture.width, picture.height, picture.channels, picture.pixels);
 }
 
 /// The member "scale" of a page's frame: the distances, as a picture of 255 logarithmic steps, 0 for sky.

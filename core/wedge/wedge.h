@@ -1,4 +1,4 @@
-// A wedge: a frame, or a few, in many looks, each of which a command makes; as a page, and as one labelled picture.
+// A wedge: one frame, or a few, in many looks, with the command of each look. It is a page, or one labelled picture.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -13,25 +13,26 @@
 namespace alcove {
 
 struct WedgeLook {
-  std::string name;                 // each look has another one
-  std::string command;              // the run that gives its bits
+  std::string name;                 // unique among the looks
+  std::string command;              // a run with the same bits
   Settings settings;                // of that run
-  double ms = 0;                    // of device time, for all frames
+  double ms = 0;                    // device time of all frames
   Notes notes = {};                 // on its frames
-  std::optional<Error> error = {};  // why one of its frames failed
+  std::optional<Error> error = {};  // the failure of one of its frames
 };
 
-/// Whether a look shows lights: it turns a sun, or its composite dims their layers.
+/// Whether a look shows lights: it turns a sun, or its composite dims layers of lights.
 bool shows_lights(const Settings& settings);
 
-/// Computes looks of the same frames, which are read alike, and once; all but time, notes and errors is given. Looks
-/// that differ only in their shaping have one estimate. Writes a page and a sheet; "" stands for none. A row of the
-/// sheet has all radii, where there are several and anything else differs too. A look that fails is left out. Fails
-/// with the first error where all looks fail, and with ErrorKind::output.
+/// Computes looks of the same frames, and fills in their time, notes and errors. Each frame is read once, in one way
+/// for all looks. Looks that differ only in their shaping share one estimate. Writes a page and a sheet, unless its
+/// path is "". If radii and other settings differ, a row of the sheet has all radii. The pictures leave out a look that
+/// fails. If all looks fail, the error of the first one is thrown. Fails with ErrorKind::output if a file cannot be
+/// written.
 void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet);
 
-/// What make_wedge() would do, as --dry-run prints it. Computes and writes nothing. Fails as that would on settings,
-/// names, and a single frame that cannot be read as it is.
+/// The text of --dry-run: frames, looks, memory and cost. Computes and writes nothing. Fails as make_wedge() does on
+/// settings, on names, and on a single frame that cannot be read.
 std::string wedge_text(const std::vector<WedgeLook>& looks);
 
 }  // namespace alcove

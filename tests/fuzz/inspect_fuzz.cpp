@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   settings.input = input.path();
   settings.fov = 60;
   fuzz::accepts([&] {
-    const Inspection inspection = inspect_frame(settings, 1);
+    const Inspection inspection = inspect_frame(settings, 1, {.inputs = settings});
     fuzz::require(nlohmann::json::accept(inspection_json(inspection)), "the JSON is JSON");
     const bool commands = std::ranges::any_of(inspection_text(inspection, true),
                                               [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; });

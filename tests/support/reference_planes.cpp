@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/reference_planes.h"
 
-#include "core/reference/reference_blocking.h"
+#include "core/reference/reference_slice.h"
 #include "tests/support/chain.h"
 
 namespace alcove::test {

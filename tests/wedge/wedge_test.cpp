@@ -60,7 +60,7 @@ class Wedge : public SequenceFolder {
     const Image made = read_exr_image(folder / file);
     std::vector<float> pixels(kWallWindow.pixels());  // of the display window, 0 outside of a region
     copy_common(made.plane(channel).data(), made.data, pixels.data(), kWallWindow);
-    return grey_picture(kWallWindow.width, kWallWindow.height, pixels);
+    return picture_url(kWallWindow.width, kWallWindow.height, 1, pixels);
   }
   void expect_bits_of_commands(const json& report) const {
     ASSERT_GE(report["images"].size(), report["candidates"].size());
@@ -90,7 +90,7 @@ TEST_F(Wedge, turns_a_sun_and_shows_its_shadow_by_one_estimate) {
     const std::string picture = report["images"][i]["result"];
     EXPECT_EQ(run_command_of(report, i, {}, "shadow.exr", "shadow-key.Y"), picture);
     const std::vector<float> preview = Picture(folder / "preview.png", "--preview").read(std::array<std::size_t, 1>{});
-    EXPECT_EQ(grey_picture(kWallWindow.width, kWallWindow.height, preview), picture) << "of the turned sun";
+    EXPECT_EQ(picture_url(kWallWindow.width, kWallWindow.height, 1, preview), picture) << "of the turned sun";
     pictures.insert(picture);
     estimates.insert(report["rows"][i]["estimate_ms"].get<double>());
   }
@@ -148,7 +148,7 @@ TEST_F(Wedge, reads_the_frame_as_run_does) {
   const auto one =
       std::ranges::find(report["images"], "radius 1", [](const json& image) { return image["candidate"]; });
   ASSERT_NE(one, report["images"].end());
-  EXPECT_TRUE((*one)["result"] == grey_picture(ao.data.width, ao.data.height, ao.pixels));
+  EXPECT_TRUE((*one)["result"] == picture_url(ao.data.width, ao.data.height, 1, ao.pixels));
 }
 
 TEST_F(Wedge, has_the_radius_that_inspect_proposes) {
