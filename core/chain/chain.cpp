@@ -56,10 +56,9 @@ FrameVisibility own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, con
   visible.completion = completion(gpu, work, visible.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
   const Visibility noisy{visible.estimate.ao, nullptr, visible.estimate.moments};
-  const FilterRuns runs = dilate(gpu, work, visible.estimate.listed, denoiser);
-  const Visibility of_radii = smooth(gpu, work, noisy, chosen, denoiser, runs, order);
+  const Visibility of_radii = smooth(gpu, work, noisy, chosen, denoiser, order);
   const Visibility smoothed = combine(gpu, work, of_radii, wanted.needs_scales());
-  visible.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smoothed, runs));
+  visible.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smoothed));
   if (wanted.has(&FrameOutputs::error)) visible.error = cut(gpu, frame, visible.estimate.error, "error");
   visible.stages = {work, noisy.ao, chosen, smoothed.ao, visible.estimate.completed, visible.estimate.listed.kinds};
   return visible;

@@ -127,12 +127,6 @@ struct SiteCounts {
   uint of_lattice[kLattices];  // of them, those on a lattice and on no wider one; from the widest on
 };
 
-/// The number of runs of pixels that a filter is listed for.
-struct RunCounts {
-  GroupCount groups;
-  uint listed;
-};
-
 // What classify says of a tile.
 ALCOVE_CONSTANT uint kTileOpen = 0;    // its visibility is 1: it is sky, or not needed
 ALCOVE_CONSTANT uint kTileListed = 1;  // it is to be estimated

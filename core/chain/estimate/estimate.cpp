@@ -232,8 +232,6 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
     result.listed = out.listed;
     result.told = out.told;
   }
-  // What is left out at the largest radius may be computed at another.
-  result.listed.skips_surfaces = result.listed.skips_surfaces && radii.size() == 1;
 }
 
 void estimate_curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
@@ -277,7 +275,6 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   list.counts = &gpu.buffer(prefix + "tile counts", sizeof(TileCounts));
   list.kinds = &gpu.buffer(prefix + "tile kinds", sizeof(uint) * tiles.x * tiles.y);
   const bool selects = skipping.skips_sky && gbuffer.needed;
-  list.skips_surfaces = skipping.changes || selects;
   gpu.clear(*list.counts);
   const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (out.order > 0 ? kClassifyWithFirst : 0) |
                     (out.order > 1 ? kClassifyWithSecond : 0) | (out.completed ? kClassifyWithCompleted : 0) |

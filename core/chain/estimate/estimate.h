@@ -47,7 +47,6 @@ struct TileList {
   gpu::Buffer* lines = nullptr;        // GroupCount of profile, from refine
   gpu::Buffer* sites = nullptr;        // in them, from list_sites; null: all of their pixels
   gpu::Buffer* site_counts = nullptr;  // one SiteCounts; null as the sites
-  bool skips_surfaces = false;         // more than sky may be left out
 };
 
 /// The workgroups of a pass over the listed tiles, at most one for each.
