@@ -135,7 +135,7 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const FrameVis
                         (wanted.has(&FrameOutputs::bent_normal) || wanted.has(&FrameOutputs::specular_occlusion));
   const gpu::Buffer& open = bent_normal(gpu, gbuffer, has_open ? visible.visibility.moments : nullptr);
   const Visibility visibility =
-      shape(gpu, gbuffer, visible.visibility, shaping_of(settings), frame[RawPlane::material_ao], visible.matte);
+      shape(gpu, gbuffer, visible.visibility, settings, frame[RawPlane::material_ao], visible.matte);
   FrameOutputs out = with_light(gpu, frame, visible, settings, wanted, counts_of(visible));
   out = curvature(gpu, gbuffer, visible.visibility, 1 + settings.further_radii.size(), wanted, visible.matte, out);
   out.ao = visibility.ao;

@@ -208,7 +208,6 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
                       const EstimatorSettings& settings, Estimate& result) {
   const auto radii = radii_of(settings);
   const Sampling sampling = sampling_of(settings, frame.frame);
-  const VolumeSamples volume{settings.samples, settings.sample_kernel, settings.range_check};
   Skipping skipping = skipping_of(settings, frame, gbuffer.grid);
   // Tiles that are as in the frame before keep what it found in them.
   if (result.completed && !skipping.changes) gpu.clear(*result.completed);
@@ -218,16 +217,12 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
     Estimate out = of_radius(result, plane, radii.size());
     out.listed = classify(gpu, gbuffer, skipping, reach, sites, out);
     list_sites(gpu, gbuffer, sites, out.listed);
-    if (tells_backs(settings)) {
-      const Chains links = chains(gpu, gbuffer, reach, frame[RawPlane::normal] != nullptr);
-      chain_ends(gpu, gbuffer, links);
-      out.told = &backs(gpu, gbuffer, links);
-    }
+    if (tells_backs(settings)) out.told = &backs(gpu, gbuffer, reach, frame[RawPlane::normal] != nullptr).words;
     switch (settings.estimator) {
       case Estimator::gtao:
       case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
       case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out); break;
-      case Estimator::crytek: crytek(gpu, gbuffer, reach, sampling, volume, out); break;
+      case Estimator::crytek: crytek(gpu, gbuffer, reach, sampling, settings, out); break;
     }
     result.listed = out.listed;
     result.told = out.told;
@@ -312,34 +307,26 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   return list;
 }
 
-Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
+Backs backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
   const View& view = gbuffer.view;
   const std::size_t segments = std::size_t(view.size.y) * groups_of(view.size.x, kSegment) +
                                std::size_t(view.size.x) * groups_of(view.size.y, kSegment);
   const std::size_t bytes = segments * 2 * sizeof(uint);
-  const Chains result{
-      {view, reach.radius, has_normals ? 1u : 0u}, gpu.buffer("chains", bytes), gpu.buffer("chain ends", bytes)};
-  gpu.dispatch("chains", result.params,
-               {{"Depth", occluder_depth_of(gbuffer)}, {"Normal", gbuffer.normal}, {"Chains", result.links}},
+  const gpu::Buffer &chains = gpu.buffer("chains", bytes), &ends = gpu.buffer("chain ends", bytes);
+  const gpu::Buffer& words = gpu.buffer("backs", plane_bytes(view));
+  const BacksParams params{view, reach.radius, has_normals ? 1u : 0u};
+  gpu.dispatch("chains", params,
+               {{"Depth", occluder_depth_of(gbuffer)}, {"Normal", gbuffer.normal}, {"Chains", chains}},
                {uint(std::min<std::size_t>(segments, kChainsRow)), groups_of(int(segments), kChainsRow)});
-  return result;
-}
-
-void chain_ends(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains) {
-  gpu.dispatch("chain_ends", chains.params, {{"Chains", chains.links}, {"Ends", chains.ends}},
-               uint(gbuffer.view.size.x + gbuffer.view.size.y));
-}
-
-const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains) {
-  gpu::Buffer& result = gpu.buffer("backs", plane_bytes(gbuffer.view));
-  gpu.dispatch("backs", chains.params,
+  gpu.dispatch("chain_ends", params, {{"Chains", chains}, {"Ends", ends}}, uint(view.size.x + view.size.y));
+  gpu.dispatch("backs", params,
                {{"Depth", occluder_depth_of(gbuffer)},
                 {"Normal", gbuffer.normal},
-                {"Chains", chains.links},
-                {"Ends", chains.ends},
-                {"Backs", result}},
-               extent_of(gbuffer.view));
-  return result;
+                {"Chains", chains},
+                {"Ends", ends},
+                {"Backs", words}},
+               extent_of(view));
+  return {words, chains};
 }
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
@@ -389,19 +376,19 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const 
 }
 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-            const VolumeSamples& samples, const Estimate& out) {
+            const EstimatorSettings& settings, const Estimate& out) {
   CrytekParams params{};
   params.view = gbuffer.view;
   params.radius = reach.radius;
   params.bias = reach.bias;
-  params.uniform_volume = samples.kernel == SampleKernel::uniform ? 1 : 0;
-  params.range_check = range_check_of(samples.range_check);
+  params.uniform_volume = settings.sample_kernel == SampleKernel::uniform ? 1 : 0;
+  params.range_check = range_check_of(settings.range_check);
   params.noise_origin = gbuffer.grid.origin;
   params.noise_shift = sampling.noise_shift;
   params.plane = out.plane;
   params.depth_precision = gbuffer.depth_precision;
   gpu.dispatch("crytek", params, buffers_of(gbuffer, out), estimate_extent(out.listed),
-               {uint(samples.count), out.listed.sites ? 1u : 0u});
+               {uint(settings.samples), out.listed.sites ? 1u : 0u});
 }
 
 gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, const Sites& sites) {

@@ -116,13 +116,6 @@ struct Sampling {
 };
 Sampling sampling_of(const EstimatorSettings& settings, int frame);
 
-/// Crytek's samples in the volume of the hemisphere.
-struct VolumeSamples {
-  int count;
-  SampleKernel kernel;
-  RangeCheck range_check;
-};
-
 /// The tiles that may be left out.
 struct Skipping {
   bool skips_sky;
@@ -141,20 +134,13 @@ const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skip
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, const Reach& reach,
                   const Sites& sites, const Estimate& out, const std::string& prefix = "");
 
-/// The chains of pixels of one surface in rows and columns, see backs.glsl, and their lengths beyond segments.
-struct Chains {
-  BacksParams params;
-  gpu::Buffer &links, &ends;
+/// The thickness of the solid at each pixel, a word each, and the chains of pixels of one surface that tell it: see
+/// chains.comp, chain_ends.comp and backs.comp.
+struct Backs {
+  const gpu::Buffer &words, &chains;
 };
-
-/// Links pixels: see chains.comp. Without normals of their own, surfaces end by depth alone.
-Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals);
-
-/// Measures chains beyond segments: see chain_ends.comp.
-void chain_ends(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains);
-
-/// The thickness of the solid at each pixel: see backs.comp.
-const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains);
+/// Without normals of their own, surfaces end by depth alone.
+Backs backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals);
 
 /// gtao and bitmask. Tiles that have hidden surfaces within reach are searched by horizon_layers.
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
@@ -162,7 +148,7 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,
           const Estimate& out);
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-            const VolumeSamples& samples, const Estimate& out);
+            const EstimatorSettings& settings, const Estimate& out);
 
 /// Sums for each tile of 8 x 8 pixels the visibility that completed surfaces block, and that all block, for the largest
 /// radius, at the sites of the widest lattice: see completion.comp. Null without estimate.completed.

@@ -49,11 +49,7 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   const Reach reach = reach_of(sampled, radii_of(settings).back());
   const Sampling sampling = sampling_of(sampled, frame.frame);
   const GBuffer counted = occluders(gpu, gbuffer, frame);
-  if (!told && tells_backs(sampled)) {
-    const Chains links = chains(gpu, counted, reach, frame[RawPlane::normal] != nullptr);
-    chain_ends(gpu, counted, links);
-    told = &backs(gpu, counted, links);
-  }
+  if (!told && tells_backs(sampled)) told = &backs(gpu, counted, reach, frame[RawPlane::normal] != nullptr).words;
   // Of the visibility, and of the two that bracket it for the confidence: the thinnest occluders, then the thickest.
   struct Rule {
     GBuffer counted;

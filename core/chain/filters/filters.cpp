@@ -80,10 +80,6 @@ std::vector<double> weights_of(const EstimatorSettings& settings) {
   return reaching(kernel.empty() ? parabola(narrowness_of(settings), reach) : kernel, reach);
 }
 
-gpu::Buffer& denoised(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
-  return gpu.buffer(prefix + "denoised", bytes);
-}
-
 /// The parameters of the filter, without the axis.
 template <class Params>
 Params filter_params(const GBuffer& gbuffer, const Denoiser& denoiser) {
@@ -148,7 +144,7 @@ gpu::Buffer& in_rows_and_columns(gpu::Recorder& gpu, const char* kernel, Params 
                                  gpu::Buffer& planes, const std::string& prefix, const std::vector<gpu::Binding>& more,
                                  const Constants& constants) {
   gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
-  gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
+  gpu::Buffer& result = gpu.buffer(prefix + "denoised", planes.bytes());
   const ivec2 size = gbuffer.view.size;
   const auto along = [&](ivec2 axis, const gpu::Buffer& from, const gpu::Buffer& to) {
     params.axis = axis;
@@ -222,7 +218,7 @@ const gpu::Buffer& fit_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const 
 gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& fitted, const Sites& sites,
                            const Denoiser& denoiser, const std::string& prefix, uint moments) {
   const std::size_t planes = fitted.bytes() / site_bytes(sites.grid, 2 * sizeof(uint));
-  gpu::Buffer& result = denoised(gpu, prefix, planes * plane_bytes(gbuffer.view));
+  gpu::Buffer& result = gpu.buffer(prefix + "denoised", planes * plane_bytes(gbuffer.view));
   gpu.dispatch("spread_blocks", SpreadBlocksParams{gbuffer.view, sites.grid, denoiser.of_blocks->slope},
                {{"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},
