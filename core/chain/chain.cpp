@@ -6,10 +6,7 @@
 
 #include "core/chain/estimate/shadow.h"
 #include "core/chain/filters/filters.h"
-#include "core/chain/geometry/matte.h"
 #include "core/chain/hidden/hidden.h"
-#include "core/chain/open_sky.h"
-#include "core/chain/quick/quick.h"
 #include "core/chain/results/confidence.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/reduce.h"

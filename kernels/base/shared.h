@@ -49,6 +49,10 @@ layout(scalar) buffer;
 float lesser(float a, float b) { return a < b ? a : b; }
 float greater(float a, float b) { return a > b ? a : b; }
 
+// By the bits, since drivers without SignedZeroInfNanPreserve may take isnan and isinf for false.
+bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+bool is_nan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
+
 #endif
 
 ALCOVE_BEGIN
@@ -114,6 +118,14 @@ struct TileCounts {
   uint sky;      // or not needed
   uint kept;     // as the frame before has them
   uint layered;  // of the listed ones, those with kTileLayered
+};
+
+ALCOVE_CONSTANT int kBlock = 4;  // px a side of the blocks in which sites are chosen: pixels with an estimate of their own
+
+/// The blocks of an image. They are counted from the display window's corner, so that a crop has those of the whole.
+struct SiteGrid {
+  ivec2 overhang;  // px of the first block to the left of the image and above it
+  ivec2 blocks;    // in x and y
 };
 
 // How far from a pixel others decide whether it is a site, in px: they are of its block.

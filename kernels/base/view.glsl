@@ -81,3 +81,8 @@ float depth_beyond(View view, vec2 from, float z, vec3 n, vec2 mirrored, float m
   const bool goes_on = mirrored_z < kSkyDepth && dot(n, inward) >= -kMostBend * length(inward) - kRounding * z;
   return z < kSkyDepth && faces && goes_on && there > z / kMostChange && there < z * kMostChange ? there : kSkyDepth;
 }
+
+// Depths as keys that grow while a nearer one is sought: 0 is none, so a cleared plane is empty. Floats above 0 are
+// ordered as their bits. The maximum of keys does not depend on the order in which they come.
+uint key_of(float z) { return floatBitsToUint(kSkyDepth) - floatBitsToUint(z); }
+float depth_of(uint key) { return uintBitsToFloat(floatBitsToUint(kSkyDepth) - key); }

@@ -150,6 +150,19 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
             const EstimatorSettings& settings, const Estimate& out);
 
+// The quick search of sites, with fewer rules than `horizon`.
+
+/// Whether a frame is searched quickly: the settings ask for it, and for nothing that it cannot do. Several radii, a
+/// falloff, a given thickness, surfaces that are not completed everywhere, a uniform density, moments,
+/// curvature, hidden surfaces, and surfaces that are no occluders are left to the usual search.
+bool searches_quickly(const EstimatorSettings& settings, const GBuffer& gbuffer, uint order, bool with_curvature);
+
+/// Depth with a margin about the image, into which surfaces go on: see margin.comp. sites() fills its middle.
+const gpu::Buffer& margin(gpu::Recorder& gpu, const GBuffer& gbuffer);
+/// The visibility of the sites.
+Estimate quick_horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const gpu::Buffer& wide,
+                       const FrameInputs& frame, const EstimatorSettings& settings);
+
 /// Sums for each tile of 8 x 8 pixels the visibility that completed surfaces block, and that all block, for the largest
 /// radius, at the sites of the widest lattice: see completion.comp. Null without estimate.completed.
 gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, const Sites& sites);

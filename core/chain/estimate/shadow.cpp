@@ -10,7 +10,6 @@
 
 #include "core/chain/base/planes.h"
 #include "core/chain/filters/filters.h"
-#include "core/chain/geometry/matte.h"
 #include "core/chain/results/confidence.h"
 
 namespace alcove {

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "core/base/settings.h"
 #include "core/chain/base/planes.h"
-#include "core/chain/geometry/matte.h"
+#include "core/chain/geometry/geometry.h"
 #include "core/chain/results/outputs.h"
 
 namespace alcove {

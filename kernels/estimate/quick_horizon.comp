@@ -10,7 +10,7 @@
 //  7. Nothing goes on behind others. Beyond the border samples find the depths that margin.comp has put there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/quick/quick.h"
+#include "kernels/estimate/estimate.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/arcs.glsl"

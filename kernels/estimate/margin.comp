@@ -5,7 +5,7 @@
 // sites writes what is seen. Invocations take first the bands above and below, then the ends of rows.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/quick/quick.h"
+#include "kernels/estimate/estimate.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 
