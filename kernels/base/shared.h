@@ -120,7 +120,8 @@ struct TileCounts {
   uint layered;  // of the listed ones, those with kTileLayered
 };
 
-ALCOVE_CONSTANT int kBlock = 4;  // px a side of the blocks in which sites are chosen: pixels with an estimate of their own
+// px a side of the blocks in which sites are chosen: pixels with an estimate of their own
+ALCOVE_CONSTANT int kBlock = 4;
 
 /// The blocks of an image. They are counted from the display window's corner, so that a crop has those of the whole.
 struct SiteGrid {

@@ -38,7 +38,7 @@ Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, int plane
     const bool is_near = s.distance_sq < reach.front_sq;
     found.at[i] = s;
     found.exists[i] = i == 0 ? true : both(s.z < kSkyDepth, is_near);
-    closes[i] = z < 0.0;
+    closes[i] = kSurfaces > 1 && z < 0.0;
   }
   for (int i = 0; i < kSurfaces; i++) {
     const Sample s = found.at[i];
