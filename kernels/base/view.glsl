@@ -39,6 +39,9 @@ bool inside(View view, ivec2 pixel) {
 
 int index_of(View view, ivec2 pixel) { return pixel.y * view.size.x + pixel.x; }
 
+/// The width of a pixel at planar depth z, scene units.
+float pixel_width(View view, float z) { return view.tangent_per_pixel.x * (view.orthographic != 0 ? 1.0 : z); }
+
 /// What is added to a number of pixels that would be whole but for rounding, so that every device counts as many.
 const float kWholePixels = 0.01;
 
@@ -59,6 +62,10 @@ const float kRunSlope = 8.0;
 /// The sine of the angle below a border pixel's tangent plane from which on what is seen is another surface: a smooth
 /// one bends less, and a normal map leans less.
 const float kMostBend = 0.55;
+
+/// The normal says nothing of where a surface goes on if it is seen more nearly edge on than this: the sine of the
+/// angle between the surface and the eye's ray. A normal that leaned away from the eye has been bent to 0.001.
+const float kLeastFacingToGoOn = 0.02;
 
 /// Places less than this part of the depth apart are one.
 const float kRounding = 1e-6;

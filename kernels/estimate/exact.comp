@@ -556,9 +556,6 @@ void add_beyond(inout Found found, Context c, int last) {
 const int kStepsBeyond = 8;
 const float kReachBeyond = 1.2, kMostBeyond = 2000.0;
 
-/// The plane of a pixel that is seen more nearly edge on than this does not go on: see depth_beyond().
-const float kLeastFacingBeyond = 0.02;
-
 /// The depth at a step of the line beyond the border, counted from the display window's corner: the plane of the
 /// border's nearest pixel goes on there. kSkyDepth: nothing does.
 float depth_at_step(Context c, LinePlane plane, float at) {
@@ -571,7 +568,7 @@ float depth_at_step(Context c, LinePlane plane, float at) {
   const vec2 to = plane.foot + (plane.start + at * plane.step) * plane.along;
   const float mirrored_z = occluder_depth[index_at(c.view, c.lines, mirrored.x, mirrored.y)];
   return depth_beyond(c.view, from, occluder_depth[index], unpack_normal(normal[index]),
-                      tangent_at(c.view, c.lines, mirrored + origin), mirrored_z, to, kLeastFacingBeyond);
+                      tangent_at(c.view, c.lines, mirrored + origin), mirrored_z, to, kLeastFacingToGoOn);
 }
 
 /// 5. Adds what goes on beyond the image's border. With `auto` it is as thick as it is wide there so far, and

@@ -99,9 +99,6 @@ const bool kHasBacks = (kSolid & kTellsBacks) != 0u;
 /// width stands in for what is hidden, too.
 const float kThicknessPerWidth = 1.25, kKnownThicknessPerWidth = 0.6;
 
-/// A run reaches on average so far into the gaps to the samples before and behind it: up to their middles at most.
-const float kGapPart = 1.0 / 3.0;
-
 /// All that is endless is one surface. Two samples of it on either side of the sphere are neighbours if their squared
 /// distances are within this factor of its.
 const float kSameSurface = 1.44;
@@ -647,14 +644,6 @@ mat2x3 search(Receiver r, Side side, Reach reach, Draw draw, out vec2 curved) {
   mat2x3 arcs = blocked_arcs(side, all, draw.shift);
   if (kTellsCompleted) arcs[1].z = arcs[0].x - blocked_arcs(side, found.blocked, draw.shift)[0].x;
   return arcs;
-}
-
-/// Random numbers of a side, from those of its pixel. The boundaries of the sectors move by the fraction of a multiple
-/// of the steps' jitter. Of a number that is even in [0, 1), the fraction of m times it is even too, and their
-/// correlation is 1 / m: here 9 %.
-Draw draw_of(vec2 noise, uint slice, uint side) {
-  const float jitter = fract(noise.y + kGolden * float(2u * slice + side));
-  return Draw(jitter, fract(11.0 * jitter));
 }
 
 #include "kernels/estimate/receivers.glsl"

@@ -24,9 +24,6 @@ ivec2 place_of(ivec2 size, int at) {
   return end.y < size.y ? end + ivec2(end.x < kDepthMargin ? 0 : size.x, kDepthMargin) : ivec2(-1);
 }
 
-/// The normal says nothing of where a surface goes on if it is seen more nearly edge on than this: see pieces.glsl.
-const float kLeastFacingToGoOn = 0.02;
-
 void main() {
   const View view = params.view;
   const ivec2 place = place_of(view.size, int(gl_GlobalInvocationID.x));

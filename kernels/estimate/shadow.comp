@@ -61,9 +61,6 @@ const float kThicknessPerWidth = 0.8, kKnownThicknessPerWidth = 0.4, kHiddenThic
 /// more often wrong than right.
 const float kTangentBeyond = 0.3, kSizesBeyond = 4.0;
 
-/// Beyond the border a surface goes on where it is seen no more edge-on than this.
-const float kLeastFacingToGoOn = 0.02;
-
 /// So many pixels are looked at one by one before their block is, again: a ray leaves the plane that it starts on.
 const int kStepsAlone = 4;
 
