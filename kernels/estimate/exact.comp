@@ -43,6 +43,7 @@
 #include "kernels/estimate/slice.glsl"
 #include "kernels/estimate/sectors.glsl"
 #include "kernels/estimate/lines.glsl"
+#include "kernels/estimate/strokes.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 // 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first, is_last
@@ -80,14 +81,9 @@ const bool kGoesBeyond = (kCompletes & kExactBorder) != 0u;
 const bool kGoesOn = (kCompletes & kExactBehind) != 0u;
 const bool kTellsApart = (kCompletes & kExactApart) != 0u;
 
-const float kNone = 1e30;
-
 /// A vertex that stands alone is the end of a stroke from this part of its distance on: so short that its depth within
 /// the sphere and its slopes are those of the vertex within 0.1 %, and long enough not to be lost in rounding.
 const float kShortStroke = 0.999;
-
-/// A ray that misses the sphere by less than this part of its squared radius touches it.
-const float kTouches = 1e-3;
 
 /// A walk from vertex to vertex of one side.
 struct Walk {
@@ -99,65 +95,6 @@ struct Walk {
   float last_thickness;  // where it ends
 };
 
-/// A piece of the profile, in (across, toward).
-struct Stroke {
-  vec2 from, to;
-};
-
-/// 6. The part of a stroke within the sphere of the radius.
-struct Clipped {
-  vec2 near, far;
-  bool is_within;  // whether it holds anything
-};
-
-/// The direction of the eye's ray through a place, in (across, toward).
-vec2 away_from_eye(vec2 place, float eye_distance) {
-  const vec2 ray = mix(vec2(0, -1), place - vec2(0, eye_distance), bvec2(eye_distance < kNone));
-  return ray * inversesqrt(dot(ray, ray));
-}
-
-/// slope_of() the back of an occluder that is endless: where the eye's ray through its front (across, toward) leaves
-/// the sphere.
-float back_of(vec2 front, float eye_distance, float radius_sq) {
-  const vec2 direction = away_from_eye(front, eye_distance);
-  const float middle = dot(front, direction);
-  const float leaves = sqrt(max(0.0, middle * middle - dot(front, front) + radius_sq)) - middle;
-  return slope_of(front + leaves * direction);
-}
-
-/// slope_of() where the eye's ray through a front (across, toward) enters what of a solid lies within the sphere, and
-/// where it leaves that; (-1, 1): nothing of it lies there. The solid is `thickness` deep. back: its end.
-vec2 depths_of(vec2 front, float eye_distance, float thickness, float radius_sq, out vec2 back) {
-  const vec2 direction = away_from_eye(front, eye_distance);
-  const float middle = dot(front, direction);
-  const float outside_sq = dot(front, front) - radius_sq;
-  const float inside_sq = middle * middle - outside_sq;
-  const float inside = sqrt(max(0.0, inside_sq));
-  const float enters = mix(0.0, -inside - middle, outside_sq > 0.0);
-  const float leaves = min(thickness, inside - middle);
-  back = front + thickness * direction;
-  const bool exists =
-      both(both(front.x > 0.0, inside_sq > -kTouches * radius_sq), both(enters >= 0.0, enters <= leaves));
-  return exists ? vec2(slope_of(front + enters * direction), slope_of(front + leaves * direction)) : vec2(-1, 1);
-}
-
-/// The part of a stroke within the sphere of the radius about the receiver: with from + t (to - from), the t between
-/// the roots of |from + t (to - from)|^2 = radius^2. They hold products of four lengths, which overflow where the
-/// scene's numbers are large. So `along` is divided by a power of two near the receiver's depth, and t is multiplied by
-/// it, which changes no bit.
-Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
-  const vec2 from = stroke.from, along = (1.0 / unit) * (stroke.to - stroke.from);
-  const float a = dot(along, along);
-  const float middle = dot(from, along);
-  const float beside = from.x * along.y - from.y * along.x;
-  const float inside_sq = a * radius_sq - beside * beside;
-  const float inside = sqrt(max(inside_sq, 0.0));
-  const float scale = 1.0 / a;
-  const float enters = max((-middle - inside) * scale, 0.0);
-  const float leaves = min((inside - middle) * scale, unit);
-  return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
-}
-
 /// The stroke that ends at a vertex `steps` from the receiver. It begins at the vertex before. Nothing is seen before
 /// the first vertex of a side, to which it begins at the pixel next to the receiver. A vertex that begins a run stands
 /// alone, as a stroke that is short.
@@ -165,19 +102,6 @@ Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
   const float next_pixel = min(kShortStroke, 1.0 / float(steps));
   const vec2 onward = walk.starts ? next_pixel * place : walk.last;
   return Stroke(begins ? kShortStroke * place : onward, place);
-}
-
-/// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
-const float kBesideReceiver = 1e-3;
-
-/// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
-/// away from it.
-Stroke with_unseen(Stroke stroke, bool begins, vec2 unseen) {
-  const float across = stroke.to.x;
-  const float least = kBesideReceiver * across;
-  const float part = unseen.x < least ? (across - least) / (across - unseen.x) : 1.0;
-  const vec2 toward = stroke.to + part * (unseen - stroke.to);
-  return begins ? Stroke(toward, stroke.to) : Stroke(stroke.from, unseen);
 }
 
 /// The receiver in the plane of its line, where the profile has its vertices too.
@@ -331,8 +255,8 @@ Stroke before_sphere(Stroke stroke, vec2 leaving) {
   return Stroke(both(from > 0.0, to < 0.0) ? end : stroke.from, both(to > 0.0, from < 0.0) ? end : stroke.to);
 }
 
-/// 7. Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set
-/// apart. It belongs to the vertex at a corner. goes_on: from there on it is not seen, or up to there, and need not be
+/// 6. and 7. Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a
+/// set apart. It belongs to the vertex at a corner. goes_on: from there on it is not seen, or up to there, and need not be
 /// straight with what is; both hang together there, so they block one interval.
 void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner corner, bool goes_on) {
   const Search search = c.search;

@@ -24,8 +24,12 @@ struct Surfaces {
   vec2 solid[kMostSurfaces];     // of those the slope_of() its front and of its back; (-1, 1): it does not block
 };
 
-/// The surfaces at a pixel of a side. Of hidden ones only those near the sphere count: others say nothing. plane: of
-/// `hidden`, in pixels.
+/// The i-th surface of a pixel; below 0: it closes the solid of the one before it. plane: of `hidden`, in pixels.
+float surface_at(int index, int i, int plane) {
+  return kSurfaces == 1 || i == 0 ? occluder_depth[index] : hidden[index + (i - 1) * plane];
+}
+
+/// The surfaces at a pixel of a side. Of hidden ones only those near the sphere count: others say nothing.
 Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, int plane) {
   const vec2 beside = round(side.direction_px * offset);
   const ivec2 hit = r.pixel + ivec2(beside);
@@ -33,7 +37,7 @@ Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, int plane
   Surfaces found;
   bool closes[kMostSurfaces];
   for (int i = 0; i < kSurfaces; i++) {
-    const float z = i == 0 ? occluder_depth[index] : hidden[index + (i - 1) * plane];
+    const float z = surface_at(index, i, plane);
     const Sample s = sample_of(r, side, reach, offset, beside, abs(z));
     const bool is_near = s.distance_sq < reach.front_sq;
     found.at[i] = s;
@@ -54,8 +58,8 @@ Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, int plane
 /// The depth of the i-th surface of a pixel of a side; of a hidden one only near the sphere, as in surfaces_at().
 float depth_at(Receiver r, Side side, Reach reach, ivec2 pixel, int i, int plane) {
   const int index = pixel.y * reach.width + pixel.x;
-  if (i == 0) return occluder_depth[index];
-  const float z = abs(hidden[index + (i - 1) * plane]);
+  const float z = abs(surface_at(index, i, plane));
+  if (kSurfaces == 1 || i == 0) return z;
   const vec2 place = place_of(r, side, vec2(pixel - r.pixel), z, r.perspective ? z : 1.0);
   return dot(place, place) < reach.front_sq ? z : kNoSurface;
 }

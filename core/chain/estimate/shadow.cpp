@@ -90,10 +90,8 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
                             : searches_exactly(settings) ? kDirectionsExact
                                                          : std::max(uint(settings.slices), kLeastDirections);
     const std::vector<uint> constants{solid, directions, rule == 2 ? 1u : 0u};
-    if (gbuffer.surfaces == 1)
-      gpu.dispatch("shadow", params, buffers, extent_of(gbuffer.view), constants);
-    else
-      gpu.dispatch("shadow_layers", params, buffers, extent_of(gbuffer.view), constants);
+    gpu.dispatch(gbuffer.surfaces == 1 ? "shadow" : "shadow_layers", params, buffers, extent_of(gbuffer.view),
+                 constants);
   };
   const auto estimate = [&](bool filtered, const gpu::Buffer& result) {
     for (std::size_t i = 0; i < count; i++)
