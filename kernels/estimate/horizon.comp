@@ -36,6 +36,7 @@
 //     (line 30): so it is exactly 1 where nothing rises above the tangent plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "kernels/estimate/estimate.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
@@ -177,7 +178,7 @@ mat2x3 blocked_arcs(Side side, Blocked blocked, float shift) {
 float thickness_of(Receiver r, Reach reach, Run run, float z, float gap) {
   if (kThickness != kThicknessWidth) return reach.thickness;
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0), wider = 1.0 + kGapPart * (run.gap + gap);
-  const float per_width = run.knows ? kKnownThicknessPerWidth : kThicknessPerWidth;
+  const float per_width = kSurfaces > 1 && run.knows ? kKnownThicknessPerWidth : kThicknessPerWidth;
   const float width = per_width * (length(run.end - run.start) + wider * pixel);
   return run.is_round ? 0.0 : levelled(width, kWidestRun * reach.radius);
 }
@@ -407,7 +408,7 @@ struct Solids {
 /// back, and hidden ones as far as the sphere.
 void add_layers(inout Found found, inout Solids last, Receiver r, Side side, Reach reach, Draw draw, Surfaces here,
                 float gap) {
-  for (int i = 0; i < kSurfaces; i++) {
+  [[unroll]] for (int i = 0; i < kSurfaces; i++) {
     const Sample s = here.at[i];
     const bool joins = both(same_surface(r, reach, s.z, last.z[i], gap), last.slopes[i].x >= last.slopes[i].y);
     const vec2 solid = here.has_back[i] ? here.solid[i] : vec2(-1, 1);
@@ -431,8 +432,8 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
   Sample last = receiver_sample(r);
   ivec2 last_pixel = r.pixel;
   Solids solids;
-  for (int i = 0; i < kSurfaces; i++) solids.z[i] = kNoLastSurface;
-  for (int i = 0; i < kSurfaces; i++) solids.slopes[i] = vec2(-1, 1);
+  [[unroll]] for (int i = 0; i < kSurfaces; i++) solids.z[i] = kNoLastSurface;
+  [[unroll]] for (int i = 0; i < kSurfaces; i++) solids.slopes[i] = vec2(-1, 1);
   for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter);
     Sample s;
@@ -440,7 +441,7 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
     if (kSurfaces == 1) {
       s = sample_at(r, side, reach, offset);
     } else {
-      const Surfaces here = surfaces_at(r, side, reach, offset, plane);
+      const Surfaces here = surfaces_at(r, side, reach, offset, round(side.direction_px * offset), plane);
       add_layers(found, solids, r, side, reach, draw, here, offset - last.offset);
       s = here.at[0];
       has_back = here.has_back[0];
@@ -480,7 +481,7 @@ struct Slot {
 /// The slot from which a surface goes on; one of them where it begins.
 Slot slot_before(Slot slots[kMostSurfaces], int from) {
   Slot slot = slots[0];
-  for (int j = 1; j < kSurfaces; j++) {
+  [[unroll]] for (int j = 1; j < kSurfaces; j++) {
     const bool is_it = from == j;
     const Slot other = slots[j];
     slot = Slot(is_it ? other.z : slot.z, is_it ? other.slope : slot.slope, is_it ? other.above : slot.above,
@@ -515,10 +516,11 @@ Links links_to(Receiver r, Side side, Reach reach, Surfaces here, ivec2 pixel, S
                ivec2 last_pixel, float gap, int plane) {
   const ivec2 middle = last_pixel + pixel >> 1;
   float z[kMostSurfaces], middle_z[kMostSurfaces];
-  for (int j = 0; j < kSurfaces; j++) z[j] = slots[j].z;
+  [[unroll]] for (int j = 0; j < kSurfaces; j++) z[j] = slots[j].z;
   // The receiver itself need be no occluder.
-  for (int i = 0; i < kSurfaces; i++)
+  [[unroll]] for (int i = 0; i < kSurfaces; i++) {
     middle_z[i] = middle == last_pixel ? z[i] : depth_at(r, side, reach, middle, i, plane);
+  }
   return Links(links_of(r, reach, here, middle_z, z, gap),
                is_through(r, reach, here.at[0].z, middle_z[0], last_z, gap));
 }
@@ -526,7 +528,7 @@ Links links_to(Receiver r, Side side, Reach reach, Surfaces here, ivec2 pixel, S
 /// Whether the surface of a slot goes on above the tangent plane.
 bool goes_on_above(Surfaces here, int from[kMostSurfaces], int j) {
   bool goes_on = false;
-  for (int i = 0; i < kSurfaces; i++) goes_on = both(from[i] == j, here.at[i].above) ? true : goes_on;
+  [[unroll]] for (int i = 0; i < kSurfaces; i++) goes_on = both(from[i] == j, here.at[i].above) ? true : goes_on;
   return goes_on;
 }
 
@@ -540,7 +542,7 @@ float told_behind(inout Run run, Receiver r, Reach reach, Sample s, uint word, u
 
 /// Takes the i-th surface of a sample into the slot that it goes on from. connected: it goes on from any.
 void take_sample(inout Found found, inout Slot slot, Receiver r, Side side, Reach reach, Surfaces here, int i,
-                 ivec2 pixel, bool connected, float gap) {
+                 vec2 beside, bool connected, float gap) {
   const Sample s = here.at[i];
   const vec2 open = slopes_since(s, connected, slot.above, slot.within, slot.slope);
   const bool begins = both(connected, s.above) ? false : true, has_back = here.has_back[i];
@@ -554,10 +556,11 @@ void take_sample(inout Found found, inout Slot slot, Receiver r, Side side, Reac
   float told = 0.0, end = 1.0;
   if (kHasBacks && i == 0) {
     const bool is_told = both(!knows, !has_back);
+    const ivec2 pixel = r.pixel + ivec2(beside);
     const uint word = is_told ? backs[pixel.y * reach.width + pixel.x] : 0u;
     const float deeper = told_behind(run, r, reach, s, word, outline_of(side.direction_px), begins);
     told = is_told ? deeper : 0.0;
-    end = is_told ? slope_behind(r, side, s, vec2(pixel - r.pixel), told) : 1.0;
+    end = is_told ? slope_behind(r, side, s, beside, told) : 1.0;
   }
   const vec2 slopes = has_back ? here.solid[i] : open;
   run.near = greater(counts ? slopes.x : -1.0, run.near);
@@ -577,8 +580,9 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
   Sample last = receiver_sample(r);
   ivec2 last_pixel = r.pixel;
   Slot slots[kMostSurfaces];
-  for (int i = 0; i < kSurfaces; i++)
+  [[unroll]] for (int i = 0; i < kSurfaces; i++) {
     slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, true, true, true, run_from(vec2(0), 0.0));
+  }
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
   int k = 0;
@@ -586,27 +590,32 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     do {
       const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
       End ends[kMostSurfaces];
-      for (int j = 0; j < kSurfaces; j++) ends[j] = end_of(r, reach, slots[j], gap, draw.shift);
-      const ivec2 pixel = pixel_at(r, side, offset);
-      const Surfaces here = surfaces_at(r, side, reach, offset, plane);
+      [[unroll]] for (int j = 0; j < kSurfaces; j++) ends[j] = end_of(r, reach, slots[j], gap, draw.shift);
+      const vec2 beside = round(side.direction_px * offset);
+      const ivec2 pixel = r.pixel + ivec2(beside);
+      const Surfaces here = surfaces_at(r, side, reach, offset, beside, plane);
       const Links links = links_to(r, side, reach, here, pixel, slots, last.z, last_pixel, gap, plane);
       const Sample s = here.at[0];
       const float rises = slopes_since(s, links.connected, last.above, last.within, last.slope).x;
-      follow(found, r, side, reach, s, last, vec2(pixel - r.pixel), links.connected, rises);
+      follow(found, r, side, reach, s, last, beside, links.connected, rises);
       const bool goes_on = s.z > last.z ? links.from[0] >= 0 : is_taken(links.from, 0);
       if (kBehindOthers) take_down(interrupted, k, s, last, links.connected, goes_on, reach);
       // Runs end that no surface continues, and those of surfaces that sink below the tangent plane.
-      for (int j = 0; j < kSurfaces && kHard; j++)
-        end_run(found, before, slots[j].run, ends[j], !goes_on_above(here, links.from, j));
+      if (kHard) {
+        [[unroll]] for (int j = 0; j < kSurfaces; j++) {
+          end_run(found, before, slots[j].run, ends[j], !goes_on_above(here, links.from, j));
+        }
+      }
       Slot now[kMostSurfaces];
-      for (int i = 0; i < kSurfaces; i++) {
+      int i = 0;
+      do {
         now[i] = slot_before(slots, links.from[i]);
-        take_sample(found, now[i], r, side, reach, here, i, pixel, links.from[i] >= 0, gap);
+        take_sample(found, now[i], r, side, reach, here, i, beside, links.from[i] >= 0, gap);
         if (!kHard && here.exists[i]) {
           found.blocked.sectors |= end_of(r, reach, now[i], 0.0, draw.shift).sectors;
           add_faded(found, side, reach, draw, here.at[i].place);
         }
-      }
+      } while (++i < kSurfaces);
       slots = now;
       last = s;
       last_pixel = pixel;
@@ -616,9 +625,12 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
       }
     } while (++k < count);
   }
-  for (int j = 0; j < kSurfaces && kHard; j++)
-    end_run(found, before, slots[j].run, end_of(r, reach, slots[j], 0.0, draw.shift), true);
-  if (kHard) found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
+  if (kHard) {
+    [[unroll]] for (int j = 0; j < kSurfaces; j++) {
+      end_run(found, before, slots[j].run, end_of(r, reach, slots[j], 0.0, draw.shift), true);
+    }
+    found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
+  }
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
