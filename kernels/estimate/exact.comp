@@ -185,8 +185,8 @@ Search search_of(View view, Point point, Side side, float weight, float clearanc
   search.across = float(sign) * vec2(-point.eye.y, point.eye.x);
   search.leaving = sine < 1.0 ? vec2(cosine, sine) : vec2(0);
   search.normal = weight * vec2(side.sin_gamma, side.cos_gamma);
-  search.lowest = slope_of(
-      vec2(level * side.cos_gamma + lift * side.sin_gamma, lift * side.cos_gamma - level * side.sin_gamma));
+  search.lowest =
+      slope_of(vec2(level * side.cos_gamma + lift * side.sin_gamma, lift * side.cos_gamma - level * side.sin_gamma));
   search.least_height = clearance;
   search.least_rise = least_rise(view);
   search.from = from;
@@ -394,14 +394,12 @@ uint first_column(Search search, int index) {
 }
 
 /// The first vertices of all walks on a side.
-Next first_vertices(Context c) {
-  Next next;
+void first_vertices(Context c, inout Next next) {
   for (int i = 0; i < kWalks; i++) {
     const int first = i * c.view.size.x * c.view.size.y + c.row;
     const uint column = first_column(c.search, first + c.search.from);
     go_to(next, c.search, i, first + int(column), column == kNoVertex);
   }
-  return next;
 }
 
 /// The thickness at a vertex.
@@ -468,8 +466,7 @@ void add_beyond(inout Found found, Context c, int last) {
   if (beyond != kNoVertex) {
     const Stop stop = stop_at((kWalks - 1) * c.view.size.x * c.view.size.y + c.row + int(beyond));
     const Corner corner = corner_of(c, stop, stop.at, true);
-    const float thickness =
-        params.thickness == 0.0 || kWalks > 1 ? thickness_at(c.search, stop.at) : params.thickness;
+    const float thickness = params.thickness == 0.0 || kWalks > 1 ? thickness_at(c.search, stop.at) : params.thickness;
     const Walk walk = Walk(vec2(0), false, false, false, thickness, thickness);
     const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
     block(found.all, walk, c, stroke, corner, true);
@@ -637,7 +634,8 @@ Twin twin_of(Next next, Search search, Stop stop) {
 int walk_along_all(inout Found found, Context c) {
   const Search search = c.search;
   const int unseen = kWalks - 1;
-  Next next = first_vertices(c);
+  Next next;
+  first_vertices(c, next);
   OwnSlot own = OwnSlot(true, true, false, 0.0);
   int last = next.away[unseen] != kNever ? 0 : -1;
   if (!is_over(next)) {
@@ -734,8 +732,8 @@ void main() {
       const Side side = side_of(point, weight, sign);
       const Search search = search_of(view, point, side, weight, clearance, z, at.x, sign);
       whole += share * weight * whole_arc(side);
-      const Context c = Context(view, lines, line, on_image, z, plane, point, side, search, row, slot,
-                                params.radius * params.radius);
+      const Context c =
+          Context(view, lines, line, on_image, z, plane, point, side, search, row, slot, params.radius * params.radius);
       const BlockedArcs arcs = blocked_by(c);
       blocked += share * weight * arcs.arc;
       unseen += share * weight * arcs.unseen;

@@ -28,9 +28,7 @@ writeonly buffer Open { uint open[]; };
 buffer Counts { LayerCounts counts; };      // zeroed before
 readonly buffer Warped { uint warped[]; };  // planes of keys of surfaces that other views show, see key_of()
 
-float separation_at(float z) {
-  return separation_at(params.view, params.depth_precision, params.separation, z);
-}
+float separation_at(float z) { return separation_at(params.view, params.depth_precision, params.separation, z); }
 
 uint planes() { return kPlanes != 0u ? kPlanes : params.planes; }
 

@@ -280,9 +280,8 @@ Visibility smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& 
 }
 
 Visibility upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const Visibility& visibility) {
-  return each_of(visibility, [&](gpu::Buffer& planes, const char* prefix) {
-    return &upsample(gpu, gbuffer, low, planes, prefix);
-  });
+  return each_of(visibility,
+                 [&](gpu::Buffer& planes, const char* prefix) { return &upsample(gpu, gbuffer, low, planes, prefix); });
 }
 
 }  // namespace alcove
