@@ -256,8 +256,8 @@ Stroke before_sphere(Stroke stroke, vec2 leaving) {
 }
 
 /// 6. and 7. Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a
-/// set apart. It belongs to the vertex at a corner. goes_on: from there on it is not seen, or up to there, and need not be
-/// straight with what is; both hang together there, so they block one interval.
+/// set apart. It belongs to the vertex at a corner. goes_on: from there on it is not seen, or up to there, and need not
+/// be straight with what is; both hang together there, so they block one interval.
 void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner corner, bool goes_on) {
   const Search search = c.search;
   const float eye_distance = c.point.eye_distance, radius_sq = c.radius_sq;
