@@ -6,10 +6,7 @@
 
 #include "core/chain/estimate/shadow.h"
 #include "core/chain/filters/filters.h"
-#include "core/chain/geometry/matte.h"
 #include "core/chain/hidden/hidden.h"
-#include "core/chain/open_sky.h"
-#include "core/chain/quick/quick.h"
 #include "core/chain/results/confidence.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/reduce.h"
@@ -56,10 +53,9 @@ FrameVisibility own_visibility(gpu::Recorder& gpu, const FrameInputs& frame, con
   visible.completion = completion(gpu, work, visible.estimate, chosen);
   const Denoiser denoiser = denoiser_of(settings);
   const Visibility noisy{visible.estimate.ao, nullptr, visible.estimate.moments};
-  const FilterRuns runs = dilate(gpu, work, visible.estimate.listed, denoiser);
-  const Visibility of_radii = smooth(gpu, work, noisy, chosen, denoiser, runs, order);
+  const Visibility of_radii = smooth(gpu, work, noisy, chosen, denoiser, order);
   const Visibility smoothed = combine(gpu, work, of_radii, wanted.needs_scales());
-  visible.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smoothed, runs));
+  visible.visibility = cut(gpu, frame, upsample(gpu, surfaces.wide, work, smoothed));
   if (wanted.has(&FrameOutputs::error)) visible.error = cut(gpu, frame, visible.estimate.error, "error");
   visible.stages = {work, noisy.ao, chosen, smoothed.ao, visible.estimate.completed, visible.estimate.listed.kinds};
   return visible;
@@ -136,7 +132,7 @@ FrameOutputs shaped(gpu::Recorder& gpu, const FrameInputs& frame, const FrameVis
                         (wanted.has(&FrameOutputs::bent_normal) || wanted.has(&FrameOutputs::specular_occlusion));
   const gpu::Buffer& open = bent_normal(gpu, gbuffer, has_open ? visible.visibility.moments : nullptr);
   const Visibility visibility =
-      shape(gpu, gbuffer, visible.visibility, shaping_of(settings), frame[RawPlane::material_ao], visible.matte);
+      shape(gpu, gbuffer, visible.visibility, settings, frame[RawPlane::material_ao], visible.matte);
   FrameOutputs out = with_light(gpu, frame, visible, settings, wanted, counts_of(visible));
   out = curvature(gpu, gbuffer, visible.visibility, 1 + settings.further_radii.size(), wanted, visible.matte, out);
   out.ao = visibility.ao;

@@ -5,7 +5,7 @@
 #include "core/base/settings.h"
 #include "core/chain/base/frame_inputs.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/chain/geometry/matte.h"
+#include "core/chain/geometry/geometry.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
 

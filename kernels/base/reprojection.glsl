@@ -7,15 +7,14 @@ const float kPrecisions = 4.0;
 /// A depth to reckon with; sums with that of sky would overflow.
 float finite_depth(float z) { return min(z, 1e18); }
 
-/// The width of a pixel at planar depth z, scene units.
-float pixel_width(View view, float z) { return view.tangent_per_pixel.x * (view.orthographic != 0 ? 1.0 : z); }
-
 float error_at(vec3 error, float z) { return error.x + z * (error.y + z * error.z); }
 
-/// Two surfaces at planar depth z are two if they are farther apart than this, scene units.
-float separation_at(Reprojection r, float z) {
-  return r.separation >= 0.0 ? r.separation : kPrecisions * error_at(r.depth_precision, z) + pixel_width(r.to, z);
+/// Two surfaces at planar depth z are two if they are farther apart than this, scene units. given: that by the user;
+/// below 0: none.
+float separation_at(View view, vec3 depth_precision, float given, float z) {
+  return given >= 0.0 ? given : kPrecisions * error_at(depth_precision, z) + pixel_width(view, z);
 }
+float separation_at(Reprojection r, float z) { return separation_at(r.to, r.depth_precision, r.separation, z); }
 
 vec3 direction_there(Reprojection r, vec3 v) { return vec3(dot(r.row_x, v), dot(r.row_y, v), dot(r.row_z, v)); }
 vec3 position_there(Reprojection r, vec3 p) { return direction_there(r, p) + r.offset; }

@@ -49,6 +49,10 @@ layout(scalar) buffer;
 float lesser(float a, float b) { return a < b ? a : b; }
 float greater(float a, float b) { return a > b ? a : b; }
 
+// By the bits, since drivers without SignedZeroInfNanPreserve may take isnan and isinf for false.
+bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+bool is_nan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
+
 #endif
 
 ALCOVE_BEGIN
@@ -116,6 +120,15 @@ struct TileCounts {
   uint layered;  // of the listed ones, those with kTileLayered
 };
 
+// px a side of the blocks in which sites are chosen: pixels with an estimate of their own
+ALCOVE_CONSTANT int kBlock = 4;
+
+/// The blocks of an image. They are counted from the display window's corner, so that a crop has those of the whole.
+struct SiteGrid {
+  ivec2 overhang;  // px of the first block to the left of the image and above it
+  ivec2 blocks;    // in x and y
+};
+
 // How far from a pixel others decide whether it is a site, in px: they are of its block.
 ALCOVE_CONSTANT int kSiteReach = 3;
 ALCOVE_CONSTANT uint kLattices = 5;  // of one pixel of 16, 8, 4, 2 and 1: see tiles.glsl
@@ -125,12 +138,6 @@ struct SiteCounts {
   GroupCount groups;  // that hold them
   uint listed;
   uint of_lattice[kLattices];  // of them, those on a lattice and on no wider one; from the widest on
-};
-
-/// The number of runs of pixels that a filter is listed for.
-struct RunCounts {
-  GroupCount groups;
-  uint listed;
 };
 
 // What classify says of a tile.

@@ -52,11 +52,6 @@ ListedPlace listed_place(uvec2 group, uint invocation) {
 uint pack_site(uint tile, uint pixel) { return tile * kTilePixels + pixel; }
 ListedPlace unpack_site(uint site) { return ListedPlace(site / kTilePixels, site % kTilePixels); }
 
-/// Packs a run of pixels that an invocation of a filter computes in each of kGroupX lines: the number of these lines,
-/// and the number of the run in them.
-uint pack_run(int lines, int run) { return uint(lines) | uint(run) << 16; }
-ivec2 unpack_run(uint packed) { return ivec2(packed & 0xffffu, packed >> 16); }
-
 ivec2 pixel_of_tile(ivec2 tile, uint pixel) { return tile * kTile + ivec2(pixel % uint(kTile), pixel / uint(kTile)); }
 
 /// The number of tiles if they count from the display window's corner, `origin` pixels before the image's, so that

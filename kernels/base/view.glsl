@@ -39,6 +39,9 @@ bool inside(View view, ivec2 pixel) {
 
 int index_of(View view, ivec2 pixel) { return pixel.y * view.size.x + pixel.x; }
 
+/// The width of a pixel at planar depth z, scene units.
+float pixel_width(View view, float z) { return view.tangent_per_pixel.x * (view.orthographic != 0 ? 1.0 : z); }
+
 /// What is added to a number of pixels that would be whole but for rounding, so that every device counts as many.
 const float kWholePixels = 0.01;
 
@@ -59,6 +62,10 @@ const float kRunSlope = 8.0;
 /// The sine of the angle below a border pixel's tangent plane from which on what is seen is another surface: a smooth
 /// one bends less, and a normal map leans less.
 const float kMostBend = 0.55;
+
+/// The normal says nothing of where a surface goes on if it is seen more nearly edge on than this: the sine of the
+/// angle between the surface and the eye's ray. A normal that leaned away from the eye has been bent to 0.001.
+const float kLeastFacingToGoOn = 0.02;
 
 /// Places less than this part of the depth apart are one.
 const float kRounding = 1e-6;
@@ -81,3 +88,8 @@ float depth_beyond(View view, vec2 from, float z, vec3 n, vec2 mirrored, float m
   const bool goes_on = mirrored_z < kSkyDepth && dot(n, inward) >= -kMostBend * length(inward) - kRounding * z;
   return z < kSkyDepth && faces && goes_on && there > z / kMostChange && there < z * kMostChange ? there : kSkyDepth;
 }
+
+// Depths as keys that grow while a nearer one is sought: 0 is none, so a cleared plane is empty. Floats above 0 are
+// ordered as their bits. The maximum of keys does not depend on the order in which they come.
+uint key_of(float z) { return floatBitsToUint(kSkyDepth) - floatBitsToUint(z); }
+float depth_of(uint key) { return uintBitsToFloat(floatBitsToUint(kSkyDepth) - key); }

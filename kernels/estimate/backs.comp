@@ -78,7 +78,7 @@ void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (!inside(view, pixel)) return;
   const int index = index_of(view, pixel);
-  const float z = depth[index], width = pixels_of(view, z);
+  const float z = depth[index], width = pixel_width(view, z);
   const vec3 here = position_of(view, vec2(pixel) + 0.5, z), n = unpack_normal(normal[index]);
   const vec2 longest = kLongestChain * params.radius / (view.orthographic == 0 ? z : 1.0) / abs(view.tangent_per_pixel);
   const ivec2 most = ivec2(min(longest, 1e5));

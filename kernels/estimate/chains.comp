@@ -22,16 +22,13 @@ Facet facet_at(View view, Line line, int step) {
   const int at = clamp(step, 0, line.steps - 1);
   const ivec2 pixel = line.is_column ? ivec2(line.number, at) : ivec2(at, line.number);
   const int index = index_of(view, pixel);
-  Facet f;
-  f.z = at == step ? depth[index] : 0.0;
-  f.position = position_of(view, vec2(pixel) + 0.5, f.z);
-  f.normal = unpack_normal(normal[index]);
-  return f;
+  const float z = at == step ? depth[index] : 0.0;
+  return Facet(position_of(view, vec2(pixel) + 0.5, z), unpack_normal(normal[index]), z);
 }
 
 /// Whether two neighbouring pixels, the second one a step on, are one surface. before, after: the pixels beside them.
 bool are_one(View view, vec2 step, Facet before, Facet a, Facet b, Facet after) {
-  const float pixel = pixels_of(view, min(a.z, b.z)), apart = abs(a.z - b.z);
+  const float pixel = pixel_width(view, min(a.z, b.z)), apart = abs(a.z - b.z);
   const bool recedes = b.z > a.z;
   Facet near = b, far = a, next = before;
   if (recedes) {

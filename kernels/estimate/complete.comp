@@ -45,10 +45,6 @@ readonly buffer Hidden { float hidden[]; };  // planes of floats, see GBuffer::h
 const float kLeastDepths = 1.0 / 64.0;
 const float kMostDepths = 15.9;
 
-/// The normal's plane says nothing about a surface that is seen more nearly edge on than this: the dot product of the
-/// normal and the view ray, which is 1 long along the optical axis.
-const float kLeastFacingToGoOn = -0.02;
-
 /// Of a stroke, in radii: as core/run/tiles.cpp reads around a part. With 2 colonnade, whose walls go on far behind
 /// its columns, has an RMSE of .0639 instead of .0627, with 4 .0617.
 const float kLongest = 3.0;
@@ -144,7 +140,7 @@ float change_on_plane(View view, Lines lines, LinePlane plane, int line, Corner 
   const vec2 tangent = tangent_at(view, lines, along_and_across + lines.origin);
   const float facing = (perspective ? dot(n.xy, tangent) : 0.0) - n.z;
   const float change = way * plane.step * dot(n.xy, plane.along) * (perspective ? end.nearness : 1.0) / facing;
-  const bool is_known = facing < kLeastFacingToGoOn && is_first_surface(view, pixel, end.nearness);
+  const bool is_known = facing < -kLeastFacingToGoOn && is_first_surface(view, pixel, end.nearness);
   return is_known ? change : otherwise;
 }
 

@@ -24,6 +24,7 @@
 #include "kernels/base/tiles.glsl"
 #include "kernels/base/arcs.glsl"
 #include "kernels/base/clearance.glsl"
+#include "kernels/estimate/slice.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kSamples = 16;  // samples per pixel
@@ -75,12 +76,10 @@ void main() {
   const bool perspective = params.view.orthographic == 0;
   const vec3 position = position_of(params.view, vec2(pixel) + 0.5, z);
   const vec3 n = unpack_normal(normal[index]);
-  // Two tangents (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
-  const float sign_z = n.z < 0.0 ? -1.0 : 1.0;
-  const float a = -1.0 / (sign_z + n.z);
-  const float b = n.x * n.y * a;
-  const vec3 tangent = vec3(1.0 + sign_z * n.x * n.x * a, sign_z * b, -sign_z * n.x);
-  const vec3 bitangent = vec3(b, sign_z + n.y * n.y * a, -n.y);
+  vec3 tangent, bitangent;
+  const float turn_z = n.z < 0.0 ? -1.0 : 1.0;
+  basis_of(turn_z * n, tangent, bitangent);
+  bitangent *= turn_z;
 
   const uint first_point = kSamples * hilbert_index(uvec2(pixel + params.noise_origin));
   const float clearance = least_height(

@@ -43,6 +43,7 @@
 #include "kernels/estimate/slice.glsl"
 #include "kernels/estimate/sectors.glsl"
 #include "kernels/estimate/lines.glsl"
+#include "kernels/estimate/strokes.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 // 1: the pixels of listed tiles take the slice, and no sum is ever completed; see stride, first, is_last
@@ -80,14 +81,9 @@ const bool kGoesBeyond = (kCompletes & kExactBorder) != 0u;
 const bool kGoesOn = (kCompletes & kExactBehind) != 0u;
 const bool kTellsApart = (kCompletes & kExactApart) != 0u;
 
-const float kNone = 1e30;
-
 /// A vertex that stands alone is the end of a stroke from this part of its distance on: so short that its depth within
 /// the sphere and its slopes are those of the vertex within 0.1 %, and long enough not to be lost in rounding.
 const float kShortStroke = 0.999;
-
-/// A ray that misses the sphere by less than this part of its squared radius touches it.
-const float kTouches = 1e-3;
 
 /// A walk from vertex to vertex of one side.
 struct Walk {
@@ -99,61 +95,6 @@ struct Walk {
   float last_thickness;  // where it ends
 };
 
-/// A piece of the profile, in (across, toward).
-struct Stroke {
-  vec2 from, to;
-};
-
-/// 6. The part of a stroke within the sphere of the radius.
-struct Clipped {
-  vec2 near, far;
-  bool is_within;  // whether it holds anything
-};
-
-/// slope_of() the back of an occluder that is endless: where the eye's ray through its front (across, toward) leaves
-/// the sphere.
-float back_of(vec2 front, float eye_distance, float radius_sq) {
-  const vec2 ray = mix(vec2(0, -1), front - vec2(0, eye_distance), bvec2(eye_distance < kNone));
-  const vec2 direction = ray * inversesqrt(dot(ray, ray));
-  const float middle = dot(front, direction);
-  const float leaves = sqrt(max(0.0, middle * middle - dot(front, front) + radius_sq)) - middle;
-  return slope_of(front + leaves * direction);
-}
-
-/// slope_of() where the eye's ray through a front (across, toward) enters what of a solid lies within the sphere, and
-/// where it leaves that; (-1, 1): nothing of it lies there. The solid is `thickness` deep. back: its end.
-vec2 depths_of(vec2 front, float eye_distance, float thickness, float radius_sq, out vec2 back) {
-  const vec2 ray = mix(vec2(0, -1), front - vec2(0, eye_distance), bvec2(eye_distance < kNone));
-  const vec2 direction = ray * inversesqrt(dot(ray, ray));
-  const float middle = dot(front, direction);
-  const float outside_sq = dot(front, front) - radius_sq;
-  const float inside_sq = middle * middle - outside_sq;
-  const float inside = sqrt(max(0.0, inside_sq));
-  const float enters = mix(0.0, -inside - middle, outside_sq > 0.0);
-  const float leaves = min(thickness, inside - middle);
-  back = front + thickness * direction;
-  const bool exists =
-      both(both(front.x > 0.0, inside_sq > -kTouches * radius_sq), both(enters >= 0.0, enters <= leaves));
-  return exists ? vec2(slope_of(front + enters * direction), slope_of(front + leaves * direction)) : vec2(-1, 1);
-}
-
-/// The part of a stroke within the sphere of the radius about the receiver: with from + t (to - from), the t between
-/// the roots of |from + t (to - from)|^2 = radius^2. They hold products of four lengths, which overflow where the
-/// scene's numbers are large. So `along` is divided by a power of two near the receiver's depth, and t is multiplied by
-/// it, which changes no bit.
-Clipped clip_to_sphere(Stroke stroke, float radius_sq, float unit) {
-  const vec2 from = stroke.from, along = (1.0 / unit) * (stroke.to - stroke.from);
-  const float a = dot(along, along);
-  const float middle = dot(from, along);
-  const float beside = from.x * along.y - from.y * along.x;
-  const float inside_sq = a * radius_sq - beside * beside;
-  const float inside = sqrt(max(inside_sq, 0.0));
-  const float scale = 1.0 / a;
-  const float enters = max((-middle - inside) * scale, 0.0);
-  const float leaves = min((inside - middle) * scale, unit);
-  return Clipped(from + enters * along, from + leaves * along, both(inside_sq > 0.0, enters <= leaves));
-}
-
 /// The stroke that ends at a vertex `steps` from the receiver. It begins at the vertex before. Nothing is seen before
 /// the first vertex of a side, to which it begins at the pixel next to the receiver. A vertex that begins a run stands
 /// alone, as a stroke that is short.
@@ -161,19 +102,6 @@ Stroke stroke_to(vec2 place, Walk walk, bool begins, int steps) {
   const float next_pixel = min(kShortStroke, 1.0 / float(steps));
   const vec2 onward = walk.starts ? next_pixel * place : walk.last;
   return Stroke(begins ? kShortStroke * place : onward, place);
-}
-
-/// A stroke goes on to the receiver's own ray at most: to this part of its distance across the ray.
-const float kBesideReceiver = 1e-3;
-
-/// The stroke with what its surface goes on behind others: towards the receiver from the first vertex of a run, else
-/// away from it.
-Stroke with_unseen(Stroke stroke, bool begins, vec2 unseen) {
-  const float across = stroke.to.x;
-  const float least = kBesideReceiver * across;
-  const float part = unseen.x < least ? (across - least) / (across - unseen.x) : 1.0;
-  const vec2 toward = stroke.to + part * (unseen - stroke.to);
-  return begins ? Stroke(toward, stroke.to) : Stroke(stroke.from, unseen);
 }
 
 /// The receiver in the plane of its line, where the profile has its vertices too.
@@ -238,6 +166,59 @@ Point point_of(View view, LinePlane plane, vec2 tangent, float z, vec3 normal) {
   return point;
 }
 
+/// The side of a receiver's slice in which its line has rising numbers of steps (sign 1), or falling ones (-1).
+Side side_of(Point point, float weight, int sign) {
+  const vec2 across_eye = vec2(-point.eye.y, point.eye.x);
+  Side side;
+  side.cos_gamma = max(dot(point.normal, point.eye), kLeastWeight) / weight;
+  side.sin_gamma = float(sign) * dot(point.normal, across_eye) / weight;
+  side.gamma = angle_of(side.cos_gamma, side.sin_gamma);
+  side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
+  return side;
+}
+
+/// The search of a side, from the receiver's step on.
+Search search_of(View view, Point point, Side side, float weight, float clearance, float z, int from, int sign) {
+  const float sine = params.radius / point.eye_distance, cosine = sqrt(max(0.0, 1.0 - sine * sine));
+  const float lift = max(params.bias, kLeastElevation), level = sqrt(1.0 - lift * lift);
+  Search search;
+  search.across = float(sign) * vec2(-point.eye.y, point.eye.x);
+  search.leaving = sine < 1.0 ? vec2(cosine, sine) : vec2(0);
+  search.normal = weight * vec2(side.sin_gamma, side.cos_gamma);
+  search.lowest =
+      slope_of(vec2(level * side.cos_gamma + lift * side.sin_gamma, lift * side.cos_gamma - level * side.sin_gamma));
+  search.least_height = clearance;
+  search.least_rise = least_rise(view);
+  search.from = from;
+  search.step = sign;
+  search.begins = sign > 0 ? kVertexBegins : kVertexEnds;
+  search.last = sign > 0 ? kVertexLast : kVertexFirst;
+  search.apart = sign > 0 ? kVertexApart : kVertexApartAgainst;
+  search.closes = sign > 0 ? kVertexCloses : kVertexClosesAgainst;
+  search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
+  search.unit = power_of_two(z);
+  return search;
+}
+
+/// A vertex at which a walk stops.
+struct Stop {
+  int at;  // its index
+  uint marked;
+  int step;      // of the line
+  float z;       // planar depth
+  bool goes_on;  // its surface goes on there unseen
+};
+
+Stop stop_at(int at) {
+  const uint marked = mark[at];
+  const float stored = vertex[at];
+  return Stop(at, marked, int(marked >> 16), kGoesOn ? abs(stored) : stored, stored < 0.0);
+}
+
+/// Whether a run begins at a vertex, as the walk meets it; and whether the receiver's own is not sure to go on there.
+bool begins_run(Stop stop, Search search) { return (stop.marked & search.begins) != 0u; }
+bool is_apart(Stop stop, Search search) { return (stop.marked & search.apart) != 0u; }
+
 /// A vertex as the receiver sees it, and the place up to which its surface goes on unseen.
 struct Corner {
   vec2 place, unseen;  // in (across, toward)
@@ -250,16 +231,19 @@ vec2 from_receiver(Context c, vec2 place) {
   return vec2(dot(offset, c.search.across), dot(offset, c.point.eye));
 }
 
-Corner corner_at(Context c, int at, int step, float z, bool toward) {
+vec2 place_of(Context c, Stop stop) { return from_receiver(c, place_at(c.view, c.plane, float(stop.step), stop.z)); }
+
+/// further_at: the index at which it is told how the surface goes on.
+Corner corner_of(Context c, Stop stop, int further_at, bool toward) {
   Corner corner;
-  const float scale = c.view.orthographic != 0 ? 1.0 : z;
-  corner.least = c.search.least_height + scale * c.search.least_rise * float(abs(step - c.search.from));
-  corner.place = from_receiver(c, place_at(c.view, c.plane, float(step), z));
+  const float scale = c.view.orthographic != 0 ? 1.0 : stop.z;
+  corner.least = c.search.least_height + scale * c.search.least_rise * float(abs(stop.step - c.search.from));
+  corner.place = place_of(c, stop);
   corner.unseen = corner.place;
   if (kGoesOn) {
-    const uint further = goes_on[at];
-    const float until = float(step) + float(toward ? -c.search.step : c.search.step) * steps_of_goes_on(further);
-    corner.unseen = from_receiver(c, place_at(c.view, c.plane, until, z * depths_of_goes_on(further)));
+    const uint further = goes_on[further_at];
+    const float until = float(stop.step) + float(toward ? -c.search.step : c.search.step) * steps_of_goes_on(further);
+    corner.unseen = from_receiver(c, place_at(c.view, c.plane, until, stop.z * depths_of_goes_on(further)));
   }
   return corner;
 }
@@ -271,9 +255,9 @@ Stroke before_sphere(Stroke stroke, vec2 leaving) {
   return Stroke(both(from > 0.0, to < 0.0) ? end : stroke.from, both(to > 0.0, from < 0.0) ? end : stroke.to);
 }
 
-/// 7. Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a set
-/// apart. It belongs to the vertex at a corner. goes_on: from there on it is not seen, or up to there, and need not be
-/// straight with what is; both hang together there, so they block one interval.
+/// 6. and 7. Adds what a stroke blocks from its front to its back: more of what the receiver's own surface does, or a
+/// set apart. It belongs to the vertex at a corner. goes_on: from there on it is not seen, or up to there, and need not
+/// be straight with what is; both hang together there, so they block one interval.
 void block(inout Blocked blocked, Walk walk, Context c, Stroke stroke, Corner corner, bool goes_on) {
   const Search search = c.search;
   const float eye_distance = c.point.eye_distance, radius_sq = c.radius_sq;
@@ -369,13 +353,10 @@ struct Next {
   float z[kWalks];
 };
 
-void set_next(inout Next next, int walk, int at, int away, float z) {
-  for (int i = 0; i < kWalks; i++) {
-    const bool is_it = i == walk;
-    next.at[i] = is_it ? at : next.at[i];
-    next.away[i] = is_it ? away : next.away[i];
-    next.z[i] = is_it ? z : next.z[i];
-  }
+bool is_over(Next next) {
+  bool is_over = true;
+  for (int i = 0; i < kWalks; i++) is_over = is_over && next.away[i] == kNever;
+  return is_over;
 }
 
 /// The walk whose vertex is the nearest, on the image and then to the eye: so runs are met in one order whichever slots
@@ -389,21 +370,36 @@ int nearest_walk(Next next) {
   return best;
 }
 
-/// Goes on with a walk at an index; ends it with kNoVertex for its column.
+/// Goes on with a walk at an index, or ends it.
 void go_to(inout Next next, Search search, int walk, int at, bool ends) {
   int away = kNever;
   float z = 0.0;
   if (!ends) {
-    away = abs(int(mark[at] >> 16) - search.from);
-    z = abs(vertex[at]);
+    const Stop stop = stop_at(at);
+    away = abs(stop.step - search.from);
+    z = stop.z;
   }
-  set_next(next, walk, at, away, z);
+  for (int i = 0; i < kWalks; i++) {
+    const bool is_it = i == walk;
+    next.at[i] = is_it ? at : next.at[i];
+    next.away[i] = is_it ? away : next.away[i];
+    next.z[i] = is_it ? z : next.z[i];
+  }
 }
 
 /// The column of the first vertex on a side; kNoVertex: none.
 uint first_column(Search search, int index) {
   const uint columns = neighbor[index];
   return search.step > 0 ? columns >> 16 : columns & kNoVertex;
+}
+
+/// The first vertices of all walks on a side.
+void first_vertices(Context c, inout Next next) {
+  for (int i = 0; i < kWalks; i++) {
+    const int first = i * c.view.size.x * c.view.size.y + c.row;
+    const uint column = first_column(c.search, first + c.search.from);
+    go_to(next, c.search, i, first + int(column), column == kNoVertex);
+  }
 }
 
 /// The thickness at a vertex.
@@ -418,27 +414,27 @@ float whole_thickness_at(Search search, int at) {
   return thickness_at(search, at);
 }
 
-/// A walk that comes to the vertex at an index from the one before, where there are several. A run that passes behind
-/// the receiver is cut beside the eye's ray.
-void come_to(inout Walk walk, Context c, int at, vec2 place, bool begins) {
-  const float here = begins ? thickness_at(c.search, at) : whole_thickness_at(c.search, at);
+/// Comes to a vertex from the one before, where there are several walks. A run that passes behind the receiver is cut
+/// beside the eye's ray.
+void come_to(inout Walk walk, Context c, Stop stop, vec2 place, bool begins) {
+  const float here = begins ? thickness_at(c.search, stop.at) : whole_thickness_at(c.search, stop.at);
   walk.thickness = here;
   walk.last_thickness = here;
   if (!walk.starts && !begins) {
-    const int before = at - c.search.step, from_step = int(mark[before] >> 16);
-    const vec2 from = from_receiver(c, place_at(c.view, c.plane, float(from_step), abs(vertex[before])));
+    const Stop before = stop_at(stop.at - c.search.step);
+    const vec2 from = place_of(c, before);
     const float least = kBesideReceiver * place.x;
-    const bool is_behind = both((from_step - c.search.from) * c.search.step <= 0, from.x < least);
+    const bool is_behind = both((before.step - c.search.from) * c.search.step <= 0, from.x < least);
     const float part = is_behind ? (place.x - least) / (place.x - from.x) : 1.0;
-    const float last = whole_thickness_at(c.search, before);
+    const float last = whole_thickness_at(c.search, before.at);
     walk.last = is_behind ? place + part * (from - place) : from;
     walk.thickness = is_behind ? here - part * (here - last) : last;
   }
 }
 
 /// Whether a walk ends with this vertex: it is the last, or the sphere is left behind.
-bool ends_at(uint marked, Corner corner, Search search) {
-  return (marked & search.last) != 0u || !(dot(corner.place, search.leaving) < params.radius);
+bool ends_at(Stop stop, Corner corner, Search search) {
+  return (stop.marked & search.last) != 0u || !(dot(corner.place, search.leaving) < params.radius);
 }
 
 /// The directions that a side's strokes block.
@@ -464,16 +460,14 @@ void add_stroke(inout Found found, Walk walk, Context c, Stroke stroke, Corner c
 
 /// 5. Adds the surface that goes on towards the receiver behind the end of a walk. last: the walk's last vertex; below
 /// 0: there is none.
-void add_beyond(inout Found found, Walk walk, Context c, int last) {
+void add_beyond(inout Found found, Context c, int last) {
   const bool looks_beyond = kGoesOn && (kSlots == 1u || kUnseen != 0u) && last >= 0;
   const uint beyond = looks_beyond ? vertex_beyond(c, last) : kNoVertex;
   if (beyond != kNoVertex) {
-    const int at = (kWalks - 1) * c.view.size.x * c.view.size.y + c.row + int(beyond);
-    const int to = int(mark[at] >> 16);
-    const Corner corner = corner_at(c, at, to, abs(vertex[at]), true);
-    walk.is_own = false;
-    walk.thickness = params.thickness == 0.0 || kWalks > 1 ? thickness_at(c.search, at) : params.thickness;
-    walk.last_thickness = walk.thickness;
+    const Stop stop = stop_at((kWalks - 1) * c.view.size.x * c.view.size.y + c.row + int(beyond));
+    const Corner corner = corner_of(c, stop, stop.at, true);
+    const float thickness = params.thickness == 0.0 || kWalks > 1 ? thickness_at(c.search, stop.at) : params.thickness;
+    const Walk walk = Walk(vec2(0), false, false, false, thickness, thickness);
     const Stroke stroke = with_unseen(Stroke(corner.place, corner.place), true, corner.unseen);
     block(found.all, walk, c, stroke, corner, true);
   }
@@ -482,9 +476,6 @@ void add_beyond(inout Found found, Walk walk, Context c, int last) {
 /// Samples of a side beyond the border, up to so many radii at the receiver's depth, and no more steps than that.
 const int kStepsBeyond = 8;
 const float kReachBeyond = 1.2, kMostBeyond = 2000.0;
-
-/// The plane of a pixel that is seen more nearly edge on than this does not go on: see depth_beyond().
-const float kLeastFacingBeyond = 0.02;
 
 /// The depth at a step of the line beyond the border, counted from the display window's corner: the plane of the
 /// border's nearest pixel goes on there. kSkyDepth: nothing does.
@@ -498,7 +489,7 @@ float depth_at_step(Context c, LinePlane plane, float at) {
   const vec2 to = plane.foot + (plane.start + at * plane.step) * plane.along;
   const float mirrored_z = occluder_depth[index_at(c.view, c.lines, mirrored.x, mirrored.y)];
   return depth_beyond(c.view, from, occluder_depth[index], unpack_normal(normal[index]),
-                      tangent_at(c.view, c.lines, mirrored + origin), mirrored_z, to, kLeastFacingBeyond);
+                      tangent_at(c.view, c.lines, mirrored + origin), mirrored_z, to, kLeastFacingToGoOn);
 }
 
 /// 5. Adds what goes on beyond the image's border. With `auto` it is as thick as it is wide there so far, and
@@ -555,119 +546,135 @@ BlockedArcs arcs_of(Context c, Found found) {
 
 /// 7. The thickness from the last vertex to this one. What is left of a run has one thickness, and the vertex where it
 /// begins knows none of the whole run.
-void thicken(inout Walk walk, Search search, int at, uint marked, bool begins) {
-  const bool changes = begins || !walk.is_rest && (marked & search.apart) == 0u;
-  const float here = changes ? thickness_at(search, at) : walk.last_thickness;
+void thicken(inout Walk walk, Search search, Stop stop, bool begins) {
+  const bool changes = begins || !walk.is_rest && !is_apart(stop, search);
+  const float here = changes ? thickness_at(search, stop.at) : walk.last_thickness;
   walk.thickness = begins ? here : walk.last_thickness;
   walk.last_thickness = here;
 }
 
 /// 7. Where a hidden face closes the solid behind the vertex that begins a run, across its own face, the stroke from
 /// the face's end to the vertex, which has the whole thickness: what is behind both hangs together there.
-void close_solid(inout Walk walk, inout Stroke stroke, Context c, int step) {
-  const int pixel = index_at(c.view, c.lines, step, c.line + shift_at(c.lines, step));
+void close_solid(inout Walk walk, inout Stroke stroke, Context c, Stop stop) {
+  if ((stop.marked & c.search.closes) == 0u) return;
+  const int pixel = index_at(c.view, c.lines, stop.step, c.line + shift_at(c.lines, stop.step));
   const vec2 n = in_plane(c.view, c.plane, unpack_normal(normal[pixel]));
   const vec2 back = vec2(dot(n, c.search.across), dot(n, c.point.eye));
   stroke.from = with_unseen(stroke, true, stroke.to - walk.thickness * back).from;
   walk.thickness = 0.0;
 }
 
-/// 3. Where the line has one profile: a walk along it.
-BlockedArcs blocked_by_one(Context c) {
+/// 3. Walks along one profile. Gives its last vertex; below 0: there is none.
+int walk_along(inout Found found, Context c) {
   const Search search = c.search;
-  const uint first = first_column(search, c.row + search.from);
-  const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
-  Found found = Found(nothing, nothing);
   Walk walk = Walk(vec2(0), true, true, false, params.thickness, params.thickness);
+  const uint first = first_column(search, c.row + search.from);
   int at = c.row + int(first), last = -1;
   bool goes = first != kNoVertex;
   if (goes) {
     do {
       last = at;
-      const uint marked = mark[at];
-      const int to = int(marked >> 16), steps = abs(to - search.from);
-      const float stored = vertex[at], z = kGoesOn ? abs(stored) : stored;
-      const bool begins_run = (marked & search.begins) != 0u;
-      const bool begins = begins_run || walk.is_own && (marked & search.apart) != 0u;
-      const Corner corner = corner_at(c, at, to, z, begins);
-      walk.is_rest = begins ? !begins_run : walk.is_rest;
+      const Stop stop = stop_at(at);
+      const bool begins_a_run = begins_run(stop, search);
+      const bool begins = begins_a_run || walk.is_own && is_apart(stop, search);
+      const Corner corner = corner_of(c, stop, at, begins);
+      walk.is_rest = begins ? !begins_a_run : walk.is_rest;
       walk.is_own = begins ? false : walk.is_own;
-      if (params.thickness == 0.0 && !walk.is_own) thicken(walk, search, at, marked, begins);
-      Stroke stroke = stroke_to(corner.place, walk, begins, steps);
-      if (begins_run && (marked & search.closes) != 0u) close_solid(walk, stroke, c, to);
-      add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0);
-      goes = !ends_at(marked, corner, search);
+      if (params.thickness == 0.0 && !walk.is_own) thicken(walk, search, stop, begins);
+      Stroke stroke = stroke_to(corner.place, walk, begins, abs(stop.step - search.from));
+      if (begins_a_run) close_solid(walk, stroke, c, stop);
+      add_stroke(found, walk, c, stroke, corner, begins, stop.goes_on);
+      goes = !ends_at(stop, corner, search);
       walk.last = corner.place;
       walk.starts = false;
       at += search.step;
     } while (goes);
   }
-  add_beyond(found, walk, c, last);
-  if (kGoesBeyond) add_border(found, c);
-  return arcs_of(c, found);
+  return last;
 }
 
-/// 4. Where the line has several profiles: a walk along each, vertex by vertex as they come.
-BlockedArcs blocked_by_several(Context c) {
-  const Search search = c.search;
-  const int pixels = c.view.size.x * c.view.size.y;
-  Next next;
-  bool goes = false;
-  for (int i = 0; i < kWalks; i++) {
-    const int first = i * pixels + c.row;
-    const uint column = first_column(search, first + search.from);
-    go_to(next, search, i, first + int(column), column == kNoVertex);
-    goes = goes || column != kNoVertex;
+/// 4. The walk along the slot of the receiver's own surface, among several.
+struct OwnSlot {
+  bool is_own, starts;  // as of its Walk
+  bool rests;           // its run is what the own surface is not sure to go on with
+  float rest;           // scene units: how thick that is
+};
+
+/// Comes to a vertex of a slot: the receiver's `own` one, or another. is_parted: the own surface is not sure to go on.
+Walk walk_of_slot(inout OwnSlot own, Context c, Stop stop, vec2 place, bool is_in_own, bool begins, bool is_parted) {
+  own.is_own = is_in_own && begins ? false : own.is_own;
+  Walk walk = Walk(vec2(0), is_in_own && own.starts, is_in_own && own.is_own, false, 0.0, 0.0);
+  own.starts = is_in_own ? false : own.starts;
+  come_to(walk, c, stop, place, begins);
+  if (is_in_own && begins) {
+    own.rests = is_parted;
+    own.rest = walk.thickness;
   }
-  const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
-  Found found = Found(nothing, nothing);
-  Walk walk = Walk(vec2(0), true, true, false, params.thickness, params.thickness);
-  bool is_own = true, starts = true, rests = false;     // the walk along the receiver's own slot
-  float rest = 0.0;                                     // its thickness, where the own run has ended
-  int last = next.away[kWalks - 1] != kNever ? 0 : -1;  // vertex that says what goes on behind it
-  if (goes) {
+  if (is_in_own && own.rests) {
+    walk.thickness = own.rest;
+    walk.last_thickness = own.rest;
+  }
+  return walk;
+}
+
+/// The vertex of a slot's walk in that for what is unseen too, if the run begins or ends there in both.
+struct Twin {
+  bool exists, goes_on;
+};
+
+Twin twin_of(Next next, Search search, Stop stop) {
+  const int walk = kWalks - 1;
+  const bool meets = next.away[walk] == abs(stop.step - search.from) && next.z[walk] == stop.z;
+  const int at = meets ? next.at[walk] : stop.at;
+  const bool exists = meets && ((mark[at] ^ stop.marked) & (kVertexBegins | kVertexEnds)) == 0u;
+  return Twin(exists, exists && vertex[at] < 0.0);
+}
+
+/// 4. Walks along several profiles, vertex by vertex as they come. Gives the last vertex of that for what is unseen.
+int walk_along_all(inout Found found, Context c) {
+  const Search search = c.search;
+  const int unseen = kWalks - 1;
+  Next next;
+  first_vertices(c, next);
+  OwnSlot own = OwnSlot(true, true, false, 0.0);
+  int last = next.away[unseen] != kNever ? 0 : -1;
+  if (!is_over(next)) {
     do {
       const int i = nearest_walk(next);
       int at = next.at[0];
       for (int k = 1; k < kWalks; k++) at = k == i ? next.at[k] : at;
-      const bool is_unseen = kUnseen != 0u && i == kWalks - 1;
-      const uint marked = mark[at];
-      const int to = int(marked >> 16), steps = abs(to - search.from);
-      const float stored = vertex[at], z = kGoesOn ? abs(stored) : stored;
-      const bool is_parted = i == c.slot && is_own && (marked & search.apart) != 0u;
-      const bool begins = (marked & search.begins) != 0u || is_parted;
-      // The walk for what is unseen has the same vertex where the run begins or ends there too.
-      const int unseen_at = next.at[kWalks - 1];
-      bool is_twin = kUnseen != 0u && !is_unseen && next.away[kWalks - 1] == steps && next.z[kWalks - 1] == z;
-      is_twin = is_twin && ((mark[is_twin ? unseen_at : at] ^ marked) & (kVertexBegins | kVertexEnds)) == 0u;
-      const bool twin_goes_on = is_twin && vertex[is_twin ? unseen_at : at] < 0.0;
-      const Corner corner = corner_at(c, twin_goes_on ? unseen_at : at, to, z, begins);
-      is_own = i == c.slot && begins ? false : is_own;
-      walk.is_own = i == c.slot && is_own;
-      walk.starts = i == c.slot && starts;
-      starts = i == c.slot ? false : starts;
-      come_to(walk, c, at, corner.place, begins);
-      if (i == c.slot && begins) {
-        rests = is_parted;
-        rest = walk.thickness;
-      }
-      if (i == c.slot && rests) {
-        walk.thickness = rest;
-        walk.last_thickness = rest;
-      }
-      Stroke stroke = stroke_to(corner.place, walk, begins, steps);
-      const bool begins_run = begins && !is_parted;
-      if (begins_run && (marked & search.closes) != 0u) close_solid(walk, stroke, c, to);
+      const Stop stop = stop_at(at);
+      const bool is_unseen = kUnseen != 0u && i == unseen, is_in_own = i == c.slot;
+      const bool is_parted = is_in_own && own.is_own && is_apart(stop, search);
+      const bool begins = begins_run(stop, search) || is_parted;
+      Twin twin = Twin(false, false);
+      if (kUnseen != 0u && !is_unseen) twin = twin_of(next, search, stop);
+      const int unseen_at = next.at[unseen];
+      const Corner corner = corner_of(c, stop, twin.goes_on ? unseen_at : at, begins);
+      Walk walk = walk_of_slot(own, c, stop, corner.place, is_in_own, begins, is_parted);
+      Stroke stroke = stroke_to(corner.place, walk, begins, abs(stop.step - search.from));
+      if (begins && !is_parted) close_solid(walk, stroke, c, stop);
       // What is seen of the first surfaces the slots have, and where one goes on in a slot it does not go on unseen.
-      if (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stored < 0.0 || twin_goes_on);
-      if (is_unseen || is_twin) last = unseen_at;
-      go_to(next, search, i, at + search.step, ends_at(marked, corner, search));
-      if (is_twin) go_to(next, search, kWalks - 1, unseen_at + search.step, ends_at(mark[unseen_at], corner, search));
-      goes = false;
-      for (int k = 0; k < kWalks; k++) goes = goes || next.away[k] != kNever;
-    } while (goes);
+      if (!is_unseen) add_stroke(found, walk, c, stroke, corner, begins, stop.goes_on || twin.goes_on);
+      if (is_unseen || twin.exists) last = unseen_at;
+      go_to(next, search, i, at + search.step, ends_at(stop, corner, search));
+      if (twin.exists)
+        go_to(next, search, unseen, unseen_at + search.step, ends_at(stop_at(unseen_at), corner, search));
+    } while (!is_over(next));
   }
-  add_beyond(found, walk, c, last);
+  return last;
+}
+
+/// 3. to 8. What a side blocks.
+BlockedArcs blocked_by(Context c) {
+  const Blocked nothing = Blocked(slope_of(c.side.ahead), 0u);
+  Found found = Found(nothing, nothing);
+  int last;
+  if (kWalks == 1)
+    last = walk_along(found, c);
+  else
+    last = walk_along_all(found, c);
+  add_beyond(found, c, last);
   if (kGoesBeyond) add_border(found, c);
   return arcs_of(c, found);
 }
@@ -713,44 +720,21 @@ void main() {
   const Point point = point_of(view, plane, tangent, z, n);  // 2.
   const float clearance =
       least_height(params.depth_precision, z, (view.orthographic != 0 ? 0.0 : dot(n.xy, tangent)) - n.z);
-  const float radius = params.radius;
   const float weight = length(point.normal);
-  const float facing = max(dot(point.normal, point.eye), kLeastWeight);
   const int slot = kSlots > 1u ? int(own[row + at.x]) : 0;
   float blocked = 0.0, whole = 0.0, unseen = 0.0;
   mat3 blocked_moments = mat3(0);
   const mat2x3 in_view = mat2x3(vec3(plane.along, 0), away_of(view, plane));
   if (weight >= kLeastWeight) {
-    const vec2 across_eye = vec2(-point.eye.y, point.eye.x);
-    const float sine = radius / point.eye_distance, cosine = sqrt(max(0.0, 1.0 - sine * sine));
     const float share = 1.0 / (plane.ray_length * -point.eye.y);  // 1.
-    const float lift = max(params.bias, kLeastElevation), level = sqrt(1.0 - lift * lift);
     int sign = -1;
     do {
-      Side side;
-      side.cos_gamma = facing / weight;
-      side.sin_gamma = float(sign) * dot(point.normal, across_eye) / weight;
-      side.gamma = angle_of(side.cos_gamma, side.sin_gamma);
-      side.ahead = vec2(side.cos_gamma, -side.sin_gamma);
-      Search search;
-      search.across = float(sign) * across_eye;
-      search.leaving = sine < 1.0 ? vec2(cosine, sine) : vec2(0);
-      search.lowest = slope_of(
-          vec2(level * side.cos_gamma + lift * side.sin_gamma, lift * side.cos_gamma - level * side.sin_gamma));
-      search.normal = weight * vec2(side.sin_gamma, side.cos_gamma);
-      search.least_height = clearance;
-      search.least_rise = least_rise(view);
-      search.from = at.x;
-      search.unit = power_of_two(z);
-      search.step = sign;
-      search.begins = sign > 0 ? kVertexBegins : kVertexEnds;
-      search.last = sign > 0 ? kVertexLast : kVertexFirst;
-      search.apart = sign > 0 ? kVertexApart : kVertexApartAgainst;
-      search.closes = sign > 0 ? kVertexCloses : kVertexClosesAgainst;
+      const Side side = side_of(point, weight, sign);
+      const Search search = search_of(view, point, side, weight, clearance, z, at.x, sign);
       whole += share * weight * whole_arc(side);
-      search.shift = fract(0.5 + kGolden * float(2u * params.direction + uint(sign > 0)));
-      const Context c = Context(view, lines, line, on_image, z, plane, point, side, search, row, slot, radius * radius);
-      const BlockedArcs arcs = kWalks == 1 ? blocked_by_one(c) : blocked_by_several(c);
+      const Context c =
+          Context(view, lines, line, on_image, z, plane, point, side, search, row, slot, params.radius * params.radius);
+      const BlockedArcs arcs = blocked_by(c);
       blocked += share * weight * arcs.arc;
       unseen += share * weight * arcs.unseen;
       if (kOrder > 0u)

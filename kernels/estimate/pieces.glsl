@@ -37,10 +37,6 @@ vec2 normal_in_slice(Receiver r, Side side, uint word) {
   return projected * inversesqrt(max(dot(projected, projected), 1e-12));
 }
 
-/// The normal says nothing of where a surface goes on if it is seen more nearly edge on than this: the sine of the
-/// angle between the surface and the eye's ray. A normal that leaned away from the eye has been bent to 0.001.
-const float kLeastFacingToGoOn = 0.02;
-
 /// Whether a normal within the slice, a unit vector, says how the surface at a place goes on.
 bool is_told_by(vec2 surface_normal, Receiver r, vec2 place) {
   const vec2 eye = toward_eye(r, place);

@@ -135,11 +135,9 @@ float known_thickness(View view, LinePlane plane, int step, int index, uint k, f
 Facet facet_of(View view, Lines lines, ivec2 at) {
   const int index = index_at(view, lines, at.x, at.y);
   const vec2 tangent = tangent_at(view, lines, at + lines.origin);
-  Facet f;
-  f.z = depth[index];
-  f.position = view.orthographic == 0 ? f.z * vec3(tangent, -1) : vec3(tangent, -f.z);
-  f.normal = unpack_normal(normal[index]);
-  return f;
+  const float z = depth[index];
+  const vec3 position = view.orthographic == 0 ? z * vec3(tangent, -1) : vec3(tangent, -z);
+  return Facet(position, unpack_normal(normal[index]), z);
 }
 
 /// That of the pixel at a step of a line.
@@ -309,7 +307,7 @@ struct End {
 /// The end of a run at a corner, from which it goes on `inward` (1 or -1) for `count` steps in all.
 End end_of(View view, Lines lines, LinePlane plane, ivec2 steps, int line, Corner corner, int inward, int count) {
   const int at = corner.step, last = steps.y - 1, before = at - inward;
-  End end = End(corner.place, pixels_of(view, corner.z), at == (inward > 0 ? steps.x : last), false, false, false);
+  End end = End(corner.place, pixel_width(view, corner.z), at == (inward > 0 ? steps.x : last), false, false, false);
   const Facet a = facet_at(view, lines, line, at);
   const Facet b = facet_at(view, lines, line, clamp(at + inward, steps.x, last));
   const Facet c = facet_at(view, lines, line, clamp(at + 2 * inward, steps.x, last));
@@ -383,7 +381,7 @@ uint thickness_of(View view, Lines lines, LinePlane plane, int line, Solidity s,
 
 /// The same of the part of a run from a corner on.
 uint thickness_of_part(View view, Solidity s, Corner corner) {
-  const float pixel = pixels_of(view, corner.z);
+  const float pixel = pixel_width(view, corner.z);
   const vec2 widths = vec2(length(s.last.place - corner.place), length(s.first.place - corner.place)) + pixel;
   return pack_thickness(thickness_by_width(widths.x, pixel, false, s.last.is_cut, false),
                         thickness_by_width(widths.y, pixel, false, s.first.is_cut, false));

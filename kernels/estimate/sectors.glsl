@@ -1,5 +1,5 @@
 // A set of angles of a side of a slice, as bits: sectors are even in slope_of(), and the bits of the largest slopes are
-// the highest. Pure: no bindings; to be included after slice.glsl.
+// the highest. Pure: no bindings; to be included after slice.glsl and noise.glsl.
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The boundaries of what is added move by a `shift` in [0, 1) that is even over pixels: then the expected arc is the
@@ -49,6 +49,20 @@ const vec3 kSectorSecond[kSectorCount] =
            vec3(0.03396640, 0.03981816, 0.04711468), vec3(0.01853360, 0.03040065, 0.05038532),
            vec3(0.00750000, 0.01773713, 0.04250000), vec3(0.00213018, 0.00773372, 0.02863905),
            vec3(0.00035303, 0.00223834, 0.01477938), vec3(0.00001680, 0.00024676, 0.00408156));
+
+/// Random numbers in [0, 1) of one side.
+struct Draw {
+  float jitter;  // of its steps
+  float shift;   // of the boundaries of sectors
+};
+
+/// Random numbers of a side, from those of its pixel. The boundaries of the sectors move by the fraction of a multiple
+/// of the steps' jitter. Of a number that is even in [0, 1), the fraction of m times it is even too, and their
+/// correlation is 1 / m: here 9 %.
+Draw draw_of(vec2 noise, uint slice, uint side) {
+  const float jitter = fract(noise.y + kGolden * float(2u * slice + side));
+  return Draw(jitter, fract(11.0 * jitter));
+}
 
 uint sectors_below(float slope, float shift) {
   return (1u << uint(0.5 * float(kSectorCount) * (slope + 1.0) + shift)) - 1u;

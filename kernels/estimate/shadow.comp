@@ -61,9 +61,6 @@ const float kThicknessPerWidth = 0.8, kKnownThicknessPerWidth = 0.4, kHiddenThic
 /// more often wrong than right.
 const float kTangentBeyond = 0.3, kSizesBeyond = 4.0;
 
-/// Beyond the border a surface goes on where it is seen no more edge-on than this.
-const float kLeastFacingToGoOn = 0.02;
-
 /// So many pixels are looked at one by one before their block is, again: a ray leaves the plane that it starts on.
 const int kStepsAlone = 4;
 
@@ -198,9 +195,12 @@ bool are_coplanar(Receiver r, Ray ray, int k) {
   return are_coplanar(view, facet_at(view, last), facet_at(view, pixel), kPlaneDot, kPlaneOff);
 }
 
-/// 4. How thick a run is, in scene units along the eye's ray.
-float thickness_of(Receiver r, Last run, vec3 end, float z, float per_width) {
+/// 4. How thick a run is, in scene units along the eye's ray, that ends with a pixel's i-th surface of depth z.
+float thickness_of(Receiver r, Last run, vec3 end, float z, int i, float next) {
   if (kThickness == kThicknessLength) return params.thickness;
+  const float per_width = i > 0              ? kHiddenThicknessPerWidth
+                          : next < kSkyDepth ? kKnownThicknessPerWidth
+                                             : kThicknessPerWidth;
   const float pixel = params.view.tangent_per_pixel.x * (r.perspective ? z : 1.0);
   const float width = per_width * (length(end - run.start) + pixel) + kMorePixels * pixel;
   return run.is_round ? 0.0 : levelled(width, kWidestRun * params.size);
@@ -246,46 +246,70 @@ uint side_of(Receiver r, Ray ray, int k) {
   return is_deep(r, ray, change, z) ? kFarBefore : kNoSide;
 }
 
+/// The surface of the last pixel that is nearest to this depth.
+Last nearest_to(Last last[kSurfaces], float z) {
+  Last nearest_one = last[0];
+  for (int j = 1; j < kSurfaces; j++)
+    if (abs(last[j].z - z) < abs(nearest_one.z - z)) nearest_one = last[j];
+  return nearest_one;
+}
+
+/// A surface of a pixel that a step looks at.
+struct Looked {
+  int i;       // which one of the pixel's
+  float z;     // its depth
+  float next;  // that of the one behind it, below 0 if it closes this one's solid
+  vec3 place;  // from the receiver
+  float change;
+  bool before;   // clear of the tangent plane, and before the ray
+  uint word;     // how far back its pixel tells that it is solid
+  uint outline;  // where in that the outline towards the receiver is
+};
+
+/// 4. Takes a surface into its run, which goes on `from` the last pixel's or begins. Gives whether the ray is within
+/// the solid behind it.
+bool is_within_solid(Receiver r, Ray ray, Looked s, Last from, bool goes_on, float ray_length, out Last here) {
+  const View view = params.view;
+  const float behind = depth_behind(r, ray, s.change, s.z);
+  const bool deep = is_deep(r, ray, s.change, s.z), begins = both(both(goes_on, from.before), !deep) ? false : true;
+  const bool is_told = both(kHasBacks, both(s.i == 0, s.next >= kSkyDepth));
+  const float mirrored = is_told ? unpack_mirrored(s.word >> s.outline) : -1.0;
+  const bool is_round = begins ? mirrored >= 0.0 : from.is_round;
+  const float least = begins ? behind * ray_length : lesser(behind * ray_length, from.least);
+  here = Last(s.z, s.before, begins ? s.place : from.start, deep ? kSkyDepth : least, both(is_round, !deep));
+  const float scale = r.perspective ? s.z : 1.0;
+  const float told = both(is_round, mirrored >= 0.0) ? mirrored : unpack_depth(s.word);
+  const bool is_within_told = both(is_told, behind <= told * view.tangent_per_pixel.x * scale);
+  const bool is_within_run =
+      kThickness == kThicknessEndless || here.least <= thickness_of(r, here, s.place, s.z, s.i, s.next);
+  return s.next < 0.0 ? behind <= -s.next - s.z : is_within_told ? true : is_within_run;
+}
+
 /// Takes the surfaces of a step. Gives whether one of them blocks the ray.
-bool take_step(Receiver r, Ray ray, Reach reach, uint outline, int k, inout Last last[kSurfaces]) {
+bool take_step(Receiver r, Ray ray, Reach reach, int k, inout Last last[kSurfaces]) {
   const ivec2 pixel = pixel_of_step(r, ray, k);
   const vec2 beside = vec2(pixel - r.pixel), tangent = r.tangent + r.tangent_per_pixel * beside;
   const int index = index_of(params.view, pixel);
   const float change = dot(ray.change, beside), ray_length = r.perspective ? sqrt(1.0 + dot(tangent, tangent)) : 1.0;
-  const uint word = kHasBacks ? backs[index] : 0u;
+  const uint word = kHasBacks ? backs[index] : 0u, outline = outline_of(ray.step_px);
   Last here[kSurfaces];
   float surface = surface_at(index, 0);
   bool blocked = false;
   for (int i = 0; i < kSurfaces; i++) {
-    const float z = abs(surface), scale = r.perspective ? z : 1.0;
-    const vec3 place = offset_to(r, beside, z, scale);
+    const float z = abs(surface), next = i + 1 < kSurfaces ? surface_at(index, i + 1) : kSkyDepth;
     const bool clear = is_clear(r, reach, beside, z, k), before = both(clear, is_before(r, ray, change, z));
-    Last from = last[0];
-    for (int j = 1; j < kSurfaces; j++)
-      if (abs(last[j].z - z) < abs(from.z - z)) from = last[j];
+    const Last from = nearest_to(last, z);
     bool goes_on = are_one(r, z, from.z);
     if (i == 0 && !goes_on && k > 1 && before != last[0].before) goes_on = are_coplanar(r, ray, k);
-    blocked = both(goes_on, before != from.before) ? true : blocked;  // 3.
+    // 3.
     const float within = half_step(ray);
     const bool crosses = is_before(r, ray, change - within, z) != is_before(r, ray, change + within, z);
-    blocked = both(both(!goes_on, crosses), both(clear, surface > 0.0)) ? true : blocked;
-    // 4.
-    const float next = i + 1 < kSurfaces ? surface_at(index, i + 1) : kSkyDepth;
-    const float behind = depth_behind(r, ray, change, z);
-    const bool deep = is_deep(r, ray, change, z), begins = both(both(goes_on, from.before), !deep) ? false : true;
-    const bool is_told = both(kHasBacks, both(i == 0, next >= kSkyDepth));
-    const float mirrored = is_told ? unpack_mirrored(word >> outline) : -1.0;
-    const bool is_round = begins ? mirrored >= 0.0 : from.is_round;
-    const float least = begins ? behind * ray_length : lesser(behind * ray_length, from.least);
-    here[i] = Last(z, before, begins ? place : from.start, deep ? kSkyDepth : least, both(is_round, !deep));
-    const float told = both(is_round, mirrored >= 0.0) ? mirrored : unpack_depth(word);
-    const bool is_within_told = both(is_told, behind <= told * params.view.tangent_per_pixel.x * scale);
-    const float per_width = i > 0              ? kHiddenThicknessPerWidth
-                            : next < kSkyDepth ? kKnownThicknessPerWidth
-                                               : kThicknessPerWidth;
-    const bool is_within_run =
-        kThickness == kThicknessEndless || here[i].least <= thickness_of(r, here[i], place, z, per_width);
-    const bool is_within = next < 0.0 ? behind <= -next - z : is_within_told ? true : is_within_run;
+    const bool crosses_alone = both(both(!goes_on, crosses), both(clear, surface > 0.0));
+    const vec3 place = offset_to(r, beside, z, r.perspective ? z : 1.0);
+    const Looked looked = Looked(i, z, next, place, change, before, word, outline);
+    const bool is_within = is_within_solid(r, ray, looked, from, goes_on, ray_length, here[i]);
+    blocked = both(goes_on, before != from.before) ? true : blocked;
+    blocked = crosses_alone ? true : blocked;
     blocked = both(both(before, surface > 0.0), is_within) ? true : blocked;
     surface = next;
   }
@@ -321,6 +345,55 @@ float length_to_border(View view, Receiver r, Ray ray) {
   return steps * (r.perspective ? r.z : 1.0) / max(across, 1e-30);
 }
 
+/// 5. Passes over steps from k on that are on this side, in a loop of its own, which is short: blocks, then single
+/// pixels. Gives whether it comes to one that is not.
+bool pass_over(Receiver r, Ray ray, uint side, inout int k) {
+  bool is_found = false;
+  do {
+    Stretch stretch;
+    do {
+      stretch = stretch_from(r, ray, k);
+      k = stretch.side == side ? stretch.last + 1 : k;
+    } while (stretch.side == side && k <= ray.steps);
+    const int end = min(stretch.last, k + kStepsAlone - 1);
+    if (k <= end) {
+      do {
+        is_found = side_of(r, ray, k) != side;
+        k += is_found ? 0 : 1;
+      } while (!is_found && k <= end);
+    }
+  } while (!is_found && k <= ray.steps);
+  return is_found;
+}
+
+/// Takes steps from k on as long as the ray may be within the solid of a surface. Gives whether one blocks it. side:
+/// of the last step.
+bool take_steps(Receiver r, Ray ray, Reach reach, inout int k, out uint side) {
+  Last last[kSurfaces];
+  pass(r, ray, reach, k - 1, last);
+  bool blocked, goes_on;
+  do {
+    blocked = take_step(r, ray, reach, k, last);
+    goes_on = false;
+    for (int i = 0; i < kSurfaces; i++) goes_on = both(last[i].before, last[i].least < kSkyDepth) ? true : goes_on;
+  } while (++k <= ray.steps && goes_on && !blocked);
+  side = last[0].before ? kFarBefore : kBehindRay;
+  return blocked;
+}
+
+/// Whether anything that the image shows blocks the ray.
+bool is_blocked(Receiver r, Ray ray, Reach reach) {
+  bool blocked = false;
+  int k = 1;
+  uint side = kBehindRay;  // of the step before; the receiver itself blocks nothing
+  if (ray.steps > 0) {
+    do {
+      if (pass_over(r, ray, side, k)) blocked = take_steps(r, ray, reach, k, side);
+    } while (k <= ray.steps && !blocked);
+  }
+  return blocked;
+}
+
 /// How much of a light is seen, from its direction and its distance, or that of the farthest place that may block.
 float seen_of(View view, Receiver r, vec3 position, vec3 direction, float far) {
   const float cosine = dot(direction, r.eye);
@@ -329,43 +402,7 @@ float seen_of(View view, Receiver r, vec3 position, vec3 direction, float far) {
   if (sine < kLeastSine) return 1.0;
   const Ray ray = ray_of(view, r, position, direction, cosine, sine, across / sine, far);
   const Reach reach = reach_of(view, params.size, 0.0, params.size, params.thickness, params.bias);
-  const uint outline = outline_of(ray.step_px);
-  Last last[kSurfaces];
-  for (int i = 0; i < kSurfaces; i++) last[i] = Last(kSkyDepth, false, vec3(0), kSkyDepth, false);
-  bool blocked = false;
-  int k = 1;
-  uint side = kBehindRay;  // of the step before; the receiver itself blocks nothing
-  if (ray.steps > 0) {
-    do {
-      // 5. In a loop of its own, which is short: blocks, then single pixels.
-      bool is_found = false;
-      do {
-        Stretch stretch;
-        do {
-          stretch = stretch_from(r, ray, k);
-          k = stretch.side == side ? stretch.last + 1 : k;
-        } while (stretch.side == side && k <= ray.steps);
-        const int end = min(stretch.last, k + kStepsAlone - 1);
-        if (k <= end) {
-          do {
-            is_found = side_of(r, ray, k) != side;
-            k += is_found ? 0 : 1;
-          } while (!is_found && k <= end);
-        }
-      } while (!is_found && k <= ray.steps);
-      if (is_found) {
-        pass(r, ray, reach, k - 1, last);
-        bool goes_on;
-        do {
-          blocked = take_step(r, ray, reach, outline, k, last);
-          goes_on = false;
-          for (int i = 0; i < kSurfaces; i++)
-            goes_on = both(last[i].before, last[i].least < kSkyDepth) ? true : goes_on;
-        } while (++k <= ray.steps && goes_on && !blocked);
-        side = last[0].before ? kFarBefore : kBehindRay;
-      }
-    } while (k <= ray.steps && !blocked);
-  }
+  bool blocked = is_blocked(r, ray, reach);
   const bool leaves = both(!blocked, float(ray.steps + 1) < ray.whole_steps);
   if (kBeyondBorder && leaves) blocked = is_blocked_beyond(view, r, ray);
   if (blocked) return 0.0;

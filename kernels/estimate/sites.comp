@@ -13,13 +13,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "kernels/estimate/estimate.h"
-#include "kernels/quick/quick.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/likeness.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/tiles.glsl"
 #include "kernels/base/blocks.glsl"
-#include "kernels/base/site_planes.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint kSelects = 0;   // 1: only blocks of needed tiles have sites

@@ -89,12 +89,6 @@ struct Side {
   float gamma, cos_gamma, sin_gamma;
 };
 
-/// Random numbers in [0, 1) of one side.
-struct Draw {
-  float jitter;  // of its steps
-  float shift;   // of the boundaries of sectors
-};
-
 /// Two unit vectors that with v (v.z > 0) form a right-handed basis, smooth over the image (Duff et al., "Building an
 /// Orthonormal Basis, Revisited", 2017).
 void basis_of(vec3 v, out vec3 x, out vec3 y) {
@@ -286,6 +280,9 @@ vec2 back_of(Receiver r, vec2 front, float thickness, float radius) {
   const float exit = sqrt(max(0.0, along * along - dot(front, front) + radius * radius)) - along;
   return front + min(thickness, exit) * away;
 }
+
+/// A run reaches on average so far into the gaps to the samples before and behind it: up to their middles at most.
+const float kGapPart = 1.0 / 3.0;
 
 /// The thickness of a run by its width: a long one levels off, a wall is not as thick as it is long. most: the width
 /// from which it grows no more.

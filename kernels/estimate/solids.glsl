@@ -41,10 +41,8 @@ struct Facet {
   float z;
 };
 
-float pixels_of(View view, float z) { return view.tangent_per_pixel.x * (view.orthographic == 0 ? z : 1.0); }
-
 bool are_coplanar(View view, Facet a, Facet b, float least_dot, float most_pixels) {
-  const float pixel = pixels_of(view, min(a.z, b.z));
+  const float pixel = pixel_width(view, min(a.z, b.z));
   const vec3 along = b.position - a.position;
   const float off = max(abs(dot(a.normal, along)), abs(dot(b.normal, along)));
   return max(a.z, b.z) < kSkyDepth && dot(a.normal, b.normal) >= least_dot && off < most_pixels * pixel &&
@@ -57,7 +55,7 @@ bool are_flat(View view, Facet a, Facet b, Facet c) {
 }
 
 bool are_parallel(View view, Facet a, Facet b, float radius) {
-  const float pixel = pixels_of(view, min(a.z, b.z));
+  const float pixel = pixel_width(view, min(a.z, b.z));
   const vec3 along = b.position - a.position;
   const float off = min(abs(dot(a.normal, along)), abs(dot(b.normal, along)));
   return dot(a.normal, b.normal) >= kPlaneDot && off >= max(kParallelOff * pixel, kParallelApart * radius);

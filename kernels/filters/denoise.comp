@@ -17,20 +17,16 @@
 #include "kernels/base/view.glsl"
 #include "kernels/base/likeness.glsl"
 #include "kernels/base/normal.glsl"
-#include "kernels/base/tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const int kRadius = 3;    // pixels to each side, 1 to kDenoiseMostRadius
 layout(constant_id = 1) const uint kByDepth = 0;  // 1: weighs by depth_sigma, not by planes and normals
-layout(constant_id = 2) const uint kListed = 0;   // 1: only the runs of the list, not all
-layout(constant_id = 3) const int kPlanes = 1;    // how many planes; they share their weights
+layout(constant_id = 2) const int kPlanes = 1;    // how many planes; they share their weights
 layout(scalar, push_constant) uniform Push { DenoiseParams params; };
 readonly buffer Ao { float ao[]; };           // planes of floats in [0, 1], visibility or the like; each by itself
 readonly buffer Depth { float depth[]; };     // one float per pixel, of the G-buffer of that visibility
 readonly buffer Normal { uint normal[]; };    // one uint per pixel, of the same; not read with a depth sigma
 writeonly buffer Result { float result[]; };  // as many planes, in [0, 1]
-readonly buffer List { uint list[]; };        // one uint per run, from dilate; only if listed
-readonly buffer Counts { RunCounts counts; };
 
 const bool kReadsNormals = kByDepth == 0u;
 #include "kernels/base/plane_at.glsl"
@@ -46,11 +42,8 @@ float value_at(ivec2 pixel, int plane) {
 }
 
 void main() {
-  const uint at = (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * kGroupY + gl_LocalInvocationID.y;
-  if (kListed != 0u && at >= counts.listed) return;
-  const ivec2 run = kListed != 0u ? unpack_run(list[at]) : ivec2(gl_WorkGroupID.x, gl_GlobalInvocationID.y);
-  const int line = run.x * int(kGroupX) + int(gl_LocalInvocationID.x);
-  const ivec2 first = line * params.axis.yx + kDenoiseRun * run.y * params.axis;
+  const ivec2 line_and_run = ivec2(gl_GlobalInvocationID.xy);
+  const ivec2 first = line_and_run.x * params.axis.yx + kDenoiseRun * line_and_run.y * params.axis;
   if (any(greaterThanEqual(first, params.view.size))) return;
 
   const int plane = params.view.size.x * params.view.size.y;

@@ -2,25 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_FILTERS_H
 #define ALCOVE_FILTERS_H
-#include "kernels/base/blocks.h"
+#include "kernels/base/shared.h"
 ALCOVE_BEGIN
 
 struct CombineParams {
   ivec2 size;  // px
   uint count;  // planes
-};
-
-ALCOVE_CONSTANT uint kDilateAlongColumns = 0;  // runs whose result may be other than 1 or than it was; before the rows
-ALCOVE_CONSTANT uint kDilateAlongRows = 1;     // runs that those read
-ALCOVE_CONSTANT uint kDilateUpsample = 2;      // workgroups of upsample
-
-struct DilateParams {
-  ivec2 size;          // px that the tiles are of
-  int runs, lines;     // runs in a line, and lines of tiles; groups in x and y
-  int runs_in_column;  // of what the columns are
-  ivec2 full_size;     // px of what is upsampled, `factor` times as large
-  ivec2 overhang;      // of these px, as upsample has it
-  int factor;
 };
 
 ALCOVE_CONSTANT int kDenoiseMostRadius = 8;  // px
@@ -52,9 +39,8 @@ struct SpreadBlocksParams {
 };
 
 ALCOVE_CONSTANT uint kInterpolateColumns = 1;  // columns, after rows; else rows
-ALCOVE_CONSTANT uint kInterpolateListed = 2;   // only the runs of the list, not all
-ALCOVE_CONSTANT uint kInterpolateByDepth = 4;  // weighs by depth_sigma instead of by planes and normals
-ALCOVE_CONSTANT uint kInterpolateLooksUp = 8;  // weighs by `weight` instead of by the parabola
+ALCOVE_CONSTANT uint kInterpolateByDepth = 2;  // weighs by depth_sigma instead of by planes and normals
+ALCOVE_CONSTANT uint kInterpolateLooksUp = 4;  // weighs by `weight` instead of by the parabola
 
 // Sites in reach weigh at least this part of what they weigh at the pixel itself: they may be all that there is.
 ALCOVE_NUMBER kLeastWindow = 1e-6;

@@ -15,7 +15,6 @@
 #include "kernels/base/view.glsl"
 #include "kernels/base/likeness.glsl"
 #include "kernels/base/blocks.glsl"
-#include "kernels/base/site_planes.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const int kPlanes = 1;  // how many planes from the first one on; they share their weights

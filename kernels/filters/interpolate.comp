@@ -23,7 +23,6 @@
 #include "kernels/base/view.glsl"
 #include "kernels/base/likeness.glsl"
 #include "kernels/base/normal.glsl"
-#include "kernels/base/tiles.glsl"
 #include "kernels/base/blocks.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -39,8 +38,6 @@ readonly buffer Ao { uint ao[]; };
 readonly buffer Depth { float depth[]; };    // one float per pixel, of the G-buffer of that visibility
 readonly buffer Normal { uint normal[]; };   // one uint per pixel, of the same; not read with a depth sigma
 writeonly buffer Result { uint result[]; };  // as many planes of all pixels, in [0, 1]; of rows: see pack_blocked
-readonly buffer List { uint list[]; };       // one uint per run, from dilate; only if listed
-readonly buffer Counts { RunCounts counts; };
 // a word for each run of a row and 32 rows, with a bit for each that is written; zeros before the rows
 buffer Runs { uint runs[]; };
 readonly buffer Blocks { uint words[]; };  // one uint per block, see blocks.glsl; not read along columns
@@ -186,19 +183,15 @@ void main() {
   const uint lane = gl_LocalInvocationIndex % kGroupX;
   const uint in_group = kColumns ? number : (number / 4u) * 4u + lane % 4u;
   const uint in_lines = kColumns ? lane : number % 4u + lane / 4u * 4u;
-  const uint at = (gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x) * kGroupY + in_group;
-  if ((kMode & kInterpolateListed) != 0u && at >= counts.listed) return;
-  const ivec2 run = (kMode & kInterpolateListed) != 0u ? unpack_run(list[at])
-                                                       : ivec2(gl_WorkGroupID.x, gl_WorkGroupID.y * kGroupY + in_group);
-  const int line = run.x * int(kGroupX) + int(in_lines);
-  const ivec2 first = line * params.axis.yx + kDenoiseRun * run.y * params.axis;
+  const int line = int(gl_WorkGroupID.x * kGroupX + in_lines), run = int(gl_WorkGroupID.y * kGroupY + in_group);
+  const ivec2 first = line * params.axis.yx + kDenoiseRun * run * params.axis;
   if (any(greaterThanEqual(first, params.view.size))) return;
 
   const int plane = params.view.size.x * params.view.size.y;
   const ivec2 from = first - kRadius * params.axis;
   const uint sites = (kColumns ? means_of_column(from) : sites_of_row(from)) & ~0u >> uint(32 - kCount);
   if (sites != 0u) interpolate(first, sites, plane);
-  if (!kColumns && sites != 0u) atomicOr(runs[(line >> 5) * words_of_runs() + run.y], 1u << uint(line & 31));
+  if (!kColumns && sites != 0u) atomicOr(runs[(line >> 5) * words_of_runs() + run], 1u << uint(line & 31));
   if (kColumns && sites == 0u)
     for (int i = 0; i < kDenoiseRun * kPlanes; i++) {
       const ivec2 pixel = first + i % kDenoiseRun * params.axis;

@@ -14,7 +14,6 @@
 #include "kernels/base/likeness.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/blocks.glsl"
-#include "kernels/base/site_planes.glsl"
 
 layout(local_size_x = 32, local_size_y = 2) in;
 layout(constant_id = 0) const int kPlanes = 1;   // how many planes; they share their weights

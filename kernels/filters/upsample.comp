@@ -13,12 +13,10 @@
 #include "kernels/filters/filters.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
-#include "kernels/base/tiles.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = 0) const int kFactor = 2;   // pixels of a block in x and in y
-layout(constant_id = 1) const int kPlanes = 1;   // how many planes; they share their weights
-layout(constant_id = 2) const uint kListed = 0;  // 1: only workgroups of the list; 0: all
+layout(constant_id = 0) const int kFactor = 2;  // pixels of a block in x and in y
+layout(constant_id = 1) const int kPlanes = 1;  // how many planes; they share their weights
 layout(scalar, push_constant) uniform Push { UpsampleParams params; };
 readonly buffer Depth { float depth[]; };          // one float per pixel, from prepare
 readonly buffer Normal { uint normal[]; };         // one uint per pixel, from prepare
@@ -26,9 +24,7 @@ readonly buffer LowDepth { float low_depth[]; };   // one float per block, from 
 readonly buffer LowNormal { uint low_normal[]; };  // one uint per block, from downsample
 // planes of floats in [0, 1] a block, visibility or the like; each by itself
 readonly buffer LowAo { float low_ao[]; };
-writeonly buffer Ao { float ao[]; };    // as many planes, in [0, 1]
-readonly buffer List { uint list[]; };  // one uint per workgroup, from dilate; only with kListed
-readonly buffer Counts { RunCounts counts; };
+writeonly buffer Ao { float ao[]; };  // as many planes, in [0, 1]
 
 /// A block has no part in a pixel if its centre lies further from the pixel's tangent plane than this many pixels are
 /// wide there.
@@ -75,11 +71,7 @@ vec4 parts_of(Block blocks[4], vec2 between, ivec2 pixel, float z, vec3 n) {
 }
 
 void main() {
-  const uint at = gl_WorkGroupID.y * kListedRow + gl_WorkGroupID.x;
-  if (kListed != 0u && at >= counts.listed) return;
-  const ivec2 group = kListed != 0u ? unpack_run(list[at]).yx : ivec2(gl_WorkGroupID.xy);
-  const ivec2 invocation = group * ivec2(kGroupX, kGroupY) + ivec2(gl_LocalInvocationID.xy);
-  const ivec2 block = invocation - 1;
+  const ivec2 block = ivec2(gl_GlobalInvocationID.xy) - 1;
   const ivec2 first = kFactor * block + kFactor / 2 - params.overhang;
   if (any(greaterThanEqual(first, params.view.size))) return;
 

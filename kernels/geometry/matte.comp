@@ -6,7 +6,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/geometry/geometry.h"
-#include "kernels/base/finite.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kForm = kMatteCoverage;  // one of kMatte*

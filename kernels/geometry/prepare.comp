@@ -15,7 +15,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/geometry/geometry.h"
-#include "kernels/base/finite.glsl"
 #include "kernels/base/view.glsl"
 #include "kernels/base/depth_terms.glsl"
 #include "kernels/base/normal.glsl"

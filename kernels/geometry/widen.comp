@@ -11,7 +11,6 @@
 #include "kernels/geometry/geometry.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
-#include "kernels/base/keys.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kStage = kWidenEmpty;  // one of kWiden* below

@@ -10,7 +10,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/hidden/hidden.h"
 #include "kernels/base/view.glsl"
-#include "kernels/base/keys.glsl"
+#include "kernels/base/reprojection.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 layout(constant_id = 0) const uint kKept = kMostHidden;  // planes of `hidden`, 1 to kMostHidden
@@ -26,17 +26,9 @@ writeonly buffer Hidden { float hidden[]; };  // planes of floats, see GBuffer::
 // one uint per pixel: bit k is set if the surface k of `hidden` is of unknown kind, and may close a solid
 writeonly buffer Open { uint open[]; };
 buffer Counts { LayerCounts counts; };      // zeroed before
-readonly buffer Warped { uint warped[]; };  // planes of keys of surfaces that other views show, see keys.glsl
+readonly buffer Warped { uint warped[]; };  // planes of keys of surfaces that other views show, see key_of()
 
-/// Surfaces are one if they are no farther apart than so many times what a depth may be off.
-const float kPrecisions = 4.0;
-
-float separation_at(float z) {
-  if (params.separation >= 0.0) return params.separation;
-  const float pixel = params.view.tangent_per_pixel.x * (params.view.orthographic != 0 ? 1.0 : z);
-  const vec3 by = params.depth_precision;
-  return kPrecisions * (by.x + z * (by.y + z * by.z)) + pixel;
-}
+float separation_at(float z) { return separation_at(params.view, params.depth_precision, params.separation, z); }
 
 uint planes() { return kPlanes != 0u ? kPlanes : params.planes; }
 

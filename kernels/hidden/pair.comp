@@ -36,9 +36,9 @@ void main() {
     if (abs(z) >= kSkyDepth) break;
     const int votes = votes_of(along_row, k) + votes_of(along_column, k);
     const float width = float(min(width_of(along_row, k), width_of(along_column, k)));
-    const float pixel_size = params.view.tangent_per_pixel.x * (params.view.orthographic != 0 ? 1.0 : last);
     const bool is_open = (open[index] >> k & 1u) != 0u;
-    const bool closes = is_open && !last_closes && votes > 0 && abs(z) - last <= kMostThickness * width * pixel_size;
+    const bool closes = is_open && !last_closes && votes > 0 &&
+                        abs(z) - last <= kMostThickness * width * pixel_width(params.view, last);
     if (closes) hidden[at] = -z;
     last_closes = closes || z < 0.0;
     last = abs(z);

@@ -12,7 +12,6 @@
 #include "kernels/hidden/hidden.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
-#include "kernels/base/keys.glsl"
 #include "kernels/base/reprojection.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
@@ -21,7 +20,7 @@ readonly buffer Depth { float depth[]; };   // one float per pixel of `from`, pl
 readonly buffer Normal { uint normal[]; };  // one uint per pixel of `from`, see normal.glsl
 readonly buffer Use { uint use[]; };        // one uint per pixel of `from`, 0 where it is used, see surfels.comp
 readonly buffer First { float first[]; };   // one float per pixel of `to`, planar depth of the first surface
-buffer Found { uint found[]; };             // planes of keys of `to`, zeroed before: see key_of() of keys.glsl
+buffer Found { uint found[]; };             // planes of keys of `to`, zeroed before: see key_of()
 buffer Counts { ViewCounts counts; };       // zeroed before
 
 /// Half a piece's side, in pixels of its own view.

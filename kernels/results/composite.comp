@@ -15,7 +15,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/results/results.h"
-#include "kernels/base/finite.glsl"
 #include "kernels/base/view.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;

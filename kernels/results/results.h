@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #ifndef ALCOVE_RESULTS_H
 #define ALCOVE_RESULTS_H
-#include "kernels/base/blocks.h"
+#include "kernels/base/shared.h"
 ALCOVE_BEGIN
 
 struct BentNormalParams {

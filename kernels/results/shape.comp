@@ -11,7 +11,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "kernels/results/results.h"
-#include "kernels/base/finite.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
 // What is asked for is a specialization constant: lavapipe computes both sides of a choice, and powers are slow.

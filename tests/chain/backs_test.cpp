@@ -109,17 +109,16 @@ class Walked {
     const FrameInputs inputs = upload(gpu, frame);
     const GBuffer gbuffer = prepare(gpu, inputs);
     reconstruct(gpu, gbuffer);
-    const Chains links = chains(gpu, gbuffer, reach_of(sampled(Estimator::gtao, radius, 2, 16), radius), has_normals);
-    chain_ends(gpu, gbuffer, links);
-    const gpu::Buffer& words = backs(gpu, gbuffer, links);
+    const auto& [words, chains] =
+        backs(gpu, gbuffer, reach_of(sampled(Estimator::gtao, radius, 2, 16), radius), has_normals);
     for (const gpu::Buffer* buffer :
-         std::initializer_list<const gpu::Buffer*>{gbuffer.depth, gbuffer.normal, &links.links, &words})
+         std::initializer_list<const gpu::Buffer*>{gbuffer.depth, gbuffer.normal, &chains, &words})
       gpu.download(*buffer);
     gpu.run();
     view_ = gbuffer.view;
     depth_ = values_of<float>(*gbuffer.depth);
     normal_ = values_of<std::uint32_t>(*gbuffer.normal);
-    links_ = values_of<std::uint32_t>(links.links);
+    links_ = values_of<std::uint32_t>(chains);
     words_ = values_of<std::uint32_t>(words);
   }
 

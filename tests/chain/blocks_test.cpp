@@ -45,8 +45,7 @@ struct Chosen {
     return buffer;
   }
   std::vector<float> filtered(const std::vector<float>& planes, uint moments = 0) const {
-    return downloaded<float>(
-        smooth(recorder(), frame.gbuffer, upload(planes), sites, denoiser, "", FilterRuns{}, moments));
+    return downloaded<float>(smooth(recorder(), frame.gbuffer, upload(planes), sites, denoiser, "", moments));
   }
   template <class Visibility>
   std::vector<float> filtered(const Visibility& visibility) const {

@@ -1,8 +1,7 @@
 // The quick search: its margin, what it gives for scenes whose AO is known, and where another search
 // takes its place.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/quick/quick.h"
-#include "kernels/quick/quick.h"
+#include "core/chain/estimate/estimate.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/scenes.h"

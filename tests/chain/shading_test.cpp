@@ -56,7 +56,7 @@ Planes shaped(const HostFrame& frame, const Planes& ao, const EstimatorSettings&
       frame,
       [&](const GBuffer& gbuffer, FrameInputs& inputs) -> gpu::Buffer& {
         if (material) inputs[RawPlane::material_ao] = &given("test material", *material);
-        return shape(recorder(), gbuffer, given("test ao", ao), shaping_of(settings), inputs[RawPlane::material_ao]);
+        return shape(recorder(), gbuffer, given("test ao", ao), settings, inputs[RawPlane::material_ao]);
       },
       counts);
 }

@@ -126,7 +126,7 @@ TEST(Kernels, are_all_in_the_chain_of_the_page) {
     if (file.name.ends_with(".comp")) EXPECT_THAT(page, HasSubstr("](../" + file.name + ")"));
 }
 
-TEST(Kernels, have_variants_by_constants_and_tell_nan_by_bits) {  // see kernels/base/finite.glsl
+TEST(Kernels, have_variants_by_constants_and_tell_nan_by_bits) {  // see kernels/base/shared.h
   EXPECT_EQ(matches(R"(#\s*(if|ifdef|elif|else)\b|\b(isnan|isinf)\()",
                     [](const auto& file) { return file.is_in("kernels") && file.name != "kernels/base/shared.h"; }),
             Names{});

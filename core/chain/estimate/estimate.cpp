@@ -208,7 +208,6 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
                       const EstimatorSettings& settings, Estimate& result) {
   const auto radii = radii_of(settings);
   const Sampling sampling = sampling_of(settings, frame.frame);
-  const VolumeSamples volume{settings.samples, settings.sample_kernel, settings.range_check};
   Skipping skipping = skipping_of(settings, frame, gbuffer.grid);
   // Tiles that are as in the frame before keep what it found in them.
   if (result.completed && !skipping.changes) gpu.clear(*result.completed);
@@ -218,22 +217,16 @@ void estimate_sampled(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& s
     Estimate out = of_radius(result, plane, radii.size());
     out.listed = classify(gpu, gbuffer, skipping, reach, sites, out);
     list_sites(gpu, gbuffer, sites, out.listed);
-    if (tells_backs(settings)) {
-      const Chains links = chains(gpu, gbuffer, reach, frame[RawPlane::normal] != nullptr);
-      chain_ends(gpu, gbuffer, links);
-      out.told = &backs(gpu, gbuffer, links);
-    }
+    if (tells_backs(settings)) out.told = &backs(gpu, gbuffer, reach, frame[RawPlane::normal] != nullptr).words;
     switch (settings.estimator) {
       case Estimator::gtao:
       case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
       case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out); break;
-      case Estimator::crytek: crytek(gpu, gbuffer, reach, sampling, volume, out); break;
+      case Estimator::crytek: crytek(gpu, gbuffer, reach, sampling, settings, out); break;
     }
     result.listed = out.listed;
     result.told = out.told;
   }
-  // What is left out at the largest radius may be computed at another.
-  result.listed.skips_surfaces = result.listed.skips_surfaces && radii.size() == 1;
 }
 
 void estimate_curvature(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const FrameInputs& frame,
@@ -277,7 +270,6 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   list.counts = &gpu.buffer(prefix + "tile counts", sizeof(TileCounts));
   list.kinds = &gpu.buffer(prefix + "tile kinds", sizeof(uint) * tiles.x * tiles.y);
   const bool selects = skipping.skips_sky && gbuffer.needed;
-  list.skips_surfaces = skipping.changes || selects;
   gpu.clear(*list.counts);
   const uint mode = (skipping.skips_sky ? kClassifySkips : 0) | (out.order > 0 ? kClassifyWithFirst : 0) |
                     (out.order > 1 ? kClassifyWithSecond : 0) | (out.completed ? kClassifyWithCompleted : 0) |
@@ -315,34 +307,26 @@ TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& sk
   return list;
 }
 
-Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
+Backs backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals) {
   const View& view = gbuffer.view;
   const std::size_t segments = std::size_t(view.size.y) * groups_of(view.size.x, kSegment) +
                                std::size_t(view.size.x) * groups_of(view.size.y, kSegment);
   const std::size_t bytes = segments * 2 * sizeof(uint);
-  const Chains result{
-      {view, reach.radius, has_normals ? 1u : 0u}, gpu.buffer("chains", bytes), gpu.buffer("chain ends", bytes)};
-  gpu.dispatch("chains", result.params,
-               {{"Depth", occluder_depth_of(gbuffer)}, {"Normal", gbuffer.normal}, {"Chains", result.links}},
+  const gpu::Buffer &chains = gpu.buffer("chains", bytes), &ends = gpu.buffer("chain ends", bytes);
+  const gpu::Buffer& words = gpu.buffer("backs", plane_bytes(view));
+  const BacksParams params{view, reach.radius, has_normals ? 1u : 0u};
+  gpu.dispatch("chains", params,
+               {{"Depth", occluder_depth_of(gbuffer)}, {"Normal", gbuffer.normal}, {"Chains", chains}},
                {uint(std::min<std::size_t>(segments, kChainsRow)), groups_of(int(segments), kChainsRow)});
-  return result;
-}
-
-void chain_ends(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains) {
-  gpu.dispatch("chain_ends", chains.params, {{"Chains", chains.links}, {"Ends", chains.ends}},
-               uint(gbuffer.view.size.x + gbuffer.view.size.y));
-}
-
-const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains) {
-  gpu::Buffer& result = gpu.buffer("backs", plane_bytes(gbuffer.view));
-  gpu.dispatch("backs", chains.params,
+  gpu.dispatch("chain_ends", params, {{"Chains", chains}, {"Ends", ends}}, uint(view.size.x + view.size.y));
+  gpu.dispatch("backs", params,
                {{"Depth", occluder_depth_of(gbuffer)},
                 {"Normal", gbuffer.normal},
-                {"Chains", chains.links},
-                {"Ends", chains.ends},
-                {"Backs", result}},
-               extent_of(gbuffer.view));
-  return result;
+                {"Chains", chains},
+                {"Ends", ends},
+                {"Backs", words}},
+               extent_of(view));
+  return {words, chains};
 }
 
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
@@ -392,19 +376,53 @@ void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const 
 }
 
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-            const VolumeSamples& samples, const Estimate& out) {
+            const EstimatorSettings& settings, const Estimate& out) {
   CrytekParams params{};
   params.view = gbuffer.view;
   params.radius = reach.radius;
   params.bias = reach.bias;
-  params.uniform_volume = samples.kernel == SampleKernel::uniform ? 1 : 0;
-  params.range_check = range_check_of(samples.range_check);
+  params.uniform_volume = settings.sample_kernel == SampleKernel::uniform ? 1 : 0;
+  params.range_check = range_check_of(settings.range_check);
   params.noise_origin = gbuffer.grid.origin;
   params.noise_shift = sampling.noise_shift;
   params.plane = out.plane;
   params.depth_precision = gbuffer.depth_precision;
   gpu.dispatch("crytek", params, buffers_of(gbuffer, out), estimate_extent(out.listed),
-               {uint(samples.count), out.listed.sites ? 1u : 0u});
+               {uint(settings.samples), out.listed.sites ? 1u : 0u});
+}
+
+bool searches_quickly(const EstimatorSettings& settings, const GBuffer& gbuffer, uint order, bool with_curvature) {
+  const bool is_usual = settings.estimator == Estimator::gtao && settings.falloff == Falloff::none &&
+                        settings.thickness == ThicknessKind::automatic && settings.complete == Completion::all &&
+                        settings.resolution == Resolution::full && settings.further_radii.empty();
+  const bool is_plain = order == 0 && !with_curvature && gbuffer.surfaces == 1 && !gbuffer.occluder_depth;
+  return settings.search == SliceSearch::quick && settings.tolerance == 0 && is_adaptive(settings) && is_usual &&
+         is_plain;
+}
+
+const gpu::Buffer& margin(gpu::Recorder& gpu, const GBuffer& gbuffer) {
+  const ivec2 size = gbuffer.view.size;
+  const uint beside = 2 * uint(kDepthMargin), width = uint(size.x) + beside, height = uint(size.y) + beside;
+  const gpu::Buffer& wide = gpu.buffer("depth with margin", sizeof(float) * width * height);
+  gpu.dispatch("margin", MarginParams{gbuffer.view},
+               {{"Depth", gbuffer.depth}, {"Normal", gbuffer.normal}, {"Wide", wide}},
+               {width * height - uint(size.x) * uint(size.y)});
+  return wide;
+}
+
+Estimate quick_horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const gpu::Buffer& wide,
+                       const FrameInputs& frame, const EstimatorSettings& settings) {
+  const Reach reach = reach_of(settings, *settings.radius);
+  const Sampling sampling = sampling_of(settings, frame.frame);
+  Estimate result{&gpu.buffer("ao", plane_bytes(gbuffer.view))};
+  result.listed.site_counts = sites.counts;
+  gpu.dispatch(
+      "quick_horizon",
+      QuickParams{gbuffer.view, sites.grid, reach.radius, reach.bias, gbuffer.grid.origin, sampling.noise_shift,
+                  gbuffer.depth_precision},
+      {{"Wide", wide}, {"Normal", gbuffer.normal}, {"List", sites.list}, {"Counts", sites.counts}, {"Ao", result.ao}},
+      sites.extent, {uint(sampling.slices), uint(sampling.steps)});
+  return result;
 }
 
 gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, const Sites& sites) {

@@ -47,7 +47,6 @@ struct TileList {
   gpu::Buffer* lines = nullptr;        // GroupCount of profile, from refine
   gpu::Buffer* sites = nullptr;        // in them, from list_sites; null: all of their pixels
   gpu::Buffer* site_counts = nullptr;  // one SiteCounts; null as the sites
-  bool skips_surfaces = false;         // more than sky may be left out
 };
 
 /// The workgroups of a pass over the listed tiles, at most one for each.
@@ -117,13 +116,6 @@ struct Sampling {
 };
 Sampling sampling_of(const EstimatorSettings& settings, int frame);
 
-/// Crytek's samples in the volume of the hemisphere.
-struct VolumeSamples {
-  int count;
-  SampleKernel kernel;
-  RangeCheck range_check;
-};
-
 /// The tiles that may be left out.
 struct Skipping {
   bool skips_sky;
@@ -142,20 +134,13 @@ const gpu::Buffer* bounds(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skip
 TileList classify(gpu::Recorder& gpu, const GBuffer& gbuffer, const Skipping& skipping, const Reach& reach,
                   const Sites& sites, const Estimate& out, const std::string& prefix = "");
 
-/// The chains of pixels of one surface in rows and columns, see backs.glsl, and their lengths beyond segments.
-struct Chains {
-  BacksParams params;
-  gpu::Buffer &links, &ends;
+/// The thickness of the solid at each pixel, a word each, and the chains of pixels of one surface that tell it: see
+/// chains.comp, chain_ends.comp and backs.comp.
+struct Backs {
+  const gpu::Buffer &words, &chains;
 };
-
-/// Links pixels: see chains.comp. Without normals of their own, surfaces end by depth alone.
-Chains chains(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals);
-
-/// Measures chains beyond segments: see chain_ends.comp.
-void chain_ends(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains);
-
-/// The thickness of the solid at each pixel: see backs.comp.
-const gpu::Buffer& backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Chains& chains);
+/// Without normals of their own, surfaces end by depth alone.
+Backs backs(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, bool has_normals);
 
 /// gtao and bitmask. Tiles that have hidden surfaces within reach are searched by horizon_layers.
 void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
@@ -163,7 +148,20 @@ void horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, con
 void hbao(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling, Elevation elevation,
           const Estimate& out);
 void crytek(gpu::Recorder& gpu, const GBuffer& gbuffer, const Reach& reach, const Sampling& sampling,
-            const VolumeSamples& samples, const Estimate& out);
+            const EstimatorSettings& settings, const Estimate& out);
+
+// The quick search of sites, with fewer rules than `horizon`.
+
+/// Whether a frame is searched quickly: the settings ask for it, and for nothing that it cannot do. Several radii, a
+/// falloff, a given thickness, surfaces that are not completed everywhere, a uniform density, moments,
+/// curvature, hidden surfaces, and surfaces that are no occluders are left to the usual search.
+bool searches_quickly(const EstimatorSettings& settings, const GBuffer& gbuffer, uint order, bool with_curvature);
+
+/// Depth with a margin about the image, into which surfaces go on: see margin.comp. sites() fills its middle.
+const gpu::Buffer& margin(gpu::Recorder& gpu, const GBuffer& gbuffer);
+/// The visibility of the sites.
+Estimate quick_horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& sites, const gpu::Buffer& wide,
+                       const FrameInputs& frame, const EstimatorSettings& settings);
 
 /// Sums for each tile of 8 x 8 pixels the visibility that completed surfaces block, and that all block, for the largest
 /// radius, at the sites of the widest lattice: see completion.comp. Null without estimate.completed.

@@ -10,7 +10,6 @@
 
 #include "core/chain/base/planes.h"
 #include "core/chain/filters/filters.h"
-#include "core/chain/geometry/matte.h"
 #include "core/chain/results/confidence.h"
 
 namespace alcove {
@@ -49,11 +48,7 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
   const Reach reach = reach_of(sampled, radii_of(settings).back());
   const Sampling sampling = sampling_of(sampled, frame.frame);
   const GBuffer counted = occluders(gpu, gbuffer, frame);
-  if (!told && tells_backs(sampled)) {
-    const Chains links = chains(gpu, counted, reach, frame[RawPlane::normal] != nullptr);
-    chain_ends(gpu, counted, links);
-    told = &backs(gpu, counted, links);
-  }
+  if (!told && tells_backs(sampled)) told = &backs(gpu, counted, reach, frame[RawPlane::normal] != nullptr).words;
   // Of the visibility, and of the two that bracket it for the confidence: the thinnest occluders, then the thickest.
   struct Rule {
     GBuffer counted;
@@ -95,10 +90,8 @@ gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInput
                             : searches_exactly(settings) ? kDirectionsExact
                                                          : std::max(uint(settings.slices), kLeastDirections);
     const std::vector<uint> constants{solid, directions, rule == 2 ? 1u : 0u};
-    if (gbuffer.surfaces == 1)
-      gpu.dispatch("shadow", params, buffers, extent_of(gbuffer.view), constants);
-    else
-      gpu.dispatch("shadow_layers", params, buffers, extent_of(gbuffer.view), constants);
+    gpu.dispatch(gbuffer.surfaces == 1 ? "shadow" : "shadow_layers", params, buffers, extent_of(gbuffer.view),
+                 constants);
   };
   const auto estimate = [&](bool filtered, const gpu::Buffer& result) {
     for (std::size_t i = 0; i < count; i++)

@@ -7,7 +7,7 @@
 
 #include "core/base/settings.h"
 #include "core/chain/geometry/geometry.h"
-#include "kernels/base/blocks.h"
+#include "kernels/base/shared.h"
 
 namespace alcove {
 
@@ -26,7 +26,7 @@ int site_reach_of(const EstimatorSettings& settings);
 struct Sites {
   const gpu::Buffer* words = nullptr;  // one uint per block, see blocks.glsl; null: every pixel has an estimate
   SiteGrid grid{};
-  const gpu::Buffer* planes = nullptr;  // a vec4 per site, see site_planes.glsl; null unless they are adaptive
+  const gpu::Buffer* planes = nullptr;  // a vec4 per site, see likeness.glsl; null unless they are adaptive
   const gpu::Buffer* list = nullptr;    // of their pixels
   gpu::Buffer* counts = nullptr;        // one SiteCounts
   gpu::Extent extent = 0;               // the workgroups over the list

@@ -80,14 +80,6 @@ std::vector<double> weights_of(const EstimatorSettings& settings) {
   return reaching(kernel.empty() ? parabola(narrowness_of(settings), reach) : kernel, reach);
 }
 
-gpu::Buffer& denoised(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
-  return gpu.buffer(prefix + "denoised", bytes);
-}
-
-gpu::Buffer& upsampled(gpu::Recorder& gpu, const std::string& prefix, std::size_t bytes) {
-  return gpu.buffer(prefix + "upsampled", bytes);
-}
-
 /// The parameters of the filter, without the axis.
 template <class Params>
 Params filter_params(const GBuffer& gbuffer, const Denoiser& denoiser) {
@@ -111,15 +103,6 @@ std::vector<double> within_of(const EstimatorSettings& settings) {
   std::vector<double> within = radii_of(settings);
   for (double& radius : within) radius *= kFilteredPart;
   return within;
-}
-
-/// The workgroups of a filter along one axis.
-gpu::Extent runs_extent(const GBuffer& gbuffer, ivec2 axis, const RunList& listed) {
-  if (listed.counts) return gpu::Extent(*listed.counts);
-  const ivec2 size = gbuffer.view.size;
-  const int length = axis.x ? size.x : size.y;
-  const int lines = axis.x ? size.y : size.x;
-  return {uint(lines), groups_of(length, uint(kDenoiseRun))};
 }
 
 }  // namespace
@@ -152,86 +135,43 @@ Denoiser denoiser_of(const EstimatorSettings& settings) {
 
 int Denoiser::reach() const { return of_blocks ? kBlocksReach : std::max(int(weights.size()) - 1, 0); }
 
-FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const Denoiser& denoiser) {
-  // A list costs as much as a twentieth of the filter: it pays where more than sky is left out.
-  if (!tiles.skips_surfaces) return {};
-  const BlockGrid& grid = gbuffer.grid;
-  const bool denoises = !denoiser.weights.empty();
-  const bool upsamples = grid.factor > 1;
-  const int radius = denoiser.reach();
-  const int width = gbuffer.view.size.x;
-  const int height = gbuffer.view.size.y;
-  if (!denoises && !upsamples) return {};
-  const auto groups = [](int pixels, int size) { return int(groups_of(pixels, uint(size))); };
-  const int in_column = groups(height, kDenoiseRun);
-  const int in_row = groups(width, kDenoiseRun);
-  const gpu::Buffer& columns =
-      gpu.buffer("runs along columns", sizeof(uint) * std::size_t(in_column * groups(width, kTile)));
-  const auto list = [&](const std::string& name, int runs, int lines, uint mode, const gpu::Buffer& result) {
-    const RunList out{&gpu.buffer(name, sizeof(uint) * std::size_t(runs * lines)),
-                      &gpu.buffer(name + " counts", sizeof(RunCounts))};
-    gpu.clear(*out.counts);
-    gpu.dispatch(
-        "dilate", DilateParams{gbuffer.view.size, runs, lines, in_column, grid.frame_size, grid.overhang, grid.factor},
-        {{"Tiles", tiles.kinds}, {"Columns", columns}, {"List", out.runs}, {"Counts", out.counts}, {"Result", result}},
-        {uint(runs), uint(lines)}, {uint(radius), mode});
-    return out;
-  };
-  FilterRuns listed;
-  if (denoises) {
-    const gpu::Buffer& result = denoised(gpu, "", plane_bytes(gbuffer.view));
-    listed.columns = list("listed columns", in_column, groups(width, kTile), kDilateAlongColumns, result);
-    listed.rows = list("listed rows", in_row, groups(height, kTile), kDilateAlongRows, result);
-  }
-  if (upsamples) {
-    const std::size_t bytes = sizeof(float) * std::size_t(grid.frame_size.x) * std::size_t(grid.frame_size.y);
-    listed.blocks = list("listed blocks", groups(width + 1, kGroupX), groups(height + 1, kGroupY), kDilateUpsample,
-                         upsampled(gpu, "", bytes));
-  }
-  return listed;
-}
-
 namespace {
 
 /// Runs a filter along rows, and then along columns. `more`: bindings of its own; `constants`: along an axis, those by
 /// which it differs from others.
 template <class Params, class Constants>
 gpu::Buffer& in_rows_and_columns(gpu::Recorder& gpu, const char* kernel, Params params, const GBuffer& gbuffer,
-                                 gpu::Buffer& planes, const std::string& prefix, const FilterRuns& runs,
-                                 const std::vector<gpu::Binding>& more, const Constants& constants) {
+                                 gpu::Buffer& planes, const std::string& prefix, const std::vector<gpu::Binding>& more,
+                                 const Constants& constants) {
   gpu::Buffer& rows = gpu.buffer(prefix + "denoised rows", planes.bytes());
-  gpu::Buffer& result = denoised(gpu, prefix, planes.bytes());
-  const auto along = [&](ivec2 axis, const RunList& listed, const gpu::Buffer& from, const gpu::Buffer& to) {
+  gpu::Buffer& result = gpu.buffer(prefix + "denoised", planes.bytes());
+  const ivec2 size = gbuffer.view.size;
+  const auto along = [&](ivec2 axis, const gpu::Buffer& from, const gpu::Buffer& to) {
     params.axis = axis;
-    std::vector<gpu::Binding> bindings{{"Ao", from},
-                                       {"Depth", gbuffer.depth},
-                                       {"Normal", gbuffer.normal},
-                                       {"Result", to},
-                                       {"List", gpu::Optional(listed.runs)},
-                                       {"Counts", gpu::Optional(listed.counts)}};
+    std::vector<gpu::Binding> bindings{
+        {"Ao", from}, {"Depth", gbuffer.depth}, {"Normal", gbuffer.normal}, {"Result", to}};
     bindings.insert(bindings.end(), more.begin(), more.end());
-    gpu.dispatch(kernel, params, bindings, runs_extent(gbuffer, axis, listed), constants(axis, listed));
+    const int lines = axis.x ? size.y : size.x, length = axis.x ? size.x : size.y;
+    gpu.dispatch(kernel, params, bindings, {uint(lines), groups_of(length, uint(kDenoiseRun))}, constants(axis));
   };
-  along({1, 0}, runs.rows, planes, rows);
-  along({0, 1}, runs.columns, rows, result);
+  along({1, 0}, planes, rows);
+  along({0, 1}, rows, result);
   return result;
 }
 
 }  // namespace
 
 gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Denoiser& denoiser,
-                     const std::string& prefix, const FilterRuns& runs) {
+                     const std::string& prefix) {
   if (denoiser.weights.empty()) return planes;
-  const auto radius = uint(denoiser.weights.size() - 1);
+  const std::vector<uint> constants{uint(denoiser.weights.size() - 1), denoiser.depth_sigma > 0 ? 1u : 0u,
+                                    planes_in(planes, gbuffer.view)};
   return in_rows_and_columns(gpu, "denoise", filter_params<DenoiseParams>(gbuffer, denoiser), gbuffer, planes, prefix,
-                             runs, {}, [&](ivec2, const RunList& listed) {
-                               return std::vector<uint>{radius, denoiser.depth_sigma > 0 ? 1u : 0u,
-                                                        listed.runs ? 1u : 0u, planes_in(planes, gbuffer.view)};
-                             });
+                             {}, [&](ivec2) { return constants; });
 }
 
 gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
-                         const Denoiser& denoiser, const std::string& prefix, const FilterRuns& runs, uint moments) {
+                         const Denoiser& denoiser, const std::string& prefix, uint moments) {
   const auto radius = uint(denoiser.weights.size() - 1);
   const std::size_t written_runs =
       groups_of(gbuffer.view.size.x, uint(kDenoiseRun)) * groups_of(gbuffer.view.size.y, 32);
@@ -243,11 +183,10 @@ gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer
   params.grid = sites.grid;
   const uint mode =
       (denoiser.depth_sigma > 0 ? kInterpolateByDepth : 0) | (denoiser.looks_up ? kInterpolateLooksUp : 0);
-  return in_rows_and_columns(gpu, "interpolate", params, gbuffer, planes, prefix, runs,
-                             {{"Runs", written}, {"Blocks", sites.words}}, [&](ivec2 axis, const RunList& listed) {
-                               const uint along =
-                                   (axis.y ? kInterpolateColumns : 0) | (listed.runs ? kInterpolateListed : 0);
-                               return std::vector<uint>{radius, mode | along, planes_in(planes, gbuffer.view), moments};
+  return in_rows_and_columns(gpu, "interpolate", params, gbuffer, planes, prefix,
+                             {{"Runs", written}, {"Blocks", sites.words}}, [&](ivec2 axis) {
+                               return std::vector<uint>{radius, mode | (axis.y ? kInterpolateColumns : 0),
+                                                        planes_in(planes, gbuffer.view), moments};
                              });
 }
 
@@ -279,7 +218,7 @@ const gpu::Buffer& fit_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const 
 gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& fitted, const Sites& sites,
                            const Denoiser& denoiser, const std::string& prefix, uint moments) {
   const std::size_t planes = fitted.bytes() / site_bytes(sites.grid, 2 * sizeof(uint));
-  gpu::Buffer& result = denoised(gpu, prefix, planes * plane_bytes(gbuffer.view));
+  gpu::Buffer& result = gpu.buffer(prefix + "denoised", planes * plane_bytes(gbuffer.view));
   gpu.dispatch("spread_blocks", SpreadBlocksParams{gbuffer.view, sites.grid, denoiser.of_blocks->slope},
                {{"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},
@@ -292,64 +231,57 @@ gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu
 }
 
 gpu::Buffer& smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
-                    const Denoiser& denoiser, const std::string& prefix, const FilterRuns& runs, uint moments) {
+                    const Denoiser& denoiser, const std::string& prefix, uint moments) {
   if (denoiser.of_blocks) {
     const gpu::Buffer& fitted = fit_blocks(gpu, gbuffer, planes, sites, denoiser, prefix, moments);
     return spread_blocks(gpu, gbuffer, fitted, sites, denoiser, prefix, moments);
   }
-  return sites.words ? interpolate(gpu, gbuffer, planes, sites, denoiser, prefix, runs, moments)
-                     : denoise(gpu, gbuffer, planes, denoiser, prefix, runs);
+  return sites.words ? interpolate(gpu, gbuffer, planes, sites, denoiser, prefix, moments)
+                     : denoise(gpu, gbuffer, planes, denoiser, prefix);
 }
 
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, gpu::Buffer& low_planes,
-                      const std::string& prefix, const FilterRuns& runs) {
+                      const std::string& prefix) {
   const BlockGrid& grid = low.grid;
   if (grid.factor == 1) return low_planes;
   const uint count = planes_in(low_planes, low.view);
-  gpu::Buffer& planes = upsampled(gpu, prefix, count * plane_bytes(gbuffer.view));
-  const RunList& listed = runs.blocks;
-  const gpu::Extent every_block(uint(grid.size.x + 1), uint(grid.size.y + 1));
+  gpu::Buffer& planes = gpu.buffer(prefix + "upsampled", count * plane_bytes(gbuffer.view));
   gpu.dispatch("upsample", UpsampleParams{gbuffer.view, grid.size, grid.overhang},
                {{"Depth", gbuffer.depth},
                 {"Normal", gbuffer.normal},
                 {"LowDepth", low.depth},
                 {"LowNormal", low.normal},
                 {"LowAo", low_planes},
-                {"Ao", planes},
-                {"List", gpu::Optional(listed.runs)},
-                {"Counts", gpu::Optional(listed.counts)}},
-               listed.counts ? gpu::Extent(*listed.counts) : every_block,
-               {uint(grid.factor), count, listed.runs ? 1u : 0u});
+                {"Ao", planes}},
+               {uint(grid.size.x + 1), uint(grid.size.y + 1)}, {uint(grid.factor), count});
   return planes;
 }
 
 namespace {
 
-/// Filters all planes of a visibility, one member after the other; only those of the AO have runs.
+/// Filters all planes of a visibility, one member after the other.
 template <class Filter>
-Visibility each_of(const Visibility& visibility, const FilterRuns& runs, const Filter& filter) {
+Visibility each_of(const Visibility& visibility, const Filter& filter) {
   Visibility result;
-  result.ao = filter(*visibility.ao, "", runs);
-  if (visibility.scales) result.scales = filter(*visibility.scales, kScalesPrefix, FilterRuns{});
-  if (visibility.moments) result.moments = filter(*visibility.moments, kMomentsPrefix, FilterRuns{});
+  result.ao = filter(*visibility.ao, "");
+  if (visibility.scales) result.scales = filter(*visibility.scales, kScalesPrefix);
+  if (visibility.moments) result.moments = filter(*visibility.moments, kMomentsPrefix);
   return result;
 }
 
 }  // namespace
 
 Visibility smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
-                  const Denoiser& denoiser, const FilterRuns& runs, uint order) {
-  return each_of(visibility, runs, [&](gpu::Buffer& planes, const char* prefix, const FilterRuns& listed) {
+                  const Denoiser& denoiser, uint order) {
+  return each_of(visibility, [&](gpu::Buffer& planes, const char* prefix) {
     const uint moments = &planes == visibility.moments ? uint(moments_in(order)) : 0;
-    return &smooth(gpu, gbuffer, planes, sites, denoiser, prefix, listed, moments);
+    return &smooth(gpu, gbuffer, planes, sites, denoiser, prefix, moments);
   });
 }
 
-Visibility upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const Visibility& visibility,
-                    const FilterRuns& runs) {
-  return each_of(visibility, runs, [&](gpu::Buffer& planes, const char* prefix, const FilterRuns& listed) {
-    return &upsample(gpu, gbuffer, low, planes, prefix, listed);
-  });
+Visibility upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const Visibility& visibility) {
+  return each_of(visibility,
+                 [&](gpu::Buffer& planes, const char* prefix) { return &upsample(gpu, gbuffer, low, planes, prefix); });
 }
 
 }  // namespace alcove

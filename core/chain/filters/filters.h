@@ -44,41 +44,24 @@ struct Denoiser {
 };
 Denoiser denoiser_of(const EstimatorSettings& settings);
 
-/// Runs or groups of pixels in which a filter has work; see dilate.comp.
-struct RunList {
-  gpu::Buffer* runs = nullptr;  // null: all
-  gpu::Buffer* counts = nullptr;
-};
-struct FilterRuns {
-  RunList rows;     // of denoise or interpolate
-  RunList columns;  // of the same
-  RunList blocks;   // of upsample
-};
-/// Lists the runs and blocks in which the filters have work, and writes their results everywhere else. `gbuffer` is
-/// that of the estimate. A list that would not pay is left out.
-FilterRuns dilate(gpu::Recorder& gpu, const GBuffer& gbuffer, const TileList& tiles, const Denoiser& denoiser);
-
 /// Smooths any number of planes, each surface by itself, and brings them from sites to all pixels; returns the input
-/// without a filter. `gbuffer` is that of the estimate. `runs`: from dilate, for the same visibility; without
-/// them filters run everywhere. `prefix` stands before the names of its buffers if others are smoothed too. The first
-/// `moments` planes are moments.
+/// without a filter. `gbuffer` is that of the estimate. `prefix` stands before the names of its buffers if others are
+/// smoothed too. The first `moments` planes are moments.
 gpu::Buffer& smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
-                    const Denoiser& denoiser, const std::string& prefix = "", const FilterRuns& runs = {},
-                    uint moments = 0);
+                    const Denoiser& denoiser, const std::string& prefix = "", uint moments = 0);
 /// The same for all planes of a visibility, which has moments of that order, and a plane of AO for each radius.
 Visibility smooth(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Sites& sites,
-                  const Denoiser& denoiser, const FilterRuns& runs = {}, uint order = 0);
+                  const Denoiser& denoiser, uint order = 0);
 
 // Its passes.
 
 /// Both directions of the filter, if every pixel has an estimate.
 gpu::Buffer& denoise(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Denoiser& denoiser,
-                     const std::string& prefix = "", const FilterRuns& runs = {});
+                     const std::string& prefix = "");
 
 /// Gives every pixel a visibility from the sites around it, by the reach and the weights of the settings.
 gpu::Buffer& interpolate(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Sites& sites,
-                         const Denoiser& denoiser, const std::string& prefix = "", const FilterRuns& runs = {},
-                         uint moments = 0);
+                         const Denoiser& denoiser, const std::string& prefix = "", uint moments = 0);
 
 /// Smooths planes at sites among themselves: see fit_blocks.comp. A plane for each radius reaches as far as that radius
 /// lets it, moments alone as far as the largest one does, and all others as far as the smallest one.
@@ -90,9 +73,8 @@ gpu::Buffer& spread_blocks(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu
 
 /// Brings any number of planes from the blocks of `low` to the pixels of `gbuffer`, or returns the input if both are
 /// the same.
-Visibility upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const Visibility& visibility,
-                    const FilterRuns& runs = {});
+Visibility upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, const Visibility& visibility);
 gpu::Buffer& upsample(gpu::Recorder& gpu, const GBuffer& gbuffer, const GBuffer& low, gpu::Buffer& planes,
-                      const std::string& prefix = "", const FilterRuns& runs = {});
+                      const std::string& prefix = "");
 
 }  // namespace alcove

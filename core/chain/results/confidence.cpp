@@ -7,7 +7,6 @@
 #include "core/chain/base/planes.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/filters/filters.h"
-#include "core/chain/geometry/matte.h"
 #include "kernels/results/results.h"
 
 namespace alcove {

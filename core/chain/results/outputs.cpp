@@ -1,4 +1,4 @@
-// The search in the table, and what follows from what is found.
+// The search in the table, what follows from what is found, and the results of sky.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/chain/results/outputs.h"
 
@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/chain/base/planes.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/frame/find/lights.h"
 
@@ -140,6 +141,25 @@ bool needs_radius(const OutputSettings& output) { return needs_ao(output) || wan
 
 uint moment_order(const EstimatorSettings& settings, const Wanted& wanted) {
   return searches_slices(settings) ? wanted.order : 0;
+}
+
+bool is_open_sky(const FrameInputs& frame, const EstimatorSettings& settings, const Wanted& wanted) {
+  return frame.is_sky && !settings.no_skip && wanted.is_only_visibility() && !frame[RawPlane::beauty] &&
+         !frame[RawPlane::material_ao] && !frame[RawPlane::matte];
+}
+
+FrameOutputs open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings) {
+  const ivec2 size = block_grid(frame, int(settings.resolution)).size;
+  const std::size_t bytes = plane_bytes(frame.view);
+  FrameOutputs out;
+  out.counts = &gpu.buffer("open sky counts", sizeof(FrameCounts), gpu::Use::upload);
+  out.tiles = &gpu.buffer("open sky tile counts", sizeof(TileCounts), gpu::Use::upload);
+  out.ao = &gpu.buffer("open sky", bytes, gpu::Use::upload);
+  out.scales = &gpu.buffer("open sky scales", radii_of(settings).size() * bytes, gpu::Use::upload);
+  out.counts->as<FrameCounts>()[0] = {uint(pixels_of(frame.view)), 0, 0, 0, 0, 0};
+  out.tiles->as<TileCounts>()[0] = {{}, 0, groups_of(size.x, uint(kTile)) * groups_of(size.y, uint(kTile)), 0, 0};
+  for (const auto* planes : {out.ao, out.scales}) std::ranges::fill(planes->as<float>(), 1.0f);
+  return out;
 }
 
 }  // namespace alcove

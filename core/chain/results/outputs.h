@@ -168,4 +168,9 @@ bool needs_radius(const OutputSettings& output);
 /// finds no open directions.
 uint moment_order(const EstimatorSettings& settings, const Wanted& wanted);
 
+/// Whether the frame is nothing but sky, and nothing but its visibility is wanted: then no kernel need run.
+bool is_open_sky(const FrameInputs& frame, const EstimatorSettings& settings, const Wanted& wanted);
+/// The counts of such a frame, and a visibility of 1, as kernels would give them.
+FrameOutputs open_sky(gpu::Recorder& gpu, const FrameInputs& frame, const EstimatorSettings& settings);
+
 }  // namespace alcove

@@ -3,7 +3,6 @@
 #include "core/chain/results/reduce.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,26 +12,10 @@
 namespace alcove {
 namespace {
 
-struct Filtered {
-  gpu::Buffer* FrameOutputs::*planes;
-  const char* name;  // of the buffer
-};
-/// The other outputs are depths, counts, and what is made from these.
-constexpr std::array kFiltered{Filtered{&FrameOutputs::ao, "reduced ao"},
-                               Filtered{&FrameOutputs::scales, "reduced scales"},
-                               Filtered{&FrameOutputs::normal, "reduced normal"},
-                               Filtered{&FrameOutputs::bent_normal, "reduced bent normal"},
-                               Filtered{&FrameOutputs::transfer, "reduced transfer"},
-                               Filtered{&FrameOutputs::relight, "reduced relight"},
-                               Filtered{&FrameOutputs::relight_open, "reduced relight open"},
-                               Filtered{&FrameOutputs::confidence, "reduced confidence"},
-                               Filtered{&FrameOutputs::shadow, "reduced shadow"},
-                               Filtered{&FrameOutputs::error, "reduced error"},
-                               Filtered{&FrameOutputs::convexity, "reduced convexity"},
-                               Filtered{&FrameOutputs::cavity, "reduced cavity"},
-                               Filtered{&FrameOutputs::curvature, "reduced curvature"},
-                               Filtered{&FrameOutputs::specular_occlusion, "reduced specular occlusion"},
-                               Filtered{&FrameOutputs::color_ao, "reduced color ao"}};
+/// Depths stay as they are.
+bool is_filtered(const AovRow& row) {
+  return row.planes != &FrameOutputs::depth && row.planes != &FrameOutputs::hidden;
+}
 
 /// At a distance from the middle, in widths of the filter: at most 1/2.
 double weight_at(PixelFilterKind kind, double distance) {
@@ -79,15 +62,18 @@ FrameOutputs reduce(gpu::Recorder& gpu, const FrameInputs& frame, const PixelFil
   params.first = along.first;
   params.count = int(along.weights.size());
   FrameOutputs reduced = out;
-  for (const auto& [planes, name] : kFiltered) {
-    if (!(out.*planes)) continue;
-    gpu::Buffer& result = gpu.buffer(name, (out.*planes)->bytes());
+  const auto filter_planes = [&](gpu::Buffer* FrameOutputs::*planes, const std::string& name) {
+    if (!(out.*planes)) return;
+    gpu::Buffer& result = gpu.buffer("reduced " + name, (out.*planes)->bytes());
     params.planes = planes_in(result, frame.view);
     gpu.dispatch("reduce", params, {{"Planes", out.*planes}, {"Weights", weights}, {"Result", result}},
                  {groups_of(params.size.x + params.offset.x, uint(factor)),
                   groups_of(params.size.y + params.offset.y, uint(factor))});
     reduced.*planes = &result;
-  }
+  };
+  for (const auto& row : kAovs)
+    if (is_filtered(row)) filter_planes(row.planes, row.name);
+  filter_planes(&FrameOutputs::color_ao, "color ao");
   return reduced;
 }
 

@@ -9,25 +9,21 @@
 
 namespace alcove {
 
-Shaping shaping_of(const EstimatorSettings& settings) {
-  return {settings.intensity, settings.power, settings.fade_start.value_or(0), settings.fade_end, settings.least};
-}
-
-gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const EstimatorSettings& settings,
                    const gpu::Buffer* material_ao, const Matte& matte, const std::string& prefix) {
   gpu::Buffer& shaped = gpu.buffer(prefix + "shaped", planes.bytes());
   ShapeParams params{};
   params.size = gbuffer.view.size;
-  params.intensity = float(shaping.intensity);
-  params.power = float(shaping.power);
-  params.fade_start = float(shaping.fade_start);
-  params.fade_end = float(shaping.fade_end.value_or(0));
-  params.least = float(shaping.least);
+  params.intensity = float(settings.intensity);
+  params.power = float(settings.power);
+  params.fade_start = float(settings.fade_start.value_or(0));
+  params.fade_end = float(settings.fade_end.value_or(0));
+  params.least = float(settings.least);
   params.outside = float(matte.outside);
   params.planes = planes_in(planes, gbuffer.view);
-  const uint mode = (shaping.intensity != 1 ? kShapeByIntensity : 0) | (shaping.power != 1 ? kShapeByPower : 0) |
-                    (shaping.fade_end ? kShapeByFade : 0) | (material_ao ? kShapeByMaterial : 0) |
-                    (shaping.least > 0 ? kShapeByLeast : 0) | (matte.plane ? kShapeByMatte : 0) |
+  const uint mode = (settings.intensity != 1 ? kShapeByIntensity : 0) | (settings.power != 1 ? kShapeByPower : 0) |
+                    (settings.fade_end ? kShapeByFade : 0) | (material_ao ? kShapeByMaterial : 0) |
+                    (settings.least > 0 ? kShapeByLeast : 0) | (matte.plane ? kShapeByMatte : 0) |
                     (material_ao && prefix.empty() ? kShapeCountsRepaired : 0);
   gpu.dispatch("shape", params,
                {{"Ao", planes},
@@ -40,15 +36,15 @@ gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& plan
   return shaped;
 }
 
-Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
-                 const gpu::Buffer* material_ao, const Matte& matte) {
-  const bool changes = shaping.intensity != 1 || shaping.power != 1 || shaping.fade_end || material_ao ||
-                       shaping.least > 0 || matte.plane;
+Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
+                 const EstimatorSettings& settings, const gpu::Buffer* material_ao, const Matte& matte) {
+  const bool changes = settings.intensity != 1 || settings.power != 1 || settings.fade_end || material_ao ||
+                       settings.least > 0 || matte.plane;
   if (!visibility.ao || !changes) return visibility;
   Visibility result = visibility;
-  result.ao = &shape(gpu, gbuffer, *visibility.ao, shaping, material_ao, matte);
+  result.ao = &shape(gpu, gbuffer, *visibility.ao, settings, material_ao, matte);
   if (visibility.scales)
-    result.scales = &shape(gpu, gbuffer, *visibility.scales, shaping, material_ao, matte, kScalesPrefix);
+    result.scales = &shape(gpu, gbuffer, *visibility.scales, settings, material_ao, matte, kScalesPrefix);
   return result;
 }
 

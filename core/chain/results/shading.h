@@ -2,31 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "core/base/settings.h"
 #include "core/chain/base/planes.h"
-#include "core/chain/geometry/matte.h"
+#include "core/chain/geometry/geometry.h"
 #include "core/chain/results/outputs.h"
 
 namespace alcove {
 
-/// The curve that bends the estimated visibility.
-struct Shaping {
-  double intensity = 1;
-  double power = 1;
-  double fade_start = 0;           // scene units of planar depth
-  std::optional<double> fade_end;  // none: there is no fade
-  double least = 0;                // the lowest value but of a matte
-};
-Shaping shaping_of(const EstimatorSettings& settings);
-
-/// Shapes the AO and the planes of the radii; gives the input if there is none, or no shaping. material_ao may be null.
-Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility, const Shaping& shaping,
-                 const gpu::Buffer* material_ao, const Matte& matte = {});
+/// Bends the AO and the planes of the radii by the settings' intensity, power, fade and least value; gives the input if
+/// there is none, or nothing bends it. material_ao may be null.
+Visibility shape(gpu::Recorder& gpu, const GBuffer& gbuffer, const Visibility& visibility,
+                 const EstimatorSettings& settings, const gpu::Buffer* material_ao, const Matte& matte = {});
 /// The same for one buffer of planes. Repairs count with the first one of a frame, whose prefix is empty.
-gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const Shaping& shaping,
+gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const EstimatorSettings& settings,
                    const gpu::Buffer* material_ao, const Matte& matte = {}, const std::string& prefix = "");
 
 /// The mean open directions as unit vectors, packed as the normals are; without moments the normals.

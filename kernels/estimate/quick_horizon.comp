@@ -10,7 +10,7 @@
 //  7. Nothing goes on behind others. Beyond the border samples find the depths that margin.comp has put there.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/quick/quick.h"
+#include "kernels/estimate/estimate.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 #include "kernels/base/arcs.glsl"
@@ -32,15 +32,6 @@ writeonly buffer Ao { float ao[]; };  // one float per pixel, visibility in [0, 
 
 /// A run is so many times as thick as wide.
 const float kThicknessPerWidth = 2.0;
-
-/// See horizon.comp.
-const float kGapPart = 1.0 / 3.0;
-
-/// See horizon.comp.
-Draw draw_of(vec2 noise, uint slice, uint side) {
-  const float jitter = fract(noise.y + kGolden * float(2u * slice + side));
-  return Draw(jitter, fract(11.0 * jitter));
-}
 
 /// The blocked part of a side's arc integral.
 float search(Receiver r, Side side, Reach reach, Draw draw) {

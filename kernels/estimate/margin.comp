@@ -5,7 +5,7 @@
 // sites writes what is seen. Invocations take first the bands above and below, then the ends of rows.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "kernels/quick/quick.h"
+#include "kernels/estimate/estimate.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
 
@@ -23,9 +23,6 @@ ivec2 place_of(ivec2 size, int at) {
   const ivec2 end = ivec2((at - bands) % beside, (at - bands) / beside);
   return end.y < size.y ? end + ivec2(end.x < kDepthMargin ? 0 : size.x, kDepthMargin) : ivec2(-1);
 }
-
-/// The normal says nothing of where a surface goes on if it is seen more nearly edge on than this: see pieces.glsl.
-const float kLeastFacingToGoOn = 0.02;
 
 void main() {
   const View view = params.view;
