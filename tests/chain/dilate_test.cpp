@@ -45,12 +45,8 @@ std::vector<float> run(const Filter& filter, const std::vector<float>& before, b
   const auto filtered = [&](gpu::Buffer& ao, const FilterRuns& runs) {
     return &upsample(gpu, gbuffer, low, smooth(gpu, low, ao, chosen, denoiser, "", runs), "", runs);
   };
-  gpu::Buffer& ao = gpu.buffer("ao", sizeof(float) * filter.ao.size(), gpu::Use::upload);
-  gpu::Buffer& words = gpu.buffer("words", sizeof(uint) * filter.tiles.size(), gpu::Use::upload);
-  std::ranges::copy(before, ao.as<float>().begin());
-  std::ranges::copy(filter.tiles, words.as<uint>().begin());
-  gpu.upload(ao);
-  gpu.upload(words);
+  gpu::Buffer& ao = given("ao", before, gpu);
+  gpu::Buffer& words = given("words", filter.tiles, gpu);
   filtered(ao, {});
   gpu.run();
   std::ranges::copy(filter.ao, ao.as<float>().begin());
@@ -61,10 +57,7 @@ std::vector<float> run(const Filter& filter, const std::vector<float>& before, b
   const FilterRuns runs = listed ? dilate(gpu, low, list, denoiser) : FilterRuns{};
   EXPECT_EQ(runs.rows.runs != nullptr, listed && !denoiser.weights.empty());
   EXPECT_EQ(runs.blocks.runs != nullptr, listed && filter.settings.resolution != Resolution::full);
-  const gpu::Buffer& result = *filtered(ao, runs);
-  gpu.download(result);
-  gpu.run();
-  return values_of(&result);
+  return downloaded<float>(*filtered(ao, runs), gpu);
 }
 
 EstimatorSettings filtering(int radius, int stride, Density density = Density::uniform) {
