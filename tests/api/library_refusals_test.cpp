@@ -14,8 +14,7 @@ using namespace test;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 TEST_F(Library, asks_for_words_where_planes_do_not_tell) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   EXPECT_OK(handle, alcove_set(handle.get(), "normal-space", nullptr));
   const std::string without = R"({"resolution": [8, 4], "fx": 9, "fy": 9, "cx": 4, "cy": 2, "world_to_camera":
     [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]})";
@@ -100,8 +99,7 @@ TEST_F(Library, refuses_strides_by_which_values_share_bytes) {
 }
 
 TEST_F(Library, refuses_strides_that_no_address_reaches) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   constexpr std::ptrdiff_t kMost = std::numeric_limits<std::ptrdiff_t>::max(),
                            kLeast = std::numeric_limits<std::ptrdiff_t>::min();
   std::vector<float> values(3 * frame().data.pixels(), 7);
@@ -123,8 +121,7 @@ TEST_F(Library, refuses_strides_that_no_address_reaches) {
 }
 
 TEST_F(Library, refuses_what_the_pixels_speak_against) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   EXPECT_OK(handle, alcove_run(handle.get(), 0));
   EXPECT_STREQ(alcove_notes(handle.get()), "");
   EXPECT_OK(handle, alcove_set(handle.get(), "normal-space", "view"));
@@ -167,8 +164,7 @@ TEST_F(Library, refuses_what_the_pixels_speak_against) {
 }
 
 TEST_F(Library, lets_only_one_thing_say_the_camera_and_the_depth) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   EXPECT_OK(handle, alcove_set(handle.get(), "fov", "60"));
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "only one of them");
   EXPECT_OK(handle, alcove_set(handle.get(), "fov", nullptr));

@@ -14,8 +14,7 @@ namespace {
 using namespace test;
 
 TEST_F(Library, gives_the_bits_of_the_chain) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   EXPECT_EQ(ao_of(handle), truth());
   EXPECT_EQ(ao_of(handle), truth());  // a handle may run again
   EXPECT_GT(alcove_number(handle.get(), "compute-ms"), 0);
@@ -26,15 +25,12 @@ TEST_F(Library, gives_the_bits_of_the_chain) {
 }
 
 TEST_F(Library, cuts_ramps_in_a_copy_and_says_so) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   EXPECT_OK(handle, alcove_set(handle.get(), "ramps", "cut"));
   HostFrame cut = frame();
   cut.cuts_ramps = true;
   cut_ramps(cut, cut.depth);
-  EstimatorSettings settings;
-  settings.radius = 0.35;
-  const std::vector<float> wanted = compute_ao(recorder(), cut, settings).ao;
+  const std::vector<float> wanted = chain_of(cut);
   EXPECT_NE(wanted, truth());
   for (int run = 0; run < 2; run++) {
     EXPECT_EQ(ao_of(handle), wanted) << run;
@@ -115,8 +111,7 @@ TEST_F(Library, rounds_to_the_nearest_half_float_to_even) {
 }
 
 TEST_F(Library, gives_what_aov_names_with_its_components) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   EXPECT_OK(handle, alcove_set(handle.get(), "radius", "0.1,0.35"));
   EXPECT_OK(handle, alcove_set(handle.get(), "aov", "ao,bent-normal,ao-scales,transfer"));
   EXPECT_OK(handle, alcove_run(handle.get(), 0));
@@ -144,8 +139,7 @@ TEST_F(Library, takes_presets_which_options_beat) {
   EstimatorSettings settings;
   settings.radius = 0.35;
   settings.slices = 3;
-  Handle handle = with_camera();
-  give_planes(handle);
+  Handle handle = with_planes();
   EXPECT_OK(handle, alcove_set(handle.get(), "--slices", "3"));
   const std::vector<float> three = compute_ao(recorder(), frame(), settings).ao;
   EXPECT_EQ(ao_of(handle), three);
@@ -161,8 +155,7 @@ TEST_F(Library, takes_presets_which_options_beat) {
 }
 
 TEST_F(Library, takes_a_camera_of_numbers) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   const Camera& camera = frame().camera;
   const auto& m = *camera.view_from_world;
   const auto& t = camera.view_from_world_offset;
@@ -182,8 +175,7 @@ TEST_F(Library, takes_a_camera_of_numbers) {
 }
 
 TEST_F(Library, multiplies_and_chooses_by_further_planes) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   const std::vector<float> half(frame().data.pixels(), 0.5F), none(frame().data.pixels(), 0);
   const alcove_layout one = packed(width(), height());
   EXPECT_OK(handle, alcove_plane(handle.get(), "material-ao", half.data(), &one));
@@ -215,8 +207,7 @@ TEST_F(Library, multiplies_and_chooses_by_further_planes) {
 }
 
 TEST_F(Library, brightens_colours_by_the_plane_albedo) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   std::vector<float> albedo(3 * frame().data.pixels(), 0);
   for (std::size_t i = 0; i < albedo.size(); i += 3) albedo[i] = 0.8F;  // red
   const alcove_layout three = packed(width(), height(), 3);
@@ -241,15 +232,12 @@ TEST_F(Library, takes_what_lies_behind) {
   known.behind_depth = frame().depth;
   for (float& z : known.behind_depth) z *= 1.25F;
   known.behind = {{.kind = BehindKind::backs}};
-  EstimatorSettings settings;
-  settings.radius = 0.35;
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   const alcove_layout one = packed(width(), height());
   EXPECT_OK(handle, alcove_plane(handle.get(), "behind", known.behind_depth.data(), &one));
   EXPECT_OK(handle, alcove_set(handle.get(), "behind-kind", "backs"));
   const std::vector<float> ao = ao_of(handle);
-  EXPECT_EQ(ao, compute_ao(recorder(), known, settings).ao);
+  EXPECT_EQ(ao, chain_of(known));
   EXPECT_NE(ao, truth());
   EXPECT_OK(handle, alcove_set(handle.get(), "behind-kind", "backs,fronts"));
   EXPECT_REFUSED(handle, alcove_run(handle.get(), 0), ALCOVE_USAGE, "'behind-kind'");
@@ -258,28 +246,24 @@ TEST_F(Library, takes_what_lies_behind) {
 // What the program measures of files.
 
 TEST_F(Library, measures_how_depth_was_rounded) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   const alcove_layout one = packed(width(), height());
   std::vector<float> depth = frame().depth;
   for (float& z : depth) z = std::round(z * 50) / 50;
   EXPECT_OK(handle, alcove_plane(handle.get(), "depth", depth.data(), &one));
   HostFrame known = frame();
   known.depth = depth;
-  EstimatorSettings settings;
-  settings.radius = 0.35;
-  const std::vector<float> unmeasured = compute_ao(recorder(), known, settings).ao;
+  const std::vector<float> unmeasured = chain_of(known);
   known.depth_step = 0.02;
   known.depth_is_coarse = true;
-  const std::vector<float> measured = compute_ao(recorder(), known, settings).ao, ao = ao_of(handle);
+  const std::vector<float> measured = chain_of(known), ao = ao_of(handle);
   EXPECT_LT(difference(ao, measured).rmse, 1e-4);
   EXPECT_GT(difference(ao, unmeasured).rmse, 0.01);
   EXPECT_THAT(alcove_notes(handle.get()), HasSubstr("depth was rounded: at its median"));
 }
 
 TEST_F(Library, tells_of_half_floats_and_refuses_depth_of_8_bits) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   std::vector<std::uint16_t> halves;
   for (const float z : frame().depth) halves.push_back(to_half(z));
   alcove_layout one = packed(width(), height());
@@ -297,8 +281,7 @@ TEST_F(Library, tells_of_half_floats_and_refuses_depth_of_8_bits) {
 // What is left.
 
 TEST_F(Library, writes_results_over_the_planes_that_were_given) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   std::vector<float> plane = frame().depth;
   const alcove_layout one = packed(width(), height());
   EXPECT_OK(handle, alcove_plane(handle.get(), "depth", plane.data(), &one));
@@ -310,8 +293,7 @@ TEST_F(Library, writes_results_over_the_planes_that_were_given) {
 }
 
 TEST_F(Library, stays_usable_after_calls_that_failed) {
-  const Handle handle = with_camera();
-  give_planes(handle);
+  const Handle handle = with_planes();
   EXPECT_EQ(ao_of(handle), truth());
   // All but a run leaves the results, and what they are written into.
   std::vector<float> untouched(frame().data.pixels(), -1);
@@ -358,18 +340,14 @@ TEST_F(Library, keeps_handles_of_several_threads_apart) {
     std::vector<std::jthread> threads;
     for (std::size_t i = 0; i < found.size(); i++)
       threads.emplace_back([&ao = found[i], radius = radii[i]] {
-        const Handle handle = with_camera();
-        give_planes(handle);
+        const Handle handle = with_planes();
         EXPECT_OK(handle, alcove_set(handle.get(), "radius", radius));
         EXPECT_NE(alcove_set(handle.get(), "radius", "none"), ALCOVE_OK);
         ao = ao_of(handle);
       });
   }
-  for (std::size_t i = 0; i < found.size(); i++) {
-    EstimatorSettings settings;
-    settings.radius = std::stod(radii[i]);
-    EXPECT_EQ(found[i], compute_ao(recorder(), frame(), settings).ao) << radii[i];
-  }
+  for (std::size_t i = 0; i < found.size(); i++)
+    EXPECT_EQ(found[i], chain_of(frame(), std::stod(radii[i]))) << radii[i];
 }
 
 }  // namespace

@@ -6,14 +6,9 @@
 // or of what the presets ask of it, write them with
 //   build/tests/bench_tests --gtest_also_run_disabled_tests --gtest_filter='*writes_them'
 
-#include "cli/options.h"
 #include "core/bench/bench.h"
-#include "core/formats/exr.h"
-#include "core/frame/find/frame_source.h"
-#include "tests/support/device.h"
-#include "tests/support/program.h"
-#include "tests/support/test.h"
-#include "tests/support/wall_frame.h"
+#include "tests/support/chain.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::kept_references_test {
 namespace {
@@ -25,22 +20,8 @@ constexpr float kRounding = 0x1p-12f;
 
 Suite suite() { return read_suite(ALCOVE_SOURCE_DIR "/examples/bench/suite.toml", ""); }
 
-HostFrame host_frame(const SuiteFrame& frame) {
-  InputSettings settings;
-  settings.input = frame.input;
-  settings.camera = frame.camera;
-  return read_host_frame(settings, 0);
-}
-
-EstimatorSettings estimator_of(const SuiteCandidate& candidate) {
-  ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1);
-  RunOptions options;
-  parse_run_options(candidate.arguments, options);
-  return options.settings.estimator;
-}
-
 ReferenceSettings reference_of(const SuiteCandidate& candidate, const SuiteFrame& frame, int slices) {
-  EstimatorSettings estimator = estimator_of(candidate);
+  EstimatorSettings estimator = estimator_of(candidate.arguments);
   estimator.radius = frame.radius;
   ReferenceSettings settings = reference_settings_of(estimator);
   settings.slices = slices;
@@ -56,11 +37,11 @@ void write_kept_reference(const std::string& path, const ReferenceSettings& sett
 TEST(KeptReferences, are_what_the_reference_computes) {
   const Suite all = suite();
   for (const auto& frame : all.frames) {
-    const HostFrame host = host_frame(frame);
+    const HostFrame host = rendered_frame(frame.name);
     ReferenceSettings settings = reference_of(all.candidates.front(), frame, all.reference_slices);
     const std::vector<float> kept = read_kept_reference(frame.reference, settings, host.data);
     ASSERT_EQ(kept.size(), host.data.pixels()) << frame.name;
-    for (std::size_t i = 17; i < kept.size(); i += test::long_tests() ? 1 : 397) settings.pixels.push_back(i);
+    for (std::size_t i = 17; i < kept.size(); i += long_tests() ? 1 : 397) settings.pixels.push_back(i);
     const std::vector<float> computed = reference_ao(host, settings);
     int surfaces = 0;
     for (const std::size_t i : settings.pixels) {
@@ -132,7 +113,7 @@ TEST(KeptReferences, of_another_window_or_none_at_all_are_refused) {
   settings.radius = 1;
   write_kept_reference(path, settings, frame, std::vector<float>(6, 1.0f));
   const auto expect_refused = [&](const std::string& of, const Window& data, const std::string& word) {
-    test::expect_error(ErrorKind::input, {word}, [&] { read_kept_reference(of, settings, data); });
+    expect_error(ErrorKind::input, {word}, [&] { read_kept_reference(of, settings, data); });
   };
   expect_refused(path, {0, 0, 2, 3}, path);
   expect_refused(path, {1, 0, 3, 2}, path);
@@ -147,13 +128,13 @@ TEST(KeptReferences, are_what_a_suite_measures_against) {
   all.repeats = 1;
   SuiteFrame& frame = all.frames.front();
   frame.reference = folder / "kept.exr";
-  const HostFrame host = host_frame(frame);
+  const HostFrame host = rendered_frame(frame.name);
   constexpr float kKept = 0.25f;
   write_kept_reference(frame.reference, reference_of(all.candidates.front(), frame, all.reference_slices), host,
                        std::vector<float>(host.data.pixels(), kKept));
-  BenchCandidate candidate{"draft", "", estimator_of(all.candidates.front())};
+  BenchCandidate candidate{"draft", "", estimator_of(all.candidates.front().arguments)};
   candidate.estimator.radius.reset();
-  const BenchReport report = run_bench(test::device(), all, {candidate}, {});
+  const BenchReport report = run_bench(device(), all, {candidate}, {});
   double sum = 0, surfaces = 0;
   for (std::size_t i = 0; i < host.depth.size(); i++) {
     if (!(host.depth[i] < host.sky)) continue;
@@ -166,7 +147,7 @@ TEST(KeptReferences, are_what_a_suite_measures_against) {
 TEST(KeptReferences, DISABLED_writes_them) {
   const Suite all = suite();
   for (const auto& frame : all.frames) {
-    const HostFrame host = host_frame(frame);
+    const HostFrame host = rendered_frame(frame.name);
     const ReferenceSettings settings = reference_of(all.candidates.front(), frame, all.reference_slices);
     write_kept_reference(frame.reference, settings, host, reference_ao(host, settings));
   }

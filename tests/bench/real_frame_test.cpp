@@ -1,9 +1,7 @@
 // On a rendered frame AO without normals is near AO with them. What presets make of rendered frames against Cycles'
 // ray-traced AO, `preset_limits` measures.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/find/frame_source.h"
-#include "tests/support/device.h"
-#include "tests/support/scenes.h"
+#include "tests/support/chain.h"
 
 namespace alcove::real_frame_test {
 namespace {
@@ -11,19 +9,12 @@ namespace {
 using namespace test;
 
 TEST(RealFrame, normals_from_depth_come_close_to_the_rendered_ones) {
-  const std::string base = ALCOVE_SOURCE_DIR "/examples/bench/colonnade";
-  InputSettings input;
-  input.input = base + ".gbuffer.exr";
-  input.camera = base + ".camera.json";
-  HostFrame frame = read_host_frame(input, 0);
-  EstimatorSettings settings = plain_settings();
-  settings.radius = 0.75;
-  settings.slices = 8;
-  settings.steps = 16;
-  const auto with_normals = compute_ao(recorder(), frame, settings).ao;
+  HostFrame frame = rendered_frame("colonnade");
+  const EstimatorSettings settings = sampled(Estimator::gtao, 0.75, 8, 16);
+  const auto with_normals = ao_of(frame, settings);
   frame.normal.clear();
   // measured 0.0718; the rendered normals are smooth over facets
-  EXPECT_LE(difference(compute_ao(recorder(), frame, settings).ao, with_normals).rmse, 0.08);
+  EXPECT_LE(difference(ao_of(frame, settings), with_normals).rmse, 0.08);
 }
 
 }  // namespace

@@ -6,52 +6,31 @@
 // test computes some of their pixels anew. After a change of a preset or a definition, write them with
 //   build/tests/bench_tests --gtest_also_run_disabled_tests --gtest_filter='*writes_the_goldens'
 
-#include "cli/options.h"
-#include "core/chain/compute.h"
-#include "core/formats/exr.h"
-#include "core/frame/find/frame_source.h"
 #include "core/measure/metrics.h"
 #include "core/reference/reference.h"
-#include "tests/support/device.h"
-#include "tests/support/program.h"
-#include "tests/support/wall_frame.h"
+#include "tests/support/chain.h"
+#include "tests/support/command_line.h"
 
 namespace alcove::source_presets_test {
 namespace {
+
+using namespace test;
 
 const char* const kGoldens = ALCOVE_SOURCE_DIR "/tests/bench/source_presets.exr";
 const std::vector<std::string> kPresets{"forfun-crytek", "forfun-gtao", "forfun-hbao",      "forfun-plan",
                                         "fp-asm",        "source15",    "taos-performance", "taos-quality"};
 
 /// The two of Taos have no radius; all others have 0.5.
-EstimatorSettings settings_of(const std::string& preset) {
-  ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1);
-  RunOptions options;
-  parse_run_options({"--preset", "source/" + preset}, options);
-  if (!options.settings.estimator.radius) options.settings.estimator.radius = 0.5;
-  return options.settings.estimator;
+EstimatorSettings settings_of(const std::string& name) {
+  EstimatorSettings settings = preset("source/" + name);
+  if (!settings.radius) settings.radius = 0.5;
+  return settings;
 }
 
 /// A part of the frame `monkeys`: an ear, a jaw, a box, and the ground behind them.
 HostFrame part_of_frame() {
-  InputSettings input;
-  input.input = ALCOVE_SOURCE_DIR "/examples/bench/monkeys.gbuffer.exr";
-  input.camera = ALCOVE_SOURCE_DIR "/examples/bench/monkeys.camera.json";
-  const HostFrame whole = read_host_frame(input, 0);
-  HostFrame part = whole;
-  part.data = {whole.data.x + 190, whole.data.y + 90, 160, 120};
-  part.depth.clear();
-  part.normal.clear();
-  const auto rows = [&](const std::vector<float>& values, std::size_t plane, std::vector<float>& to) {
-    for (int y = 0; y < part.data.height; y++) {
-      const auto first = values.begin() + std::ptrdiff_t(plane * whole.data.pixels()) +
-                         std::ptrdiff_t(y + 90) * whole.data.width + 190;
-      to.insert(to.end(), first, first + part.data.width);
-    }
-  };
-  rows(whole.depth, 0, part.depth);
-  for (std::size_t plane = 0; plane < 3; plane++) rows(whole.normal, plane, part.normal);
-  return part;
+  const HostFrame whole = rendered_frame("monkeys");
+  return crop_of(whole, {whole.data.x + 190, whole.data.y + 90, 160, 120});
 }
 
 std::vector<float> golden_of(const std::string& preset) { return read_exr_image(kGoldens, {preset}).pixels; }
@@ -60,8 +39,7 @@ class SourcePreset : public testing::TestWithParam<std::string> {};
 
 TEST_P(SourcePreset, gives_what_its_definition_gives) {
   const HostFrame frame = part_of_frame();
-  const std::vector<float> ao = compute_ao(test::recorder(), frame, settings_of(GetParam())).ao,
-                           golden = golden_of(GetParam());
+  const std::vector<float> ao = ao_of(frame, settings_of(GetParam())), golden = golden_of(GetParam());
   const auto similarity = ssim(frame.data.width, frame.data.height, ao, golden);
   ASSERT_TRUE(similarity.has_value());
   RecordProperty("ssim", std::to_string(*similarity));
@@ -90,13 +68,13 @@ INSTANTIATE_TEST_SUITE_P(All, SourcePreset, testing::ValuesIn(kPresets), [](cons
 TEST(SourcePresets, are_these) {
   std::vector<std::string> files;
   for (const auto& preset : kPresets) files.push_back(preset + ".toml");
-  EXPECT_EQ(test::names_in(ALCOVE_SOURCE_DIR "/presets/source"), files);
+  EXPECT_EQ(names_in(ALCOVE_SOURCE_DIR "/presets/source"), files);
 }
 
 TEST(SourcePresets, DISABLED_writes_the_goldens) {
   const HostFrame frame = part_of_frame();
   const Window window{0, 0, frame.data.width, frame.data.height};
-  test::FrameFile file{window, window, 1, {}, {kPresets.begin(), kPresets.end()}};
+  FrameFile file{window, window, 1, {}, {kPresets.begin(), kPresets.end()}};
   for (const auto& preset : kPresets) file.planes[preset] = reference_estimate(frame, settings_of(preset));
   file.write(kGoldens);
 }

@@ -93,6 +93,39 @@ class SuiteGrain : public CommandLine {
     return json::parse(run_program(joined({"compare", far, ao, "--depth", frame, "--json"}, more)).out)["grain"];
   }
 
+  /// A measure that the small frame has no pixels for. `behind` it: what the CSV goes on with.
+  void expect_only_of_wall(const std::string& measure, const std::string& behind) const {
+    const auto report = report_of(both);
+    const double value = report["rows"][0][measure];
+    EXPECT_TRUE(report["rows"][1].contains(measure) && report["rows"][1][measure].is_null());
+    EXPECT_EQ(report["candidates"][0][measure], value);
+    const Finished finished = bench(both, {"--csv", folder / "report.csv", "--report", folder / "page.html"});
+    EXPECT_EQ(finished.code, 0) << finished;
+    const std::string digits = fmt::format("{:.10f}", value).substr(0, 6);
+    EXPECT_THAT(lines_of(finished.out)[0], HasSubstr("   " + measure + " "));
+    EXPECT_THAT(lines_of(finished.out)[1], HasSubstr(fmt::format("{:.4f}", value)));
+    const auto csv = lines_of(read_bytes(folder / "report.csv"));
+    EXPECT_THAT(csv[0], testing::EndsWith(",grain,mottle"));
+    EXPECT_THAT(csv[1], ContainsRegex("," + digits + "[0-9]*" + behind));
+    EXPECT_THAT(csv[2], testing::EndsWith(",,"));
+    EXPECT_THAT(read_bytes(folder / "page.html"),
+                AllOf(HasSubstr("\"" + measure + "\": " + digits), HasSubstr("heading: '" + measure + "'")));
+  }
+
+  /// A limit of a measure that is `value` on the wall.
+  void expect_limit(const std::string& measure, double value, const Options& words) const {
+    const auto limited = [&](const std::string& name, double most) {
+      write_bytes(folder / "limits.toml",
+                  fmt::format("[[limit]]\nframe = \"{}\"\ncandidate = \"far\"\n{} = {}\n", name, measure, most));
+      return bench(both, {"--limits", folder / "limits.toml", "-q"});
+    };
+    EXPECT_EQ(limited("wall", value + 1e-4).code, 0);
+    const Finished broken = limited("wall", value - 1e-4);
+    EXPECT_EQ(broken.code, 6) << broken;
+    EXPECT_THAT(broken.err, StartsWith("alcove: far on wall: " + measure + " is "));
+    test::expect_refused(limited("small", 1), 3, joined({"far on small: " + measure, "--limits"}, words));
+  }
+
   const std::string second = folder / "second.exr", far = folder / "far.exr";
   const std::string wall = frame_table("wall", "wall.0042.exr", "camera.json", "\"ao.exr\"");
   const std::string both = wall + frame_table("small", "small.exr", "small.json", "\"small-ao.exr\"");
@@ -113,47 +146,16 @@ TEST_F(SuiteGrain, is_looked_for_in_planar_depth_whatever_the_file_has) {
   json ray_camera = wall_camera();
   ray_camera["depth"] = "ray";
   auto& depth = ray.planes["ViewLayer.Depth.Z"];
-  for (std::size_t i = 0; i < depth.size(); i++) {
-    const double x = (double(i % 64) + 0.5 - 32) / 60, y = (double(i / 64) + 0.5 - 18) / 60;
-    depth[i] *= float(std::sqrt(1 + x * x + y * y));
-  }
+  for (std::size_t i = 0; i < depth.size(); i++) depth[i] *= float(ray_length(i));
   ray.write(folder / "ray.exr");
   write_bytes(folder / "ray.json", ray_camera.dump());
   const auto row = report_of(frame_table("ray", "ray.exr", "ray.json", "\"ao.exr\""))["rows"][0];
   EXPECT_NEAR(row["grain"], compared({}), 1e-4);
 }
 
-TEST_F(SuiteGrain, of_a_frame_without_plain_pixels_is_nothing_and_in_no_mean) {
-  const auto report = report_of(both);
-  EXPECT_TRUE(report["rows"][0]["grain"].is_number());
-  ASSERT_TRUE(report["rows"][1].contains("grain"));
-  EXPECT_TRUE(report["rows"][1]["grain"].is_null());
-  EXPECT_EQ(report["candidates"][0]["grain"], report["rows"][0]["grain"]);
-  const Finished finished = bench(both, {"--csv", folder / "report.csv", "--report", folder / "page.html"});
-  EXPECT_EQ(finished.code, 0) << finished;
-  const std::string in_table = fmt::format("{:.4f}", double(report["rows"][0]["grain"]));
-  const std::string digits = fmt::format("{:.10f}", double(report["rows"][0]["grain"])).substr(0, 6);
-  EXPECT_THAT(lines_of(finished.out)[0], HasSubstr("   grain "));
-  EXPECT_THAT(lines_of(finished.out)[1], HasSubstr(in_table));
-  const auto csv = lines_of(read_bytes(folder / "report.csv"));
-  EXPECT_THAT(csv[0], testing::EndsWith(",grain,mottle"));
-  EXPECT_THAT(csv[1], HasSubstr("," + digits));
-  EXPECT_THAT(csv[2], testing::EndsWith(",,"));
-  EXPECT_THAT(read_bytes(folder / "page.html"), HasSubstr("\"grain\": " + digits));
-}
+TEST_F(SuiteGrain, of_a_frame_without_plain_pixels_is_nothing_and_in_no_mean) { expect_only_of_wall("grain", ","); }
 
-TEST_F(SuiteGrain, has_a_limit_that_holds_breaks_or_cannot_be_checked) {
-  const auto limited = [&](const std::string& name, double most) {
-    write_bytes(folder / "limits.toml",
-                fmt::format("[[limit]]\nframe = \"{}\"\ncandidate = \"far\"\ngrain = {}\n", name, most));
-    return bench(both, {"--limits", folder / "limits.toml", "-q"});
-  };
-  EXPECT_EQ(limited("wall", compared({}) + 1e-4).code, 0);
-  const Finished broken = limited("wall", compared({}) - 1e-4);
-  EXPECT_EQ(broken.code, 6) << broken;
-  EXPECT_THAT(broken.err, StartsWith("alcove: far on wall: grain is "));
-  test::expect_refused(limited("small", 1), 3, {"far on small: grain", "--limits"});
-}
+TEST_F(SuiteGrain, has_a_limit_that_holds_breaks_or_cannot_be_checked) { expect_limit("grain", compared({}), {}); }
 
 class SuiteMottle : public SuiteGrain {
  protected:
@@ -190,34 +192,10 @@ TEST_F(SuiteMottle, is_the_deviation_between_runs_with_three_seeds) {
   EXPECT_NEAR(report_of(wall)["rows"][0]["mottle"], deviation, 1e-6);
 }
 
-TEST_F(SuiteMottle, of_a_frame_without_half_shadow_is_nothing_and_in_no_mean) {
-  const auto report = report_of(both);
-  const double value = report["rows"][0]["mottle"];
-  ASSERT_TRUE(report["rows"][1].contains("mottle"));
-  EXPECT_TRUE(report["rows"][1]["mottle"].is_null());
-  EXPECT_EQ(report["candidates"][0]["mottle"], value);
-  const Finished finished = bench(both, {"--csv", folder / "report.csv", "--report", folder / "page.html"});
-  EXPECT_EQ(finished.code, 0) << finished;
-  const std::string digits = fmt::format("{:.10f}", value).substr(0, 6);
-  EXPECT_THAT(lines_of(finished.out)[0], HasSubstr("   mottle "));
-  EXPECT_THAT(lines_of(finished.out)[1], HasSubstr(fmt::format("{:.4f}", value)));
-  EXPECT_THAT(lines_of(read_bytes(folder / "report.csv"))[1], testing::ContainsRegex("," + digits + "[0-9]*$"));
-  EXPECT_THAT(read_bytes(folder / "page.html"),
-              AllOf(HasSubstr("\"mottle\": " + digits), HasSubstr("heading: 'mottle'")));
-}
+TEST_F(SuiteMottle, of_a_frame_without_half_shadow_is_nothing_and_in_no_mean) { expect_only_of_wall("mottle", "$"); }
 
 TEST_F(SuiteMottle, has_a_limit_that_holds_breaks_or_cannot_be_checked) {
-  const auto limited = [&](const std::string& name, double most) {
-    write_bytes(folder / "limits.toml",
-                fmt::format("[[limit]]\nframe = \"{}\"\ncandidate = \"far\"\nmottle = {}\n", name, most));
-    return bench(both, {"--limits", folder / "limits.toml", "-q"});
-  };
-  const double deviation = expected();
-  EXPECT_EQ(limited("wall", deviation + 1e-4).code, 0);
-  const Finished broken = limited("wall", deviation - 1e-4);
-  EXPECT_EQ(broken.code, 6) << broken;
-  EXPECT_THAT(broken.err, StartsWith("alcove: far on wall: mottle is "));
-  test::expect_refused(limited("small", 1), 3, {"far on small: mottle", "half shadow", "--limits"});
+  expect_limit("mottle", expected(), {"half shadow"});
 }
 
 TEST(Presets, of_quality_have_limits_on_every_frame_of_the_suite) {

@@ -218,8 +218,7 @@ TEST_F(Aovs, composite_dims_each_colour_of_the_indirect_light_by_its_own_ao_and_
     EXPECT_THAT(how, HasSubstr("multi-bounce"));
     EXPECT_EQ(how.find("fog of density 0.3") != how.npos, density > 0) << how;
     for (std::size_t i = 0; i < plain.data.pixels(); i++) {
-      const double x = (double(i % 64) + 0.5 - 32) / 60, y = (double(i / 64) + 0.5 - 18) / 60,
-                   distance = in("Depth.Z", i) * std::sqrt(1 + x * x + y * y);
+      const double distance = in("Depth.Z", i) * ray_length(i);
       for (const std::string c : {"R", "G", "B"}) {
         const double f = 1 - in("Combined.A", i) * std::exp(-density * distance) *
                                  (1 - bounced(plain.plane("Y")[i], in("DiffCol." + c, i)));

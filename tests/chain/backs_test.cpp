@@ -3,38 +3,20 @@
 #include "core/chain/estimate/estimate.h"
 #include "kernels/estimate/estimate.h"
 #include "tests/support/chain.h"
+#include "tests/support/site_frames.h"
 
 namespace alcove::backs_test {
 namespace {
 
 using namespace test;
 
-/// Of the chosen pixels, for a radius of 1, by rays and by samples.
-struct Means {
-  double truth = 0, ao = 0, error = 0;
-};
-
 Means means_of(const Scene& scene, const Shot& shot, const Chosen& chosen, int every) {
-  const Rendering rendering = render(scene, shot);
   EstimatorSettings settings = sampled(Estimator::gtao, 1, 8, 16);
   settings.thickness = ThicknessKind::automatic;
   settings.complete = Completion::all;
-  const std::vector<float> ao = ao_of(rendering.frame, settings);
-  Means means;
-  int count = 0;
-  for (int y = 1; y < shot.data.height - 1; y += every)
-    for (int x = 1; x < shot.data.width - 1; x += every) {
-      const Hit& hit = rendering.at(x, y);
-      if (hit.primitive < 0 || rendering.primitives_within(1, x, y) > 1 || !chosen(hit)) continue;
-      const double truth = true_ao(scene, hit, 1, 40);
-      const double here = ao[std::size_t(y) * std::size_t(shot.data.width) + std::size_t(x)];
-      means.truth += truth;
-      means.ao += here;
-      means.error += std::abs(here - truth);
-      count++;
-    }
-  EXPECT_GE(count, 30);
-  return {means.truth / count, means.ao / count, means.error / count};
+  return test::means_of(scene, shot, chosen, every, [&](const HostFrame& frame, const std::vector<std::size_t>&) {
+    return ao_of(frame, settings);
+  });
 }
 
 /// A ball and a box above a floor, before the sky.
@@ -44,15 +26,6 @@ Rendering ball_and_box(int width, int height, bool orthographic) {
   const Vec3 eye{5, 0.3, 1.6}, target{0, 0, 0.4};
   return render(scene, orthographic ? Shot::orthographic(eye, target, 5, width, height)
                                     : Shot::perspective(eye, target, 50, width, height));
-}
-
-bool is_below_box(const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0 && std::abs(hit.position.y) < 1; }
-
-// A box so deep and high above the floor, whose front is at x = 0.
-Scene box_above_floor(double depth, double above, double height) {
-  Scene scene{{kFloor}};
-  scene.add(parallelepiped({-depth, -1.5, above}, {depth, 0, 0}, {0, 3, 0}, {0, 0, height}));
-  return scene;
 }
 
 TEST(Backs, of_a_box_above_the_floor_are_no_farther_than_its_top_goes) {
@@ -106,23 +79,15 @@ class Walked {
  public:
   Walked(const HostFrame& frame, double radius, bool has_normals) : radius_(radius) {
     gpu::Recorder& gpu = recorder();
-    const FrameInputs inputs = upload(gpu, frame);
-    const GBuffer gbuffer = prepare(gpu, inputs);
-    reconstruct(gpu, gbuffer);
+    const GBuffer gbuffer = prepared(frame).gbuffer;
     const auto& [words, chains] =
         backs(gpu, gbuffer, reach_of(sampled(Estimator::gtao, radius, 2, 16), radius), has_normals);
-    for (const gpu::Buffer* buffer :
-         std::initializer_list<const gpu::Buffer*>{gbuffer.depth, gbuffer.normal, &chains, &words})
-      gpu.download(*buffer);
-    gpu.run();
-    view_ = gbuffer.view;
-    depth_ = values_of<float>(*gbuffer.depth);
-    normal_ = values_of<std::uint32_t>(*gbuffer.normal);
-    links_ = values_of<std::uint32_t>(chains);
-    words_ = values_of<std::uint32_t>(words);
+    geometry_.emplace(gbuffer);
+    links_ = downloaded<std::uint32_t>(chains);
+    words_ = downloaded<std::uint32_t>(words);
   }
 
-  ivec2 size() const { return view_.size; }
+  ivec2 size() const { return view().size; }
   bool shows_surface(ivec2 p) const { return z_of(p) < kSky; }
   double apart(ivec2 a, ivec2 b) const { return std::abs(z_of(a) - z_of(b)) / width_of(z_of(a) < z_of(b) ? a : b); }
 
@@ -152,73 +117,56 @@ class Walked {
   }
 
  private:
+  const View& view() const { return geometry_->view; }
   struct Told {
     int steps = 0;
     double depth = 0, farther = 0, size = 0;
     bool is_round = false;
   };
 
-  template <class T>
-  static std::vector<T> values_of(const gpu::Buffer& buffer) {
-    const auto values = buffer.as<const T>();
-    return {values.begin(), values.end()};
-  }
   static double unpacked(std::uint32_t word, int mantissa) {
     return std::ldexp(1 + double(word & ((1U << mantissa) - 1)) / (1 << mantissa), int(word >> mantissa) - 2);
   }
 
-  std::size_t index_of(ivec2 p) const { return std::size_t(p.y) * std::size_t(view_.size.x) + std::size_t(p.x); }
-  double z_of(ivec2 p) const { return depth_[index_of(p)]; }
-  double width_of(ivec2 p) const { return view_.tangent_per_pixel.x * (view_.orthographic != 0 ? 1 : z_of(p)); }
-  Vec3 position_of(ivec2 p) const {
-    const double scale = view_.orthographic != 0 ? 1 : z_of(p);
-    return {(p.x + 0.5 - view_.center.x) * view_.tangent_per_pixel.x * scale,
-            (p.y + 0.5 - view_.center.y) * view_.tangent_per_pixel.y * scale, -z_of(p)};
-  }
-  double eye_distance(ivec2 p) const { return view_.orthographic != 0 ? z_of(p) : length(position_of(p)); }
+  std::size_t index_of(ivec2 p) const { return geometry_->index(p.x, p.y); }
+  double z_of(ivec2 p) const { return geometry_->depth[index_of(p)]; }
+  double width_of(ivec2 p) const { return view().tangent_per_pixel.x * (view().orthographic != 0 ? 1 : z_of(p)); }
+  Vec3 position_of(ivec2 p) const { return geometry_->point(p.x, p.y); }
+  double eye_distance(ivec2 p) const { return view().orthographic != 0 ? z_of(p) : length(position_of(p)); }
   double in_widths(ivec2 p, double along_ray) const {
     return std::min(along_ray, kMostBack * radius_) * z_of(p) / eye_distance(p) / width_of(p);
   }
-  Vec3 normal_of(ivec2 p) const {
-    const std::uint32_t word = normal_[index_of(p)];
-    const auto part = [](std::uint32_t bits) { return std::max(std::int16_t(bits & 0xffff) / 32767.0, -1.0); };
-    const double x = part(word), y = part(word >> 16), z = 1 - std::abs(x) - std::abs(y);
-    const auto folded = [](double a, double b) { return (1 - std::abs(b)) * (a >= 0 ? 1 : -1); };
-    return unit(z < 0 ? Vec3{folded(x, y), folded(y, x), z} : Vec3{x, y, z});
-  }
-
   bool bit(ivec2 p, bool is_column, std::size_t of_two) const {
-    const int segments = (view_.size.x + kSegment - 1) / kSegment, below = (view_.size.y + kSegment - 1) / kSegment;
-    const int first = is_column ? view_.size.y * segments + p.x * below : p.y * segments;
+    const int segments = (view().size.x + kSegment - 1) / kSegment, below = (view().size.y + kSegment - 1) / kSegment;
+    const int first = is_column ? view().size.y * segments + p.x * below : p.y * segments;
     const int step = is_column ? p.y : p.x;
     return (links_[2 * std::size_t(first + step / kSegment) + of_two] >> (step % kSegment) & 1) != 0;
   }
 
   Told walk(ivec2 p, ivec2 way) const {
     const bool is_column = way.y != 0, is_before = way.x + way.y < 0;
-    const double pixel = std::abs(is_column ? view_.tangent_per_pixel.y : view_.tangent_per_pixel.x);
-    const int most = int(kLongestChain * radius_ / (view_.orthographic != 0 ? 1 : z_of(p)) / pixel);
+    const double pixel = std::abs(is_column ? view().tangent_per_pixel.y : view().tangent_per_pixel.x);
+    const int most = int(kLongestChain * radius_ / (view().orthographic != 0 ? 1 : z_of(p)) / pixel);
     Told told;
     ivec2 end = p;
     while (told.steps < most) {
       const ivec2 next{end.x + way.x, end.y + way.y};
-      const bool exists = next.x >= 0 && next.y >= 0 && next.x < view_.size.x && next.y < view_.size.y;
+      const bool exists = next.x >= 0 && next.y >= 0 && next.x < view().size.x && next.y < view().size.y;
       if (!exists || !goes_on(is_before ? end : next, is_column)) break;
       end = next;
       told.steps++;
     }
     const Vec3 along = position_of(end) - position_of(p);
     told.farther = eye_distance(end) - eye_distance(p);
-    told.depth = std::min(told.farther, -dot(normal_of(p), along));
+    told.depth = std::min(told.farther, -dot(geometry_->normal_of(p.x, p.y), along));
     told.size = length(along);
     told.is_round = told.steps < most && bit(end, is_column, 1);
     return told;
   }
 
   double radius_;
-  View view_{};
-  std::vector<float> depth_;
-  std::vector<std::uint32_t> normal_, links_, words_;
+  std::optional<Geometry> geometry_;
+  std::vector<std::uint32_t> links_, words_;
 };
 
 // Pictures whose lines fill their last segment or do not, and radii that end chains or do not.

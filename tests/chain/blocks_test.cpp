@@ -38,14 +38,9 @@ struct Chosen {
         if (picture.is_site(x, y)) plane[picture.index(x, y)] = float(visibility(x, y));
     return plane;
   }
-  gpu::Buffer& upload(const std::vector<float>& planes) const {
-    gpu::Buffer& buffer = recorder().buffer("planes of a test", planes.size() * sizeof(float), gpu::Use::upload);
-    std::ranges::copy(planes, buffer.as<float>().begin());
-    recorder().upload(buffer);
-    return buffer;
-  }
   std::vector<float> filtered(const std::vector<float>& planes, uint moments = 0) const {
-    return downloaded<float>(smooth(recorder(), frame.gbuffer, upload(planes), sites, denoiser, "", moments));
+    return downloaded<float>(
+        smooth(recorder(), frame.gbuffer, given("planes of a test", planes), sites, denoiser, "", moments));
   }
   template <class Visibility>
   std::vector<float> filtered(const Visibility& visibility) const {
@@ -97,7 +92,7 @@ TEST(Blocks, fit_a_plane_to_their_sites) {
     const double reach = chosen.denoiser.within.front() / chosen.frame.gbuffer.view.tangent_per_pixel.x / 5;
     ASSERT_THAT(reach, AllOf(testing::Gt(6), testing::Lt(9))) << "two blocks to each side";
     const auto fitted = downloaded<uint>(
-        fit_blocks(recorder(), chosen.frame.gbuffer, chosen.upload(noise), chosen.sites, chosen.denoiser));
+        fit_blocks(recorder(), chosen.frame.gbuffer, given("planes of a test", noise), chosen.sites, chosen.denoiser));
     const SiteGrid grid = chosen.sites.grid;
     const auto number_of = [&](int x, int y) {
       const int u = x + grid.overhang.x, v = y + grid.overhang.y;

@@ -30,8 +30,7 @@ struct Picture {
 /// A cylinder that stands on z = 0 is put into a rendering.
 void put_cylinder(Rendering& rendering, Vec3 foot, double radius, double height) {
   const Shot& shot = rendering.shot;
-  const std::size_t pixels = rendering.frame.depth.size();
-  for (std::size_t i = 0; i < pixels; i++) {
+  for (std::size_t i = 0; i < rendering.frame.depth.size(); i++) {
     const Ray ray =
         shot.ray(double(i % std::size_t(shot.data.width)) + 0.5, double(i / std::size_t(shot.data.width)) + 0.5);
     const Vec3 to{ray.origin.x - foot.x, ray.origin.y - foot.y, 0}, d{ray.direction.x, ray.direction.y, 0};
@@ -40,11 +39,8 @@ void put_cylinder(Rendering& rendering, Vec3 foot, double radius, double height)
     const double t = (-b - std::sqrt(b * b - a * c)) / a;
     const Vec3 at = ray.origin + t * ray.direction;
     if (!(t > 0 && t < rendering.frame.depth[i]) || at.z < 0 || at.z > height) continue;
-    const Vec3 normal = shot.view_from_world(unit({at.x - foot.x, at.y - foot.y, 0}));
     rendering.frame.depth[i] = float(t);
-    rendering.frame.normal[i] = float(normal.x);
-    rendering.frame.normal[i + pixels] = float(normal.y);
-    rendering.frame.normal[i + 2 * pixels] = float(normal.z);
+    put_normal(rendering.frame, i, shot.view_from_world(unit({at.x - foot.x, at.y - foot.y, 0})));
   }
 }
 

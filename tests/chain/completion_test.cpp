@@ -59,13 +59,6 @@ class CompletedPlanes : public testing::Test {
   /// Sixteenths, so that sums of them have no error.
   static float value(int x, int y, int factor) { return float((x * 3 + y * factor) % 17) / 16; }
 
-  static gpu::Buffer& plane(const char* name, const std::vector<float>& values) {
-    gpu::Buffer& buffer = recorder().buffer(name, values.size() * sizeof(float), gpu::Use::upload);
-    std::ranges::copy(values, buffer.as<float>().begin());
-    recorder().upload(buffer);
-    return buffer;
-  }
-
   /// A plane that is NaN wherever the pass has no business.
   std::vector<float> receivers_only(int spacing, int factor) const {
     std::vector<float> values(frame.data.pixels(), kNan);
@@ -90,12 +83,6 @@ class CompletedPlanes : public testing::Test {
     return shown;
   }
 
-  static std::vector<float> finished(const gpu::Buffer& result) {
-    recorder().download(result);
-    recorder().run();
-    return values_of(&result);
-  }
-
   HostFrame frame = furnished_room(161, 123).frame;
   FrameInputs inputs;
   GBuffer gbuffer;
@@ -108,11 +95,11 @@ TEST_F(CompletedPlanes, are_added_up_tile_by_tile_over_the_receivers_of_surfaces
       const std::vector<float> largest = receivers_only(spacing, 5);
       ao.insert(ao.end(), largest.begin(), largest.end());
       Estimate estimate;
-      estimate.ao = &plane("ao of a test", ao);
-      estimate.completed = &plane("completed of a test", receivers_only(spacing, 7));
+      estimate.ao = &given("ao of a test", ao);
+      estimate.completed = &given("completed of a test", receivers_only(spacing, 7));
       gpu::Buffer* result = completion(recorder(), gbuffer, estimate, sites_of(spacing));
       ASSERT_NE(result, nullptr);
-      const std::vector<float> sums = finished(*result);
+      const std::vector<float> sums = downloaded<float>(*result);
       const int columns = (width() + kTile - 1) / kTile;
       const int rows = (height() + kTile - 1) / kTile;
       std::vector<float> expected(std::size_t(2 * columns * rows), 0.0f);
@@ -131,12 +118,6 @@ TEST_F(CompletedPlanes, are_added_up_tile_by_tile_over_the_receivers_of_surfaces
     }
 }
 
-TEST_F(CompletedPlanes, are_not_added_up_where_nobody_asked) {
-  Estimate estimate;
-  estimate.ao = &plane("ao of a test", receivers_only(1, 5));
-  EXPECT_EQ(completion(recorder(), gbuffer, estimate, {}), nullptr);
-}
-
 TEST_F(CompletedPlanes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
   OutputSettings settings;
   settings.debug = "completed";
@@ -144,12 +125,12 @@ TEST_F(CompletedPlanes, are_shown_in_grey_from_0_to_1_and_sky_apart) {
   EXPECT_TRUE(view.is_grey && view.scale == DebugScale::fixed && view.low == 0 && view.high == 1);
   for (const int spacing : {1, 2, 4, 8, 16}) {
     DebugStages stages{gbuffer};
-    stages.raw_ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
+    stages.raw_ao = &given("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
     stages.denoised_ao = stages.raw_ao;
     stages.sites = sites_of(spacing);
-    stages.completed = &plane("completed of a test", receivers_only(spacing, 7));
+    stages.completed = &given("completed of a test", receivers_only(spacing, 7));
     const DebugPlane shown = debug(recorder(), view, gbuffer, stages, inputs);
-    const std::vector<float> values = finished(*shown.values);
+    const std::vector<float> values = downloaded<float>(*shown.values);
     for (int y = 0; y < height(); y++)
       for (int x = 0; x < width(); x++) {
         if (is_sky(x, y)) ASSERT_EQ(values[index(x, y)], kSkyDepth) << x << " " << y;
@@ -167,12 +148,12 @@ TEST_F(CompletedPlanes, are_0_in_tiles_that_are_left_out_and_else_as_they_were) 
   const Skipping skipping{.skips_sky = true, .changes = nullptr, .needed = {{20, 12}, gbuffer.view.size}};
   for (const int spacing : {1, 4, 16}) {
     Estimate out;
-    out.ao = &plane("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
-    out.completed = &plane("completed of a test", std::vector<float>(frame.data.pixels(), kBefore));
+    out.ao = &given("ao of a test", std::vector<float>(frame.data.pixels(), kBefore));
+    out.completed = &given("completed of a test", std::vector<float>(frame.data.pixels(), kBefore));
     const TileList list = classify(recorder(), gbuffer, skipping, reach, sites_of(spacing), out);
     recorder().download(*list.kinds);
     recorder().download(*out.ao);
-    const std::vector<float> completed = finished(*out.completed);
+    const std::vector<float> completed = downloaded<float>(*out.completed);
     const auto ao = out.ao->as<const float>();
     const auto kinds = list.kinds->as<const uint>();
     int open = 0;  // of surfaces

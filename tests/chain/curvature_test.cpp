@@ -65,11 +65,8 @@ View view_of(const Solid& solid, const Shot& shot, double far) {
     const double z = crossing(solid, ray.origin, ray.direction, 0, far, 600);
     if (z == kNowhere) continue;
     view.points[i] = ray.origin + z * ray.direction;
-    const Vec3 n = shot.view_from_world(normal_of(solid, *view.points[i]));
     view.frame.depth[i] = float(z);
-    view.frame.normal[i] = float(n.x);
-    view.frame.normal[i + pixels] = float(n.y);
-    view.frame.normal[i + 2 * pixels] = float(n.z);
+    put_normal(view.frame, i, shot.view_from_world(normal_of(solid, *view.points[i])));
   }
   return view;
 }
@@ -374,11 +371,10 @@ TEST_F(CurvatureFiles, have_a_channel_for_each_and_of_several_radii_one_for_each
 }
 
 TEST_F(CurvatureFiles, of_a_region_hold_what_the_whole_holds_there) {
-  for (const Options& more : {Options{"--radius", "1.5", "--radius", "0.3"},
-                              {"--radius", "1", "--preset", "production"},
-                              {"--radius", "1", "--preset", "reference"},
-                              {"--radius", "1", "--preset", "draft"}})
-    expect_region_of_whole(joined({"--aov", "ao,convexity,cavity,curvature"}, more), {20, 18, 9, 9});
+  for (const char* more :
+       {",ao-scales,bent-normal,transfer --radius 1.5 --radius 0.3", " --radius 1 --preset production",
+        " --radius 1 --preset reference", " --radius 1 --preset draft"})
+    expect_region_of_whole(typed(std::string("--aov ao,convexity,cavity,curvature") + more), {20, 18, 9, 9});
 }
 
 TEST_F(CurvatureFiles, of_the_mean_of_equal_frames_are_those_of_one) {

@@ -141,16 +141,6 @@ TEST_F(DebugViews, what_cannot_be_shown_or_written_is_refused_before_any_work) {
   expect_run_refused(2, {"--set debug", "raw-depth"}, {"--set", "debug=raw-depth,"});
   expect_run_refused(2, {"--set debug", "--preview", "same file"},
                      {"--set", "debug=edges", "--preview", folder / "ao.edges.png"});
-  FrameFile input = wall_frame();
-  std::erase_if(input.planes, [](const auto& plane) { return plane.first.find("Normal") != plane.first.npos; });
-  input.write(frame);
-  expect_run_refused(3, {"wall.0042.exr", "--set debug=reconstruction", "--normal"}, {"--set", "debug=reconstruction"});
-  for (const char* c : {"X", "Y", "Z"})
-    input.planes["ViewLayer.Position." + std::string(c)] = input.planes["ViewLayer.Depth.Z"];
-  input.write(frame);
-  expect_run_refused(
-      3, {"wall.0042.exr", "--set debug=raw-depth", "--depth-channel"},
-      {"--set", "debug=raw-depth", "--set", "position-channels=ViewLayer.Position", "--depth-kind", "position"});
   fs::create_directory(folder / "ao.edges.png");
   expect_run_refused(4, {"ao.edges.png", "--set debug"}, {"--set", "debug=edges"});
 }

@@ -20,9 +20,7 @@ EstimatorSettings exact(double radius, Completion complete, bool every_pixel = f
 
 /// Floor, wall, ball, a slab in the air, thin posts, and sky; the ball is solid.
 const Scene kFurniture = [] {
-  Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-               Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5},
-               parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
+  Scene scene = kRoom;
   for (int i = 0; i < 6; i++)
     scene.primitives.emplace_back(parallelogram({2.5, 0.2 + 0.15 * i, 0}, {0, 0.03, 0}, {0, 0, 0.6}));
   return scene;
@@ -30,8 +28,7 @@ const Scene kFurniture = [] {
 const std::vector<int> kSolidFurniture{2};
 
 Rendering furniture(bool orthographic = false, int width = 160, int height = 120) {
-  return render(kFurniture, orthographic ? Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 4, width, height)
-                                         : Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, width, height));
+  return render(kFurniture, room_shot(width, height, orthographic));
 }
 
 Rendering peeled_furniture(bool orthographic = false, int width = 160, int height = 120) {

@@ -79,10 +79,8 @@ struct Sparse {
                                   float elsewhere = kNan) const {
     for (std::size_t i = 0; i < planes.size(); i++)
       if (!picture.sites[i % picture.sites.size()]) planes[i] = elsewhere;
-    gpu::Buffer& buffer = recorder().buffer("visibility of a test", planes.size() * sizeof(float), gpu::Use::upload);
-    std::ranges::copy(planes, buffer.as<float>().begin());
-    recorder().upload(buffer);
-    return downloaded<float>(smooth(recorder(), frame.gbuffer, buffer, sites, denoiser_of(settings)));
+    return downloaded<float>(
+        smooth(recorder(), frame.gbuffer, given("visibility of a test", planes), sites, denoiser_of(settings)));
   }
 };
 

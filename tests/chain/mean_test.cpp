@@ -29,12 +29,6 @@ class Means : public testing::Test {
 
   /// The mean at each pixel, of a frame and another one of the same camera, or of one that stands so far to the left.
   std::vector<float> mean(const Facing& own, const Facing& other, float shift = 0) {
-    const auto filled = [&]<class T>(const char* name, const std::vector<T>& values) -> gpu::Buffer& {
-      gpu::Buffer& buffer = gpu_.buffer(name, values.size() * sizeof(T), gpu::Use::upload);
-      std::ranges::copy(values, buffer.as<T>().begin());
-      gpu_.upload(buffer);
-      return buffer;
-    };
     std::vector<std::uint32_t> words;
     for (const float z : other.depth) words.push_back(std::bit_cast<std::uint32_t>(units_ * z));
     for (const std::uint32_t n : other.normal) words.push_back((n & 0xffffu) | std::uint32_t(kOther * 65535) << 16);
@@ -43,26 +37,23 @@ class Means : public testing::Test {
     std::vector<float> own_depth = own.depth;
     for (float& z : own_depth) z *= units_;
     EstimateSet estimates;
-    estimates.depth = &filled("own depth", own_depth);
-    estimates.normal = &filled("own normal", own.normal);
-    estimates.values = &filled("own values", std::vector<float>(kPixels, kOwn));
+    estimates.depth = &given("own depth", own_depth, gpu_);
+    estimates.normal = &given("own normal", own.normal, gpu_);
+    estimates.values = &given("own values", std::vector<float>(kPixels, kOwn), gpu_);
     estimates.view = kView;
-    estimates.groups = {{&filled("words", words), &filled("frames", frames), 1, 1}};
+    estimates.groups = {{&given("words", words, gpu_), &given("frames", frames, gpu_), 1, 1}};
     const auto is_moving = [](float z) { return z < 0; };
     estimates.has_moving = std::ranges::any_of(own.depth, is_moving) || std::ranges::any_of(other.depth, is_moving);
     std::vector<float> depth = own_depth;
     std::ranges::transform(depth, depth.begin(), [](float z) { return std::abs(z); });
     GBuffer gbuffer;
     gbuffer.view = kView;
-    gbuffer.depth = &filled("depth", depth);
-    gbuffer.normal = &filled("normal", own.normal);
+    gbuffer.depth = &given("depth", depth, gpu_);
+    gbuffer.normal = &given("normal", own.normal, gpu_);
     EstimatorSettings settings;
     settings.radius = double(units_) * kRadius;
     const Accumulation result = accumulate(gpu_, gbuffer, estimates, settings, 0, false);
-    gpu_.download(*result.visibility.ao);
-    gpu_.run();
-    const auto ao = result.visibility.ao->as<const float>();
-    return {ao.begin(), ao.end()};
+    return downloaded<float>(*result.visibility.ao, gpu_);
   }
 
   float units_ = 1;  // scene units that a number here stands for

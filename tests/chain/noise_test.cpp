@@ -1,7 +1,6 @@
-// The noise of the slices: a lattice that is the same however far away, and whose waves the filter takes away.
+// The noise of the slices: a lattice that is the same however far away. What the filter leaves of it:
+// clean_picture_test.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <complex>
-
 #include "kernels/base/shared.h"
 #include "tests/support/chain.h"
 #include "tests/support/site_frames.h"
@@ -22,37 +21,6 @@ struct Lattice {
 };
 
 constexpr Lattice kDirections{kNoiseXByX, kNoiseXByY}, kSteps{kNoiseYByX, kNoiseYByY};
-
-/// The largest remaining part of a lattice's harmonic after a filter by parabolas along rows and columns, over the
-/// sites of a spacing.
-double left_of(const Lattice& lattice, int harmonic, int spacing, int radius) {
-  const auto window = [&](int away) { return 1 - std::pow(away / (radius + 1.0), 2); };
-  double most = 0;
-  for (int phase = 0; phase < 16; phase++) {
-    std::complex<double> sum = 0;
-    double whole = 0;
-    for (int y = -radius; y <= radius; y++)
-      for (int x = -radius; x <= radius; x++) {
-        if (!is_on_lattice(x + phase % 4, y + phase / 4, spacing)) continue;
-        const double weight = window(x) * window(y);
-        sum += std::polar(weight, 2 * kPi * harmonic * lattice.turns(x, y));
-        whole += weight;
-      }
-    most = std::max(most, std::abs(sum) / whole);
-  }
-  return most;
-}
-
-// The R2 sequence leaves .11 and .54 of the first and third harmonic at one pixel of 16.
-TEST(Noise, is_taken_away_by_the_filter_at_every_spacing) {
-  for (const int spacing : {16, 8, 4, 2, 1}) {
-    for (const int harmonic : {1, 2, 3})
-      EXPECT_LT(left_of(kDirections, harmonic, spacing, 8), 0.05) << "spacing " << spacing << ", harmonic " << harmonic;
-    EXPECT_LT(left_of(kSteps, 1, spacing, 8), 0.05) << "spacing " << spacing;
-  }
-  const Lattice r2{3242174889u, 2447445414u};
-  EXPECT_GT(left_of(r2, 3, 16, 8), 0.3) << "or else any lattice would do";
-}
 
 /// A step in a wall, whose window lies so far from the display window's corner.
 HostFrame step_at(int x, int y) {

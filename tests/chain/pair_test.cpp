@@ -24,13 +24,8 @@ Polygon plate(double y, double half_width, double half_height, double x = 0) {
 
 /// The planes of GBuffer::hidden.
 std::vector<float> hidden_of(const HostFrame& frame, int kept = 3) {
-  gpu::Recorder& gpu = recorder();
-  const FrameInputs inputs = upload(gpu, frame);
-  const GBuffer gbuffer = layers(gpu, prepare(gpu, inputs), inputs, {kept, -1});
-  gpu.download(*gbuffer.hidden);
-  gpu.run();
-  const auto values = gbuffer.hidden->as<const float>();
-  return {values.begin(), values.end()};
+  const FrameInputs inputs = upload(recorder(), frame);
+  return downloaded<float>(*layers(recorder(), prepare(recorder(), inputs), inputs, {kept, -1}).hidden);
 }
 
 /// Of the surfaces behind the first that so lie behind another, the share that closes it.

@@ -121,14 +121,9 @@ void roughen(HostFrame& frame, double degrees) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> tilt(-1, 1);
   const double slope = std::tan(degrees * std::numbers::pi / 180) / std::numbers::sqrt2;
-  const std::size_t pixels = frame.data.pixels();
-  for (std::size_t i = 0; i < pixels; i++) {
-    Vec3 n{frame.normal[i], frame.normal[i + pixels], frame.normal[i + 2 * pixels]};
-    const Vec3 across = unit(cross(n, {1, 0, 0}));
-    n = unit(n + slope * tilt(random) * across + slope * tilt(random) * cross(n, across));
-    frame.normal[i] = float(n.x);
-    frame.normal[i + pixels] = float(n.y);
-    frame.normal[i + 2 * pixels] = float(n.z);
+  for (std::size_t i = 0; i < frame.depth.size(); i++) {
+    const Vec3 n = normal_at(frame, i), across = unit(cross(n, {1, 0, 0}));
+    put_normal(frame, i, unit(n + slope * tilt(random) * across + slope * tilt(random) * cross(n, across)));
   }
 }
 

@@ -155,13 +155,9 @@ TEST(Scale, by_powers_of_two_and_what_was_before_change_no_bit) {
 }
 
 TEST(Scale, changes_no_bit_of_what_is_hidden_or_made_of_the_ao) {
-  const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5},
-                     parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
   for (const bool orthographic : {false, true}) {
-    Rendering room = render(scene, orthographic ? Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 4, 96, 72)
-                                                : Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, 96, 72));
-    add_solid_peels(room, scene, 3, {2});
+    Rendering room = render(kRoom, room_shot(96, 72, orthographic));
+    add_solid_peels(room, kRoom, 3, {2});
     for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::infinite, ThicknessKind::constant})
       for (const bool is_exact : {false, true}) {
         EstimatorSettings settings = is_exact ? exact(0.6) : gtao(0.6, 3, 12);
@@ -191,12 +187,6 @@ TEST(Scale, changes_no_bit_of_what_is_hidden_or_made_of_the_ao) {
 }
 
 /// Sets a pixel's normal.
-void put_normal(HostFrame& frame, std::size_t i, Vec3 normal) {
-  const std::size_t pixels = frame.data.pixels();
-  frame.normal[i] = float(normal.x), frame.normal[i + pixels] = float(normal.y);
-  frame.normal[i + 2 * pixels] = float(normal.z);
-}
-
 TEST(NormalSpace, world_normals_are_turned_into_view_space) {
   const Rendering rendering = furnished_room(160, 120);
   HostFrame world = rendering.frame;
@@ -336,10 +326,9 @@ TEST(Size, may_be_anything_from_one_pixel_and_any_bits_give_an_ao_from_0_to_1) {
 
 /// A room with strands a pixel wide before it, seen with an overscan.
 Rendering overscanned() {
-  const Scene scene{{kFloor, parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5},
-                     parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
-  Shot shot = Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, 192, 144);
+  Scene scene = kRoom;
+  scene.primitives.front() = kFloor;
+  Shot shot = room_shot(192, 144);
   shot.data = {-24, -16, 240, 176};
   Rendering rendering = render(scene, shot);
   add_strands(rendering.frame);

@@ -173,11 +173,6 @@ TEST_F(ScaleFiles, may_come_from_a_preset_and_are_printed_as_one) {
   EXPECT_TRUE(std::ranges::equal(read_exr_image(ao).plane("Y"), typed.plane("Y")));
 }
 
-TEST_F(ScaleFiles, of_a_region_reach_as_far_as_the_largest) {
-  expect_region_of_whole({"--aov", "ao,ao-scales,bent-normal,transfer", "--radius", "1.5", "--radius", "0.3"},
-                         {20, 18, 9, 9});
-}
-
 TEST_F(ScaleFiles, count_in_digest_and_statistics) {
   const auto digest = [](std::vector<double> radii) {
     Settings settings;

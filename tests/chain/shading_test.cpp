@@ -10,26 +10,15 @@ namespace {
 using namespace test;
 using Planes = std::vector<float>;
 
-gpu::Buffer& given(const char* name, const Planes& values) {
-  gpu::Buffer& buffer = recorder().buffer(name, values.size() * sizeof(float), gpu::Use::upload);
-  std::ranges::copy(values, buffer.as<float>().begin());
-  recorder().upload(buffer);
-  return buffer;
-}
-
 /// What a pass makes of the frame's G-buffer.
 Planes pass(const HostFrame& frame, const std::function<gpu::Buffer&(const GBuffer&, FrameInputs&)>& record,
             FrameCounts* counts = nullptr) {
-  gpu::Recorder& gpu = recorder();
-  FrameInputs inputs = upload(gpu, frame);
-  const GBuffer gbuffer = prepare(gpu, inputs);
-  reconstruct(gpu, gbuffer);
-  const gpu::Buffer& result = record(gbuffer, inputs);
-  gpu.download(result);
-  gpu.download(*gbuffer.counts);
-  gpu.run();
-  if (counts) *counts = gbuffer.counts->as<FrameCounts>()[0];
-  return values_of(&result);
+  Prepared made = prepared(frame);
+  const gpu::Buffer& result = record(made.gbuffer, made.inputs);
+  recorder().download(*made.gbuffer.counts);
+  const Planes planes = downloaded<float>(result);
+  if (counts) *counts = made.gbuffer.counts->as<FrameCounts>()[0];
+  return planes;
 }
 
 /// A ball before a tilted floor, and sky: normals and depths of all kinds.
@@ -203,20 +192,9 @@ TEST(MultiBounce, every_colour_takes_its_own_albedo_and_broken_ones_return_nothi
 
 /// As kernels/base/normal.glsl packs: the octahedral map in 16 bits per coordinate.
 float packed_as_float(Vec3 n) {
-  const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-  double x = n.x / sum, y = n.y / sum;
-  if (n.z < 0) {
-    const double folded = (1 - std::abs(y)) * (x >= 0 ? 1 : -1);
-    y = (1 - std::abs(x)) * (y >= 0 ? 1 : -1);
-    x = folded;
-  }
+  const Vec3 flat = octahedral(n);
   const auto bits = [](double v) { return std::uint32_t(std::uint16_t(std::int16_t(std::lround(v * 32767)))); };
-  return std::bit_cast<float>(bits(x) | bits(y) << 16);
-}
-
-Vec3 normal_at(const HostFrame& frame, std::size_t i) {
-  const std::size_t pixels = frame.depth.size();
-  return {frame.normal[i], frame.normal[i + pixels], frame.normal[i + 2 * pixels]};
+  return std::bit_cast<float>(bits(flat.x) | bits(flat.y) << 16);
 }
 
 /// `bent`: null: the normals.

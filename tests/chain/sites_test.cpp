@@ -150,12 +150,10 @@ std::pair<int, int> place_of(uint site, const std::vector<uint>& tiles) {
 
 /// A room before a sky that fills tiles.
 HostFrame room_before_sky(int x, int y) {
-  Shot shot = Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 75, 157, 117);
+  Shot shot = room_shot(157, 117, false, 75);
   shot.data.x = x;
   shot.data.y = y;
-  const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
-  return render(scene, shot).frame;
+  return render(kBallRoom, shot).frame;
 }
 
 TEST(ListedSites, are_those_of_the_listed_tiles_each_once_and_are_counted_by_lattice) {

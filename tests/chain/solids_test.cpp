@@ -34,8 +34,7 @@ std::vector<float> ao_at(Search search, const HostFrame& frame, const EstimatorS
   return ao;
 }
 
-/// A slot without ends in y, or a round hole, of that depth below z = 0. Its parts: 0 the ground, 1 the floor, further
-/// the walls.
+/// A slot without ends in y of that depth below z = 0. Its parts: 0 the ground, 1 the floor, further the walls.
 Scene slot(double half_width, double depth) {
   const Vec3 along{0, 20, 0};
   return {{parallelogram({half_width, -10, 0}, {10, 0, 0}, along),
@@ -43,18 +42,6 @@ Scene slot(double half_width, double depth) {
            parallelogram({-half_width, -10, -depth}, {0, 0, depth}, along),
            parallelogram({half_width, -10, -depth}, {0, 0, depth}, along),
            parallelogram({-half_width, -10, 0}, {-10, 0, 0}, along)}};
-}
-Scene cylinder(double radius, double depth) {
-  constexpr int kSides = 12;
-  Scene scene{
-      {Plane{.point = {}, .normal = {0, 0, 1}, .hole = radius}, Plane{.point = {0, 0, -depth}, .normal = {0, 0, 1}}}};
-  const auto corner = [&](int i) {
-    const double azimuth = 2 * kPi * (i + 0.5) / kSides, r = radius / std::cos(kPi / kSides);
-    return Vec3{r * std::cos(azimuth), r * std::sin(azimuth), -depth};
-  };
-  for (int i = 0; i < kSides; i++)
-    scene.primitives.emplace_back(parallelogram(corner(i), corner(i + 1) - corner(i), {0, 0, depth}));
-  return scene;
 }
 
 // What is flat levels off late, so that the reference and the exact search take these flat things for thicker than they
@@ -123,14 +110,14 @@ TEST(Solids, the_rim_of_a_deep_hole_hides_the_wall_below_it) {
                {5, 5, 1.8}},
               3);
   expect_rays({"cylinder, floor",
-               cylinder(0.5, 1.3),
+               round_hole(0.5, 1.3, 12),
                Shot::perspective(steep, target, 27, 96, 96),
                is_floor,
                {0.165, 0.165, 0.25},
                {1.7, 1.7, 1.1}},
               3);
   expect_rays({"cylinder, wall",
-               cylinder(0.45, 1.3),
+               round_hole(0.45, 1.3, 12),
                Shot::perspective(slanted, target, 28, 120, 120),
                is_wall,
                {0.215, 0.21, 0.37},
@@ -323,14 +310,8 @@ TEST(Border, a_rough_floor_is_as_open_there_as_elsewhere) {
   for (const Shot& shot :
        {Shot::perspective({3, 0, 2}, {0, 0, 0}, 60, 80, 48), Shot::orthographic({3, 0, 2}, {0, 0, 0}, 4, 80, 48)}) {
     HostFrame frame = render({{kFloor}}, shot).frame;
-    const std::size_t pixels = frame.depth.size();
-    for (std::size_t i = 0; i < pixels; i++) {
-      const Vec3 rough = unit({frame.normal[i] + tilt(random), frame.normal[i + pixels] + tilt(random),
-                               frame.normal[i + 2 * pixels] + tilt(random)});
-      frame.normal[i] = float(rough.x);
-      frame.normal[i + pixels] = float(rough.y);
-      frame.normal[i + 2 * pixels] = float(rough.z);
-    }
+    for (std::size_t i = 0; i < frame.depth.size(); i++)
+      put_normal(frame, i, unit(normal_at(frame, i) + Vec3{tilt(random), tilt(random), tilt(random)}));
     for (const Search search : kSearches) {
       const EstimatorSettings settings = settings_of(search);
       const double at_border = mean(ao_at(search, frame, settings, columns(frame, 0, 3))),

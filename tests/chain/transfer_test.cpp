@@ -78,43 +78,27 @@ TEST(Transfer, of_an_open_plane_is_that_of_its_hemisphere_at_every_tilt_through_
   }
 }
 
-/// Compares floors beside one wall or two with the quadrature, wherever the picture shows all that is within reach.
+/// Compares floors beside one wall or two with the quadrature.
 void expect_walls(int count, const Shot& shot, const EstimatorSettings& settings) {
   SCOPED_TRACE(name_of(settings) + ", walls " + std::to_string(count));
-  Scene scene{{kFloor, kWallX}};
-  if (count > 1) scene.primitives.emplace_back(kWallY);
-  const double radius = *settings.radius;
-  const Rendering rendering = render(scene, shot);
-  const auto transfer = planes_of(rendering.frame, settings, "transfer").transfer;
-  int compared = 0, seen = 0;
+  const FloorByWalls floor = floor_by_walls(count, shot, *settings.radius);
+  const auto transfer = planes_of(floor.rendering.frame, settings, "transfer").transfer;
   double worst = 0, sum = 0;
-  for (std::size_t i = 0; i < rendering.hits.size(); i++) {
-    const Hit& hit = rendering.hits[i];
-    const int x = int(i % std::size_t(shot.data.width)), y = int(i / std::size_t(shot.data.width));
-    if (hit.primitive != 0 || rendering.primitives_within(2, x, y) > 1 || 12 * rendering.footprint(x, y) > radius ||
-        !shot.sees_ball(hit.position, radius) || hit.position.x > 0.9 * radius || ++seen % 13)
-      continue;
-    const Vec3 p = hit.position;
-    const double error = distance(at(transfer, i), truth_of(shot, hit.normal, [&](Vec3 w) {
-                                    return w.x > -p.x / radius && (count < 2 || w.y > -p.y / radius);
-                                  }));
+  for (const std::size_t i : floor.pixels) {
+    const double error = distance(
+        at(transfer, i), truth_of(shot, floor.rendering.hits[i].normal, [&](Vec3 w) { return floor.is_open(i, w); }));
     worst = std::max(worst, error);
     sum += error;
-    compared++;
   }
-  EXPECT_GE(compared, 30);
   EXPECT_LE(worst, 0.018);
-  EXPECT_LE(sum / compared, 0.006);
+  EXPECT_LE(sum / double(floor.pixels.size()), 0.006);
 }
 
 TEST(Transfer, beside_a_wall_and_in_a_corner_turns_with_the_camera) {
   const Vec3 eye{2.4, 1.9, 2.6}, target{0.3, 0.3, 0.1};
   for (const double roll : {0.0, 50.0, 190.0})
     for (const int count : {1, 2}) {
-      Shot shot = Shot::perspective(eye, target, 50, 180, 135);
-      const Vec3 right = shot.right, up = shot.up;
-      shot.right = std::cos(roll * kRadian) * right + std::sin(roll * kRadian) * up;
-      shot.up = std::cos(roll * kRadian) * up - std::sin(roll * kRadian) * right;
+      const Shot shot = rolled(Shot::perspective(eye, target, 50, 180, 135), roll);
       for (const EstimatorSettings& settings : searches(0.6)) expect_walls(count, shot, settings);
     }
   for (const EstimatorSettings& settings : searches(0.6))

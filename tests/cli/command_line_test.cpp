@@ -158,6 +158,8 @@ TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
       {"aperture", {"-36"}},
       {"ortho-width", {"0"}},
       {"depth-scale", {"0", "-1"}},
+      {"far", {"-1", "away"}},
+      {"flip-normal", {"xx", "w"}},
       {"memory", {"0", "0.5", "-1G", "4X", "1000000000000000T"}},
       {"threads", {"-1", "1025"}}};
   for (const auto& [option, values] : cases)

@@ -208,127 +208,101 @@ TEST_F(Composites, what_inspect_proposes_for_a_beauty_without_parts_is_taken_by_
   EXPECT_TRUE(fs::exists(folder / "composite.exr"));
 }
 
-TEST_F(Composites, frames_of_a_list_are_computed_by_their_own_camera_and_radius) {
-  compute();
-  const std::string list = folder / "list.toml", named = folder / "{name}.exr";
-  write_bytes(list, "[[frame]]\nname = 'wall'\ninput = '" + frame + "'\ncamera = '" + folder / "camera.json" +
-                        "'\nradius = 0.25\n");
+class FrameLists : public Composites {
+ protected:
+  FrameLists() { input.write(frame); }
+
+  std::string entry(const std::string& name, const std::string& file, const std::string& camera_name = "camera.json",
+                    const std::string& more = "radius = 1\n") const {
+    return fmt::format("[[frame]]\nname = '{}'\ninput = '{}'\ncamera = '{}'\n{}", name, file, folder / camera_name,
+                       more);
+  }
+  Finished run_list(const std::string& entries, const Options& more = {}) const {
+    write_bytes(list, entries);
+    fs::remove(good);
+    return run_program(joined({"run", list, "-o", folder / "{name}.exr"}, more));
+  }
+
+  const std::string list = folder / "list.toml", good = folder / "good.exr", lost = folder / "in.lost.exr";
+};
+
+TEST_F(FrameLists, are_computed_by_their_own_cameras_and_radii) {
   const auto radius_of = [&](const Options& more) {
-    Options words{"run", list, "-o", named, "--source", "auto"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Finished finished = run_program(words);
+    const Finished finished = run_list(entry("wall", frame, "camera.json", "radius = 0.25\n"), more);
     EXPECT_EQ(finished.code, 0) << finished;
     return text_in(read_header(folder / "wall.exr"), "alcove/radius");
   };
-  EXPECT_EQ(radius_of({}), "0.25");
+  EXPECT_EQ(radius_of({"--source", "auto"}), "0.25");
   EXPECT_EQ(radius_of({"--radius", "0.5"}), "0.5") << "what is typed wins";
   EXPECT_EQ(radius_of({"--set", "radius=0.5"}), "0.5");
   EXPECT_EQ(radius_of({"--fov", "60", "--normal", "none"}), "0.25");
   test::expect_refused(run_program({"run", list, "-o", folder / "ao.exr"}), 2, {"--output", "{name}"});
 }
 
-TEST_F(Composites, no_frame_of_a_list_writes_over_what_another_one_reads) {
-  compute();
-  const std::string list = folder / "list.toml", other = folder / "b.exr", camera_file = folder / "camera.json";
+TEST_F(FrameLists, have_no_frame_that_writes_over_what_another_one_reads) {
+  const std::string other = folder / "b.exr";
   fs::copy_file(frame, other);
-  const auto entry = [&](const std::string& name, const std::string& file) {
-    return "[[frame]]\nname = '" + name + "'\ninput = '" + file + "'\ncamera = '" + camera_file + "'\nradius = 1\n";
-  };
-  write_bytes(list, entry("b", frame) + entry("c", other));
   const std::string before = read_bytes(other);
-  test::expect_refused(run_program({"run", list, "-o", folder / "{name}.exr"}), 2, {"--output of frame b", "b.exr"});
+  test::expect_refused(run_list(entry("b", frame) + entry("c", other)), 2, {"--output of frame b", "b.exr"});
   EXPECT_EQ(read_bytes(other), before);
   EXPECT_FALSE(fs::exists(folder / "c.exr"));
-  write_bytes(list, entry("d", frame) + entry("old-d", frame));
-  const Options mattes{"run", list, "-o", folder / "{name}.exr", "--matte", folder / "old-{name}.exr"};
-  test::expect_refused(run_program(mattes), 2, {"--output of frame old-d", "--matte"});
-  write_bytes(list, entry("b", list));
-  test::expect_refused(run_program({"run", list}), 3, {"frame b", "is a list itself"});
+  test::expect_refused(run_list(entry("d", frame) + entry("old-d", frame), {"--matte", folder / "old-{name}.exr"}), 2,
+                       {"--output of frame old-d", "--matte"});
+  test::expect_refused(run_list(entry("b", list)), 3, {"frame b", "is a list itself"});
 }
 
-TEST_F(Composites, a_list_with_a_bad_frame_ends_before_any_work_or_goes_on_where_it_is_told_to) {
-  compute();
-  const std::string list = folder / "list.toml", good = folder / "good.exr", bad = folder / "bad.0001.exr";
-  const auto entry = [&](const std::string& name, const std::string& file) {
-    return "[[frame]]\nname = '" + name + "'\ninput = '" + file + "'\ncamera = '" + folder / "camera.json" +
-           "'\nradius = 1\n";
+TEST_F(FrameLists, with_a_bad_frame_end_before_any_work_or_go_on_where_they_are_told_to) {
+  const std::string bad = folder / "bad.0001.exr";
+  const auto expect_code = [&](int code, const std::string& entries, const Options& more = {}) {
+    const Finished finished = run_list(entries, more);
+    EXPECT_EQ(finished.code, code) << entries << finished;
+    EXPECT_EQ(fs::exists(good), code < 2) << entries;
+    return finished.err;
   };
-  const auto run_list = [&](const Options& more) {
-    fs::remove(good);
-    return run_program(joined({"run", list, "-o", folder / "{name}.exr"}, more));
-  };
-  for (const std::string& lost : {folder / "in.lost.exr", folder / "in.lost.####.exr"}) {
-    write_bytes(list, entry("lost", lost) + entry("good", frame));
-    test::expect_refused(run_list({}), 3, {"lost"});
-    EXPECT_FALSE(fs::exists(good));
-    EXPECT_EQ(run_list({"--keep-going"}).code, 1) << lost;
-    EXPECT_TRUE(fs::exists(good));
-    EXPECT_EQ(run_list({"--set", "missing=skip"}).code, 0) << lost;
-    EXPECT_TRUE(fs::exists(good));
+  for (const std::string& input : {lost, folder / "in.lost.####.exr"}) {
+    const std::string entries = entry("lost", input) + entry("good", frame);
+    EXPECT_THAT(expect_code(3, entries), HasSubstr("lost"));
+    expect_code(1, entries, {"--keep-going"});
+    expect_code(0, entries, {"--set", "missing=skip"});
   }
-  write_bytes(list, entry("good", frame) + entry("lost", folder / "in.lost.exr"));
-  EXPECT_EQ(run_list({}).code, 3);
-  EXPECT_FALSE(fs::exists(good)) << "a missing input is known before any work";
+  expect_code(3, entry("good", frame) + entry("lost", lost));  // a missing input is known before any work
   write_bytes(bad, "no EXR");
-  write_bytes(list, entry("bad", bad) + entry("good", frame));
-  EXPECT_EQ(run_list({}).code, 3);
-  EXPECT_FALSE(fs::exists(good));
-  const Finished finished = run_list({"--keep-going"});
-  EXPECT_EQ(finished.code, 1);
-  EXPECT_THAT(finished.err, HasSubstr("bad.0001.exr"));
-  EXPECT_TRUE(fs::exists(good));
-  write_bytes(list, entry("shot", folder / "bad.####.exr") + entry("bad.0001", frame));
-  test::expect_refused(run_list({}), 2, {"--output of frame bad.0001", "bad.0001.exr"});
+  expect_code(3, entry("bad", bad) + entry("good", frame));
+  EXPECT_THAT(expect_code(1, entry("bad", bad) + entry("good", frame), {"--keep-going"}), HasSubstr("bad.0001.exr"));
+  test::expect_refused(run_list(entry("shot", folder / "bad.####.exr") + entry("bad.0001", frame)), 2,
+                       {"--output of frame bad.0001", "bad.0001.exr"});
 }
 
-TEST_F(Composites, of_a_list_only_the_input_of_a_frame_may_be_missing) {
-  compute();
-  const std::string list = folder / "list.toml", good = folder / "good.exr";
-  const auto entry = [&](const std::string& name, const std::string& file, const std::string& camera_file) {
-    return "[[frame]]\nname = '" + name + "'\ninput = '" + file + "'\ncamera = '" + folder / camera_file +
-           "'\nradius = 1\n";
-  };
-  const auto run_list = [&](const Options& more) {
-    fs::remove(good);
-    return run_program(joined({"run", list, "-o", folder / "{name}.exr", "--set", "missing=skip"}, more));
-  };
-  write_bytes(list, entry("misspelt", frame, "camrea.json") + entry("good", frame, "camera.json"));
-  test::expect_refused(run_list({}), 3, {"misspelt", "camrea.json"});
-  EXPECT_EQ(run_list({"--keep-going"}).code, 1);
+TEST_F(FrameLists, may_miss_the_inputs_of_frames_only) {
+  const Options skip{"--set", "missing=skip"};
+  const std::string misspelt = entry("misspelt", frame, "camrea.json") + entry("good", frame);
+  test::expect_refused(run_list(misspelt, skip), 3, {"misspelt", "camrea.json"});
+  EXPECT_EQ(run_list(misspelt, joined(skip, {"--keep-going"})).code, 1);
   EXPECT_TRUE(fs::exists(good));
-  write_bytes(list, entry("good", frame, "camera.json"));
-  test::expect_refused(run_list({"--beauty", folder / "lost.exr", "--composite", folder / "{name}.c.exr"}), 3,
-                       {"lost.exr"});
-  write_bytes(list, entry("lost", folder / "in.lost.exr", "camera.json"));
-  const Finished all_lost = run_list({});
+  const Options without_beauty{"--beauty", folder / "lost.exr", "--composite", folder / "{name}.c.exr"};
+  test::expect_refused(run_list(entry("good", frame), joined(skip, without_beauty)), 3, {"lost.exr"});
+  const Finished all_lost = run_list(entry("lost", lost), skip);
   EXPECT_EQ(all_lost.code, 3) << all_lost;
   EXPECT_THAT(all_lost.err, HasSubstr("list.toml: the input of each frame is missing"));
 }
 
-TEST_F(Composites, what_is_no_frames_fault_ends_a_list_at_once) {
-  compute();
-  const std::string list = folder / "list.toml", settings = folder / "look.toml";
-  const auto entry = [&](const std::string& name, const std::string& radius) {
-    return "[[frame]]\nname = '" + name + "'\ninput = '" + frame + "'\ncamera = '" + folder / "camera.json" + "'\n" +
-           radius;
-  };
-  write_bytes(list, entry("a", "radius = 1\n") + entry("b", "radius = 1\n"));
-  const auto run_list = [&](const Options& more) { return run_program(joined({"run", list, "--keep-going"}, more)); };
+TEST_F(FrameLists, end_at_once_by_what_is_no_frames_fault) {
+  const std::string two = entry("a", frame) + entry("b", frame), settings = folder / "look.toml";
   write_bytes(folder / "file", "");
-  const Finished unwritable = run_list({"-o", folder / "file/{name}.exr"});
-  EXPECT_EQ(unwritable.code, 4) << unwritable;
-  EXPECT_THAT(unwritable.err, AllOf(HasSubstr("frame a"), Not(HasSubstr("frame b"))));
-  const Finished no_device = run_list({"-o", folder / "{name}.exr", "--device", "none such"});
-  EXPECT_EQ(no_device.code, 5) << no_device;
-  EXPECT_THAT(no_device.err, AllOf(HasSubstr("frame a"), Not(HasSubstr("frame b"))));
+  write_bytes(list, two);
+  for (const auto& [code, more] : {std::pair<int, Options>{4, {"-o", folder / "file/{name}.exr"}},
+                                   {5, {"-o", folder / "{name}.exr", "--device", "none such"}}}) {
+    const Finished finished = run_program(joined({"run", list, "--keep-going"}, more));
+    EXPECT_EQ(finished.code, code) << finished;
+    EXPECT_THAT(finished.err, AllOf(HasSubstr("frame a"), Not(HasSubstr("frame b"))));
+  }
   write_bytes(settings, "slices = 2\n");
-  const Finished told = run_list({"-o", folder / "{name}.exr", "--preset", settings});
+  const Finished told = run_list(two, {"--keep-going", "--preset", settings});
   EXPECT_EQ(told.code, 0) << told;
   const std::size_t first = told.err.find("settings of");
   EXPECT_NE(first, std::string::npos) << told;
   EXPECT_EQ(told.err.find("settings of", first + 1), std::string::npos) << told;
-  write_bytes(list, entry("a", "radius = 1\n") + entry("b", ""));
-  const Finished lacks = run_list({"-o", folder / "{name}.exr"});
+  const Finished lacks = run_list(entry("a", frame) + entry("b", frame, "camera.json", ""), {"--keep-going"});
   EXPECT_EQ(lacks.code, 2) << lacks;
   EXPECT_THAT(lacks.err, HasSubstr("frame b: missing:"));
 }

@@ -218,22 +218,6 @@ TEST_F(LostFiles, are_none_of_a_chunk_without_frames) {
   expect_safe(input(1), {"--stats", "INPUT " + input(1)}, run_of(joined(chunk, {"--dry-run", "--stats", input(1)})));
 }
 
-TEST_F(LostFiles, are_no_skies_presets_cameras_or_inspected_frames) {
-  const std::string sky = folder / "sk.exr", preset = folder / "p.toml";
-  write_bytes(sky, "sky");
-  write_bytes(preset, "power = 1\n");
-  expect_safe(sky, {"--output", "--environment " + sky}, run_of({"--environment", sky, "--frames", "1", "-o", sky}));
-  expect_safe(preset, {"--stats", "--preset " + preset}, run_of({"--preset", preset, "--stats", preset}));
-  expect_safe(camera, {"--log-json", "--camera " + camera}, run_of({"--log-json", camera}));
-  expect_safe(input(1), {"--write-camera", "INPUT " + input(1)}, {"inspect", input(1), "--write-camera", input(1)});
-  expect_safe(input(3), {"--write-camera", "INPUT " + input(3)},
-              {"inspect", in + "/f.%04d.exr", "--write-camera", input(3)});
-  expect_safe(input(3), {"--report", "RESULT " + input(3)},
-              {"compare", in + "/f.%04d.exr", input(1), "--report", input(3)});
-  expect_safe(input(2), {"--output", "INPUT " + input(2)},
-              {"wedge", in + "/f.%04d.exr", "--camera", camera, "-o", input(2)});
-}
-
 TEST_F(LostFiles, are_no_files_that_inputs_name) {
   FrameFile file = wall_frame();
   for (const char* channel : {"00.r", "00.g", "00.b", "00.a"})

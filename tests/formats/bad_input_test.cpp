@@ -92,8 +92,6 @@ TEST_F(BadInput, of_every_kind_ends_with_its_code) {
            {3, good(file("text.exr", "v 0 0 0\nno image\n")), {"text.exr"}},
            {3, good(file("empty.exr", "")), {"empty.exr"}},
            {3, good("/dev/null"), {"/dev/null"}},
-           {3, good(file("cut8.exr", whole.substr(0, 8))), {"cut8.exr"}},
-           {3, good(file("cut400.exr", whole.substr(0, 400))), {"cut400.exr"}},
            {3, good(file("cut.exr", whole.substr(0, whole.size() - 1))), {"cut.exr"}},
            {5, good(file("wide.exr", claim)), {"wide.exr", "more than Alcove takes"}},
            {3, good(deph), {"deph.exr", "--depth-channel", there, "did you mean ViewLayer.Deph.Z"}},
@@ -150,24 +148,7 @@ TEST_F(BadInput, a_pipe_is_refused_and_not_waited_for) {
   expect_refused(3, {"pipe.exr"}, good(pipe), {.environment = {}, .seconds = 60});
 }
 
-// Outputs.
-
-TEST_F(BadInput, an_output_that_is_an_input) {
-  const std::string before = read_bytes(frame), camera_before = read_bytes(camera);
-  fs::create_symlink(frame, folder / "link.exr");
-  fs::create_hard_link(frame, folder / "hard.exr");
-  for (const std::string& path : {frame, folder / "./out/../wall.0042.exr", folder / "link.exr", folder / "hard.exr"})
-    expect_refused(2, {path, "overwrite", "--output"}, to(path));
-  expect_refused(2, {"camera.json", "overwrite", "--stats"}, good(frame, {"--stats", camera}));
-  expect_refused(2, {"wall.0042.exr", "overwrite", "--composite"}, good(frame, {"--composite", frame}));
-  EXPECT_TRUE(read_bytes(frame) == before);
-  EXPECT_EQ(read_bytes(camera), camera_before);
-}
-
-TEST_F(BadInput, two_outputs_that_are_one_file) {
-  expect_refused(2, {"ao.exr", "--output", "--composite"}, good(frame, {"--composite", out + "/../out/ao.exr"}));
-  expect_refused(2, {"preview.png", "--preview", "--stats"}, good(frame, {"--preview", preview, "--stats", preview}));
-}
+// Outputs. Those that are inputs, or one file twice: overwriting_test.
 
 TEST_F(BadInput, an_output_where_no_file_can_be) {
   fs::create_directory(out + "/folder.exr");

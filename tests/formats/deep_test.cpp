@@ -367,18 +367,6 @@ TEST_F(DeepFile, flat_parts_beside_deep_ones_are_read_as_ever) {
   EXPECT_EQ(read({0})[0], 2);
 }
 
-TEST_F(DeepFile, is_refused_where_a_flat_one_is_meant) {
-  write_deep(path, {some_part()});
-  expect_error(ErrorKind::input, {"deep data only"}, [&] { read_exr_image(path); });
-}
-
-TEST_F(DeepFile, a_part_without_depth_is_refused) {
-  DeepFilePart without = some_part();
-  without.channels = {"A", "B", "layer.Z", "layer.ZBack"};
-  write_deep(path, {without});
-  expect_error(ErrorKind::input, {"no Z"}, [&] { read(); });
-}
-
 TEST_F(DeepFile, every_truncation_is_refused_or_changes_nothing) {
   for (const bool is_tiled : {false, true}) {
     DeepFilePart part = some_part();

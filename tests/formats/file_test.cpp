@@ -53,38 +53,11 @@ TEST_F(Files, a_failed_write_leaves_everything_as_it_was) {
   EXPECT_THAT(names_in(folder.path()), ElementsAre("folder", "folder/inside"));
 }
 
-TEST_F(Files, require_writable_tells_what_stands_in_the_way) {
-  EXPECT_NO_THROW(require_writable(path, "--output"));
-  EXPECT_THAT(names_in(folder.path()), IsEmpty()) << "it only looks";
-  write_bytes(path, "kept");
-  EXPECT_NO_THROW(require_writable(path, "--output"));
-  EXPECT_EQ(read_bytes(path), "kept");
-  expect_error(ErrorKind::output, {"missing/a.exr", "--output"},
-               [&] { require_writable(folder / "missing/a.exr", "--output"); });
-  expect_error(ErrorKind::output, {"a.exr/b.exr", "--output"}, [&] { require_writable(path + "/b.exr", "--output"); });
-  expect_error(ErrorKind::output, {folder.path(), "--output"}, [&] { require_writable(folder.path(), "--output"); });
-  expect_error(ErrorKind::output, {"/dev/full", "--output"}, [&] { require_writable("/dev/full", "--output"); });
-  expect_error(ErrorKind::output, {"--output"}, [&] { require_writable(folder.path() + "/", "--output"); });
-}
-
-TEST_F(Files, read_text_tells_what_is_no_file) {
-  expect_error(ErrorKind::input, {"missing", "camera", "--camera"},
-               [&] { read_text(folder / "missing", "camera", "--camera"); });
-  expect_error(ErrorKind::input, {folder.path(), "camera", "--camera"},
-               [&] { read_text(folder.path(), "camera", "--camera"); });
-  expect_error(ErrorKind::input, {"camera", "--camera"}, [&] { read_text("", "camera", "--camera"); });
-}
-
 TEST_F(Files, a_pointer_in_place_of_a_file_is_no_file) {
   write_bytes(path, "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n");
   expect_error(ErrorKind::input, {path, "--test", "git lfs pull"}, [&] { read_text(path, "test", "--test"); });
   write_bytes(path, "../.git/annex/objects/4d/7a/SHA256E-s12345--4d7a.exr");
   expect_error(ErrorKind::input, {path, "--test", "git annex get"}, [&] { read_text(path, "test", "--test"); });
-}
-
-TEST_F(Files, read_text_tells_that_the_disk_fails) {  // as page 0 of a process does
-  expect_error(ErrorKind::input, {"/proc/self/mem", "camera", "--camera"},
-               [] { read_text("/proc/self/mem", "camera", "--camera"); });
 }
 
 /// Who may not read everything; root again at the end.
@@ -276,16 +249,6 @@ TEST_F(Files, our_attributes_replace_those_of_another_type) {
   file.input_attributes = ExrFile(path, "INPUT").attributes(0);
   EXPECT_NO_THROW(file.write(path));
   EXPECT_EQ(text_in(read_header(path), "alcove/version"), "1");
-}
-
-TEST_F(Files, what_is_no_exr_is_an_input_error) {
-  expect_error(ErrorKind::input, {"a.exr", "--depth"}, [&] { ExrFile(path, "--depth"); });
-  expect_error(ErrorKind::input, {folder.path(), "--depth"}, [&] { ExrFile(folder.path(), "--depth"); });
-  for (const std::string& bytes : {std::string(), std::string("v/1\x01"), std::string("P6 1 1 255\n"),
-                                   std::string("\x76\x2f\x31\x01\x02\0\0\0", 8), std::string(4096, '\0')}) {
-    write_bytes(path, bytes);
-    expect_error(ErrorKind::input, {"a.exr"}, [&] { ExrFile(path, "--depth"); });
-  }
 }
 
 /// A small EXR as bytes, and its pixels.

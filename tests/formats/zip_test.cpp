@@ -33,20 +33,6 @@ bool has_same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 
 // The loops.
 
-TEST(SampleLoops, make_bytes_of_differences) {
-  Bytes bytes{130, 129, 127, 128, 0};
-  EXPECT_EQ(sum_of(bytes.data(), bytes.size(), 128), 2);
-  EXPECT_EQ(sum_up(bytes.data(), bytes.size(), 128), 2);
-  EXPECT_EQ(bytes, (Bytes{130, 131, 130, 130, 2}));
-}
-
-TEST(SampleLoops, put_bytes_at_even_and_odd_places) {
-  const Bytes even{1, 3, 5}, odd{2, 4, 6};
-  Bytes to(6);
-  interleave(even.data(), odd.data(), 3, to.data());
-  EXPECT_EQ(to, (Bytes{1, 2, 3, 4, 5, 6}));
-}
-
 TEST(SampleLoops, undo_each_other_at_any_length_and_place) {
   for (std::size_t place = 0; place < 17; place++)
     for (std::size_t count = 0; count < 100; count++) {

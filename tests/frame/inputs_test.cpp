@@ -5,7 +5,6 @@
 #include "core/frame/pixels/normal_scores.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/settle/settle.h"
-#include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
@@ -113,9 +112,7 @@ TEST(Depth, by_distance_by_inverse_or_between_planes_is_the_same_scene) {
 }
 
 TEST(Depth, of_an_orthographic_z_buffer_is_linear) {
-  const Scene scene{
-      {parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
-  const Rendering rendering = render(scene, Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120));
+  const Rendering rendering = render(kBallRoom, room_shot(160, 120, true, 0, 5));
   for (const bool reversed : {false, true}) {
     HostFrame frame = with_depth(
         rendering, DepthKind::device,
@@ -222,17 +219,12 @@ HostFrame with_normals(const Rendering& rendering, int planes, NormalEncoding en
   frame.normal_encoding = encoding;
   frame.normal_unorm = unorm;
   for (std::size_t i = 0; i < pixels; i++) {
-    const Vec3 n = encode({frame.normal[i], frame.normal[i + pixels], frame.normal[i + 2 * pixels]});
+    const Vec3 n = encode(normal_at(frame, i));
     for (const auto& [plane, value] : {std::pair{0, n.x}, {1, n.y}, {2, n.z}})
       frame.normal[i + std::size_t(plane) * pixels] = float(unorm ? 0.5 + 0.5 * value : value);
   }
   frame.normal.resize(std::size_t(planes) * pixels);
   return frame;
-}
-
-Vec3 octahedral(Vec3 n) {
-  const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z), x = n.x / sum, y = n.y / sum;
-  return n.z >= 0 ? Vec3{x, y, 0} : Vec3{std::copysign(1 - std::abs(y), x), std::copysign(1 - std::abs(x), y), 0};
 }
 
 /// Of a camera space whose z points away from the camera.
@@ -282,45 +274,6 @@ TEST(Normals, flips_undo_flips) {
     EXPECT_GT(difference(ao_of(frame, 1), ao_of(rendering.frame, 1)).max, 0.1) << to_string(flips);
     frame.flip_normal = flips;
     EXPECT_TRUE(same_bits(ao_of(frame, 1), ao_of(rendering.frame, 1))) << to_string(flips);
-  }
-}
-
-// The command line.
-
-TEST_F(CommandLine, the_digest_changes_with_every_setting_of_the_input) {
-  const auto digest = [](const auto& change) {
-    Settings settings;
-    settings.estimator.radius = 1;
-    change(settings.input);
-    return options_digest(settings);
-  };
-  const std::string plain = digest([](InputSettings&) {});
-  const std::pair<const char*, std::string> changed[] = {
-      {"--near", digest([](InputSettings& s) { s.depth_range.near = 1; })},
-      {"--far", digest([](InputSettings& s) { s.depth_range.far = 1; })},
-      {"--reversed-z", digest([](InputSettings& s) { s.depth_range.reversed = true; })},
-      {"device-range", digest([](InputSettings& s) { s.depth_range.device = DeviceRange::minus_one_to_one; })},
-      {"log-constant", digest([](InputSettings& s) { s.depth_range.log_constant = 2; })},
-      {"disparity-scale", digest([](InputSettings& s) { s.depth_range.disparity_scale = 2; })},
-      {"disparity-shift", digest([](InputSettings& s) { s.depth_range.disparity_shift = 0; })},
-      {"--normal-encoding", digest([](InputSettings& s) { s.normal_encoding = NormalEncoding::unorm; })},
-      {"--flip-normal", digest([](InputSettings& s) { s.flip_normal.y = true; })},
-      {"position-space", digest([](InputSettings& s) { s.position_space = PositionSpace::world; })},
-      {"position-channels", digest([](InputSettings& s) { s.position_channels = "P"; })},
-      {"--view", digest([](InputSettings& s) { s.view = "left"; })},
-      {"--roi", digest([](InputSettings& s) {
-         s.roi = Region{0, 0, 1, 1};
-       })},
-  };
-  for (const auto& [option, other] : changed) EXPECT_NE(plain, other) << option;
-}
-
-TEST_F(CommandLine, flips_and_far_are_checked) {
-  for (const std::vector<std::string>& wrong :
-       {std::vector<std::string>{"--flip-normal", "xx"}, {"--flip-normal", "w"}, {"--far", "-1"}, {"--far", "away"}}) {
-    const Finished finished = run(wrong);
-    EXPECT_EQ(finished.code, 2) << finished;
-    EXPECT_THAT(finished.err, HasSubstr(wrong[0]));
   }
 }
 

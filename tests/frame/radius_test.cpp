@@ -31,12 +31,6 @@ TEST(Radius, is_a_tenth_of_the_distance_by_one_figure_but_no_more_than_a_quarter
     EXPECT_EQ(radius_of(frame_at(distance, 10, true)), 1) << "of a parallel view";
 }
 
-TEST(Radius, needs_a_surface) {
-  FrameSource source = frame_at(1, 100);
-  source.evidence->median_depth = std::nullopt;
-  EXPECT_EQ(radius_of(source), std::nullopt);
-}
-
 TEST(Radius, of_a_settled_frame_follows_its_surfaces_alone) {
   const TemporaryFolder folder;
   InputSettings settings;

@@ -38,10 +38,6 @@ const std::vector<Written>& all_depths() {
 }
 
 Vec3 as_it_is(Vec3 n) { return n; }
-Vec3 octahedral(Vec3 n) {
-  const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z), x = n.x / sum, y = n.y / sum;
-  return n.z >= 0 ? Vec3{x, y, 0} : Vec3{std::copysign(1 - std::abs(y), x), std::copysign(1 - std::abs(x), y), 0};
-}
 Vec3 spheremap(Vec3 n) {
   const double across = std::hypot(n.x, n.y), radius = std::sqrt(0.5 + 0.5 * n.z);
   return across > 0 ? Vec3{n.x / across * radius, n.y / across * radius, 0} : Vec3{};
@@ -118,8 +114,7 @@ TEST_F(Readings, of_inverse_depth_beyond_1_need_no_option) {
 }
 
 TEST_F(Readings, of_orthographic_depth_need_no_option_and_doubt_nothing_that_is_right) {
-  static const Rendering parallel =
-      render(test::scene(), Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120));
+  static const Rendering parallel = render(test::scene(), room_shot(160, 120, true, 0, 5));
   write(kPlanar, as_it_is, false, parallel);
   EXPECT_EQ(settled().reading.depth_kind, DepthKind::planar);
   EXPECT_THAT(said(), IsEmpty());
@@ -139,7 +134,7 @@ TEST_F(Readings, of_orthographic_depth_need_no_option_and_doubt_nothing_that_is_
 }
 
 TEST_F(Readings, of_orthographic_depth_by_another_camera_are_told_what_helps) {
-  const Shot shot = Shot::orthographic({4.5, -1.5, 2.4}, {1, 0, 0.6}, 5, 160, 120);
+  const Shot shot = room_shot(160, 120, true, 0, 5);
   write(kPlanar, as_it_is, false, render(test::scene(), shot));
   settings.camera.clear();
   settings.fov = 50;

@@ -127,7 +127,6 @@ TEST(Resections, tell_positions_in_the_cameras_space) {
     for (const bool looks_along_z : {false, true}) {
       const Resection result = found(points);
       EXPECT_FALSE(result.camera.view_from_world);
-      EXPECT_FALSE(result.camera.view_from_world);
       EXPECT_EQ(result.camera.left_handed, looks_along_z);
       EXPECT_NEAR(result.camera.fx, camera.fx, 1e-6);
       if (orthographic) break;  // nothing tells on which side of it the points are

@@ -24,28 +24,10 @@ std::string error_of(Work work) {
   return "";
 }
 
-TEST(Reflection, reads_parameter_sizes_that_the_host_sends) {
-  EXPECT_EQ(gpu::reflect(gpu::kernel_code("prepare")).parameter_bytes, sizeof(PrepareParams));
-  EXPECT_EQ(gpu::reflect(gpu::kernel_code("horizon")).parameter_bytes, sizeof(HorizonParams));
-  EXPECT_EQ(gpu::reflect(gpu::kernel_code("shape")).parameter_bytes, sizeof(ShapeParams));
-  EXPECT_EQ(gpu::reflect(gpu::kernel_code("composite")).parameter_bytes, sizeof(CompositeParams));
-}
-
 std::vector<std::string> block_names(std::span<const std::uint32_t> code) {
   std::vector<std::string> names;
   for (const auto& block : gpu::reflect(code).blocks) names.push_back(block.name);
   return names;
-}
-
-TEST(Reflection, reads_blocks_groups_and_constants) {
-  const auto horizon = gpu::reflect(gpu::kernel_code("horizon"));
-  EXPECT_THAT(block_names(gpu::kernel_code("horizon")),
-              UnorderedElementsAre("Depth", "Normal", "Ao", "Moments", "List", "Counts", "Completed", "Sites",
-                                   "SiteCountsBuffer", "Occluders", "Backs"));
-  EXPECT_THAT(block_names(gpu::kernel_code("horizon_layers")), Contains("Hidden"));
-  EXPECT_THAT(horizon.group, ElementsAre(kGroupX, kGroupY, 1u));
-  EXPECT_THAT(horizon.constants,
-              ElementsAre(testing::Key(0), testing::Key(1), testing::Pair(2, 0), testing::Key(3), testing::Key(4)));
 }
 
 TEST(Reflection, of_a_twin_has_the_same_parameters_and_bindings) {

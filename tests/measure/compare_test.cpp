@@ -360,10 +360,8 @@ TEST_F(Compare, mistakes_on_the_command_line_end_with_2) {
   const auto a = exr("a.exr", {{"Y", ramp}});
   using Words = std::vector<std::string>;
   for (const auto& [more, words] :
-       {std::pair<Words, Words>{{a}, {a, "takes one RESULT and one REFERENCE"}},
-        {{"--max-rms", "1"}, {"--max-rms", "did you mean --max-rmse"}},
+       {std::pair<Words, Words>{{"--max-rms", "1"}, {"--max-rms", "did you mean --max-rmse"}},
         {{"--max-rmse", "nan"}, {"--max-rmse", "nan is not a finite number"}},
-        {{"--max-rmse", "-1"}, {"--max-rmse", "0 or more"}},
         {{"--peak", "0"}, {"--peak", "above 0"}},
         {{"--frames", "1-3"}, {"a.exr", "%04d"}},
         {{"--motion", a}, {"--motion"}},
@@ -376,7 +374,6 @@ TEST_F(Compare, mistakes_on_the_command_line_end_with_2) {
     expect_error(2, arguments, words);
   }
   expect_error(2, {}, {"RESULT is missing"});
-  expect_error(2, {a}, {"REFERENCE is missing"});
   expect_error(2, {folder / "a.%04d.exr", a, "--frames", "1-x"}, {"1-x"});
 }
 
@@ -563,12 +560,6 @@ TEST_F(CompareSequence, every_option_and_every_field_is_told) {
 
 // The page.
 
-/// The data of a page.
-json shown_in(const std::string& html) {
-  const std::size_t begin = html.find('{', html.find("type=\"application/json\">"));
-  return json::parse(html.substr(begin, html.find("</script>", begin) - begin));
-}
-
 TEST_F(CompareSequence, the_page_and_json_have_the_verdict_and_each_limit_with_its_value) {
   const std::string page = folder / "page.html";
   const Options limits{"--max-rmse", "0.2", "--max-bias", "0.5"};
@@ -577,21 +568,21 @@ TEST_F(CompareSequence, the_page_and_json_have_the_verdict_and_each_limit_with_i
     return words;
   };
   EXPECT_EQ(compare(with_limits({result, reference, "--report", page})).code, 6);
-  const json verdict = shown_in(read_bytes(page))["verdict"];
+  const json verdict = report_in(page)["verdict"];
   EXPECT_EQ(verdict["pass"], false);
   EXPECT_EQ(verdict["limits"][0],
             (json{{"option", "--max-rmse"}, {"limit", 0.2}, {"value", 0.25}, {"frame", "3"}, {"holds", false}}));
   EXPECT_EQ(verdict["limits"][1]["holds"], true);
   EXPECT_EQ(measured(with_limits({result, reference}), 6)["limits"], verdict["limits"]);
   ASSERT_EQ(compare({result, reference, "--report", page}).code, 0);
-  EXPECT_TRUE(shown_in(read_bytes(page))["verdict"].is_null()) << "without limits there is none";
+  EXPECT_TRUE(report_in(page)["verdict"].is_null()) << "without limits there is none";
 }
 
 TEST_F(Compare, the_scale_of_the_error_fits_a_small_error_and_a_single_pixel_hides_no_other) {
   const auto scale = [&](Plane plane) {
     const std::string page = folder / "page.html";
     EXPECT_EQ(compare({exr("a.exr", {{"Y", plane}}), exr("b.exr", {{"Y", constant(0.5f)}}), "--report", page}).code, 0);
-    return shown_in(read_bytes(page))["images"][0]["full"].get<double>();
+    return report_in(page)["images"][0]["full"].get<double>();
   };
   EXPECT_NEAR(scale(with_left(constant(0.5f), 0.503f)), 0.005, 1e-9);
   EXPECT_NEAR(scale(constant(0.75f)), 0.25, 1e-9);
@@ -635,7 +626,7 @@ TEST_F(CompareSequence, a_frame_that_cannot_be_compared_ends_with_3_and_the_othe
     EXPECT_THAT(finished.err, AllOf(HasSubstr(error), HasSubstr("frame 3: rmse is 0.25")));
     EXPECT_THAT(read_bytes(xml), AllOf(HasSubstr("tests=\"4\" failures=\"1\" errors=\"1\""),
                                        HasSubstr("name=\"2\">\n    <error message="), HasSubstr(error)));
-    const json verdict = shown_in(read_bytes(page))["verdict"];
+    const json verdict = report_in(page)["verdict"];
     EXPECT_EQ(verdict["pass"], false);
     EXPECT_EQ(verdict["failed"][0]["frame"], "2");
     const json told = json::parse(compare(joined(words, {"--json"})).out);
@@ -659,7 +650,7 @@ TEST_F(Compare, a_frame_of_a_list_without_its_reference_is_an_error_of_its_own) 
   EXPECT_EQ(compare(words).code, 3);
   EXPECT_THAT(read_bytes(folder / "j.xml"),
               AllOf(HasSubstr("name=\"yard\"></testcase>"), HasSubstr("<error message=")));
-  EXPECT_EQ(shown_in(read_bytes(page))["title"], "2 frames against list.toml") << "and no place for names";
+  EXPECT_EQ(report_in(page)["title"], "2 frames against list.toml") << "and no place for names";
 }
 
 TEST_F(Compare, a_frame_of_a_list_that_names_no_reference_fails_alone_and_is_in_the_table) {
@@ -722,7 +713,7 @@ TEST_F(Compare, frames_of_a_list_have_names_and_limits_of_their_own_and_no_flick
               "[[frame]]\nname = 'hall'\ninput = 'x'\nreference = 'grey.exr'\nmax-rmse = 0.2\n"
               "[[frame]]\nname = 'yard'\ninput = 'x'\ntruth = ['grey.exr', 'grey.exr']\n");
   EXPECT_EQ(compare({results, list, "--max-rmse", "0.11", "--report", page}).code, 0) << "the frame's own limit wins";
-  const json shown = shown_in(read_bytes(page));
+  const json shown = report_in(page);
   EXPECT_EQ(shown["sequence"]["worst_frame"], "hall");
   EXPECT_FALSE(shown["sequence"].contains("flicker"));
   EXPECT_EQ(shown["images"][1]["frame"], "yard");
@@ -731,7 +722,6 @@ TEST_F(Compare, frames_of_a_list_have_names_and_limits_of_their_own_and_no_flick
   EXPECT_NEAR(told["frames"][1]["rmse"], 0.1, 1e-6) << "of the truth where there is no reference";
   expect_error(6, {results, list, "--max-rmse", "0.09"}, {"frame yard: rmse is 0.1"});
   expect_error(2, {folder / "hall.exr", list}, {"{name}"});
-  expect_error(2, {results, list, "--report", list}, {"REFERENCE"});
   expect_error(2, {results, list, "--frames", "1-2"}, {"--frames 1-2", "unlike frames"});
   const std::string hall = "[[frame]]\nname = 'hall'\ninput = 'x'\nreference = 'grey.exr'\n";
   const std::string yard = "[[frame]]\nname = 'yard'\ninput = 'x'\nreference = 'grey.exr'\nmax-rmse = 1\n";
@@ -753,7 +743,7 @@ TEST_F(CompareSequence, the_report_is_one_page_with_pictures) {
   const std::string html = read_bytes(page);
   EXPECT_THAT(html, AllOf(HasSubstr("<html"), HasSubstr("\"kind\": \"compare\""), HasSubstr("data:image/png;base64,")));
   EXPECT_THAT(html, HasSubstr("ao.%04d.exr against truth.####.exr"));
-  const json shown = shown_in(html), told = measured({result, reference});
+  const json shown = report_in(page), told = measured({result, reference});
   EXPECT_EQ(shown["sequence"]["flicker"], told["flicker"]);
   EXPECT_EQ(shown["sequence"]["worst_frame"], std::to_string(told["worst"]["frame"].get<int>()));
   for (const char* list : {"candidates", "rows"})

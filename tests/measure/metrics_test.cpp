@@ -15,18 +15,6 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::nume
 using Plane = std::vector<float>;
 using Bytes = std::vector<std::uint8_t>;
 
-template <class Function>
-std::string input_error_of(Function&& function) {
-  try {
-    function();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::input);
-    return error.what();
-  }
-  ADD_FAILURE() << "no error";
-  return "";
-}
-
 // Sums.
 
 TEST(PlaneErrors, four_values_by_hand) {
@@ -76,12 +64,17 @@ TEST(PlaneErrors, one_mask_holds_for_each_of_several_planes) {
 }
 
 TEST(PlaneErrors, nothing_to_compare_is_an_error) {
-  EXPECT_THAT(input_error_of([] { compare_planes(Plane{kNan, kNan}, Plane{0, 0}); }), HasSubstr("2 are NaN"));
-  EXPECT_THAT(input_error_of([] {
-                compare_planes(Plane{1, 1}, Plane{0, 0}, Bytes{0, 0});
-              }),
+  EXPECT_THAT(error_of(ErrorKind::input,
+                       [] {
+                         compare_planes(Plane{kNan, kNan}, Plane{0, 0});
+                       }),
+              HasSubstr("2 are NaN"));
+  EXPECT_THAT(error_of(ErrorKind::input,
+                       [] {
+                         compare_planes(Plane{1, 1}, Plane{0, 0}, Bytes{0, 0});
+                       }),
               HasSubstr("no value to compare"));
-  EXPECT_THAT(input_error_of([] { compare_planes(Plane{}, Plane{}); }), HasSubstr("no value to compare"));
+  EXPECT_THAT(error_of(ErrorKind::input, [] { compare_planes(Plane{}, Plane{}); }), HasSubstr("no value to compare"));
 }
 
 TEST(UnbiasedRmse, independent_noise_of_two_references_cancels) {
@@ -126,9 +119,10 @@ TEST(MakeComparable, a_nan_in_one_plane_leaves_the_pixel_out_of_all) {
 }
 
 TEST(MakeComparable, no_pixel_left_is_an_error_that_says_why) {
-  EXPECT_THAT(input_error_of([] {
-                make_comparable("a against b", 2, Plane{kNan, 1}, Plane{0, 0}, {}, Bytes{1, 0});
-              }),
+  EXPECT_THAT(error_of(ErrorKind::input,
+                       [] {
+                         make_comparable("a against b", 2, Plane{kNan, 1}, Plane{0, 0}, {}, Bytes{1, 0});
+                       }),
               AllOf(HasSubstr("a against b"), HasSubstr("1 are left out by the mask and 1 are NaN")));
 }
 

@@ -1,7 +1,7 @@
 // The report page as text: nothing in the data can end its block, nothing in the page would be fetched.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/measure/report.h"
-#include "tests/support/test.h"
+#include "tests/support/program.h"
 
 #include <regex>
 
@@ -9,14 +9,6 @@ using namespace alcove::test;
 using alcove::report_page;
 
 namespace {
-
-/// The JSON block of a page, as the browser sees it: up to the first closing tag.
-std::string json_block(const std::string& page) {
-  const std::string open = "<script id=\"report\" type=\"application/json\">";
-  const std::size_t begin = page.find(open);
-  EXPECT_NE(begin, std::string::npos);
-  return page.substr(begin + open.size(), page.find("</script>", begin) - begin - open.size());
-}
 
 nlohmann::json small_report(const std::string& name) {
   return {{"title", name},
@@ -43,12 +35,12 @@ TEST(Report, hostile_strings_come_back_from_the_block_as_they_went_in) {
   for (const char* name : {"<script>alert(1)</script>", "</SCRIPT >", "<!-- <script>", "\"\\u003c", "a\nb\tc", "]]>",
                            "{{page.js}}", "{{report.json}}", "\u00e9\u2028"}) {
     const nlohmann::json report = small_report(name);
-    EXPECT_EQ(nlohmann::json::parse(json_block(report_page(report.dump()))), report) << name;
+    EXPECT_EQ(nlohmann::json::parse(data_of_page(report_page(report.dump()))), report) << name;
   }
 }
 
 TEST(Report, the_block_holds_no_less_than_sign) {
-  EXPECT_THAT(json_block(report_page(small_report("<a><!--</script>").dump())), Not(HasSubstr("<")));
+  EXPECT_THAT(data_of_page(report_page(small_report("<a><!--</script>").dump())), Not(HasSubstr("<")));
 }
 
 TEST(Report, all_marks_are_filled) { EXPECT_THAT(found("(\\{\\{[a-z_]+\\.[a-z.]+\\}\\})"), IsEmpty()); }

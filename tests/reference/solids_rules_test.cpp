@@ -158,13 +158,8 @@ TEST(Thickness, of_what_is_flat_and_cut_by_the_border_is_a_radius) {
 
 // Against rays.
 
-struct Means {
-  double truth = 0, ao = 0, error = 0;
-};
-
 /// Of the chosen pixels, for a radius of 1, by the reference and by rays.
 Means means_of(const Scene& scene, const Shot& shot, const Chosen& chosen, int every = 3) {
-  const Rendering rendering = render(scene, shot);
   ReferenceSettings settings;
   settings.radius = 1;
   settings.slices = 32;
@@ -172,33 +167,12 @@ Means means_of(const Scene& scene, const Shot& shot, const Chosen& chosen, int e
   settings.width_share = 0.5;
   settings.width_pixels = 1;
   settings.complete = Completion::all;
-  for (int y = 1; y < shot.data.height - 1; y += every)
-    for (int x = 1; x < shot.data.width - 1; x += every) {
-      const Hit& hit = rendering.at(x, y);
-      if (hit.primitive >= 0 && rendering.primitives_within(1, x, y) == 1 && chosen(hit))
-        settings.pixels.push_back(std::size_t(y) * std::size_t(shot.data.width) + std::size_t(x));
-    }
-  EXPECT_GE(settings.pixels.size(), 30u);
-  const std::vector<float> ao = reference_ao(rendering.frame, settings);
-  Means means;
-  const double share = 1 / double(settings.pixels.size());
-  for (const std::size_t i : settings.pixels) {
-    const double truth = true_ao(scene, rendering.hits[i], 1, 40);
-    means.truth += share * truth;
-    means.ao += share * ao[i];
-    means.error += share * std::abs(ao[i] - truth);
-  }
-  return means;
+  return test::means_of(scene, shot, chosen, every,
+                        [&](const HostFrame& frame, const std::vector<std::size_t>& pixels) {
+                          settings.pixels = pixels;
+                          return reference_ao(frame, settings);
+                        });
 }
-
-/// A box above the floor, so deep and high, whose front is at x = 0.
-Scene box_above_floor(double depth, double above, double height) {
-  Scene scene{{kFloor}};
-  scene.add(parallelepiped({-depth, -1.5, above}, {depth, 0, 0}, {0, 3, 0}, {0, 0, height}));
-  return scene;
-}
-
-bool is_below_box(const Hit& hit) { return hit.primitive == 0 && hit.position.x < 0 && std::abs(hit.position.y) < 1; }
 
 TEST(Solids, a_box_above_the_floor_shades_what_is_below_it) {
   const Vec3 eye{6, 0, 2.2}, target{0, 0, 0.3};
@@ -232,26 +206,12 @@ TEST(Solids, a_ball_above_a_floor_goes_back_as_it_comes_forward) {
     }
 }
 
-/// A round hole of half a radius.
-Scene hole(double depth) {
-  constexpr int kSides = 16;
-  Scene scene{
-      {Plane{.point = {}, .normal = {0, 0, 1}, .hole = 0.5}, Plane{.point = {0, 0, -depth}, .normal = {0, 0, 1}}}};
-  const auto corner = [&](int i) {
-    const double azimuth = 2 * kPi * (i + 0.5) / kSides, r = 0.5 / std::cos(kPi / kSides);
-    return Vec3{r * std::cos(azimuth), r * std::sin(azimuth), -depth};
-  };
-  for (int i = 0; i < kSides; i++)
-    scene.primitives.emplace_back(parallelogram(corner(i), corner(i + 1) - corner(i), {0, 0, depth}));
-  return scene;
-}
-
 // Of its bottom one sees walls at a grazing angle, which are planes.
 TEST(Solids, a_hole_three_radii_deep_is_dark) {
-  const Means walls = means_of(hole(3), Shot::perspective({2, 0, 6}, {0, 0, -0.5}, 26, 160, 160),
+  const Means walls = means_of(round_hole(0.5, 3, 16), Shot::perspective({2, 0, 6}, {0, 0, -0.5}, 26, 160, 160),
                                [](const Hit& hit) { return hit.primitive > 1 && hit.position.z < -0.3; });
   EXPECT_LE(walls.error, 0.19);
-  const Means bottom = means_of(hole(3), Shot::perspective({0.6, 0, 6}, {0, 0, -0.5}, 26, 160, 160),
+  const Means bottom = means_of(round_hole(0.5, 3, 16), Shot::perspective({0.6, 0, 6}, {0, 0, -0.5}, 26, 160, 160),
                                 [](const Hit& hit) { return hit.primitive == 1; });
   EXPECT_LE(bottom.error, 0.23);
 }

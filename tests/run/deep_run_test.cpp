@@ -32,11 +32,11 @@ class DeepRun : public CommandLine {
   }
 
   /// Every surface as an opaque sample, in no order; each times its pixel's factor.
-  DeepFilePart samples(const std::vector<float>& factors = {}) const {
+  DeepFilePart samples(const std::function<double(std::size_t)>& factor = nullptr) const {
     DeepFilePart part;
     part.data = kWallWindow;
     for (std::size_t i = 0; i < first.size(); i++) {
-      const float by = factors.empty() ? 1 : factors[i];
+      const float by = factor ? float(factor(i)) : 1;
       part.pixels.push_back({{1, second[i] * by}, {1, first[i] * by}, {0.25F, 2 * by}});
       if (third[i] > 0) part.pixels.back().insert(part.pixels.back().begin(), {1, third[i] * by});
     }
@@ -57,15 +57,6 @@ class DeepRun : public CommandLine {
       if (i % 16 < columns) part.pixels[i].push_back({1, 50});
     }
     return part;
-  }
-
-  /// The length of each pixel's ray, of unit depth.
-  static std::vector<float> rays() {
-    std::vector<float> lengths;
-    for (int y = 0; y < kWallWindow.height; y++)
-      for (int x = 0; x < kWallWindow.width; x++)
-        lengths.push_back(float(std::sqrt(1 + std::pow((x + 0.5 - 32) / 60, 2) + std::pow((y + 0.5 - 18) / 60, 2))));
-    return lengths;
   }
 
   std::vector<float> result(const std::string& more) const { return computed(typed(more)).pixels; }
@@ -103,7 +94,7 @@ TEST_F(DeepRun, peels_as_samples_give_the_bits_of_behind) {
 
 TEST_F(DeepRun, samples_along_the_ray_are_told_by_the_flat_depth) {
   const auto planar = result("--aov hidden --deep " + deep);
-  write_deep(deep, {samples(rays())});
+  write_deep(deep, {samples(ray_length)});
   const auto along = result("--aov hidden --deep " + deep);
   ASSERT_EQ(along.size(), planar.size());
   for (std::size_t i = 0; i < along.size(); i++)
@@ -206,7 +197,7 @@ TEST_F(DeepRun, impossible_opacities_are_noted) {
 }
 
 TEST_F(DeepRun, mistakes_are_refused_in_one_line) {
-  write_deep(folder / "other.exr", {samples(std::vector<float>(first.size(), 3.7F))});
+  write_deep(folder / "other.exr", {samples([](std::size_t) { return 3.7; })});
   DeepFilePart without = samples();
   without.channels = {"A", "depth.Z"};
   write_deep(folder / "without.exr", {without});
@@ -257,7 +248,7 @@ TEST_F(DeepRun, inspect_says_what_samples_hold) {
   EXPECT_EQ(alone[0]["depth"], "the depth of the frame");
   EXPECT_EQ(alone[0]["state"], "messy");
   EXPECT_EQ(inspected({frame, "--deep", deep})["deep"][0]["depth"], "planar");
-  write_deep(deep, {samples(rays())});
+  write_deep(deep, {samples(ray_length)});
   EXPECT_EQ(inspected({frame, "--deep", deep})["deep"][0]["depth"], "along the ray");
 
   write_deep(deep, {samples_of_first()});

@@ -154,8 +154,7 @@ TEST_F(HiddenRun, what_is_not_of_the_same_pixels_or_depth_is_refused_with_both_f
   std::vector<float> metres = first, ray = first, other = first;
   for (std::size_t i = 0; i < first.size(); i++) {
     metres[i] = 0.01f * first[i] * (1 + 0.001f * float(i % 7));
-    const double x = (double(i % 64) + 0.5 - 32) / 60, y = (double(i / 64) + 0.5 - 18) / 60;
-    ray[i] = float(first[i] * std::sqrt(1 + x * x + y * y));
+    ray[i] = float(first[i] * ray_length(i));
     other[i] = i % 5 < 3 ? 0.8f * first[i] : 7;
   }
   write_layer("metres.exr", metres);

@@ -41,6 +41,12 @@ std::string name_of(const EstimatorSettings& s) {
       s.denoise_radius, s.stride, int(s.density), int(s.resolution));
 }
 
+Prepared prepared(const HostFrame& frame) {
+  Prepared result{upload(recorder(), frame), {}};
+  result.gbuffer = reconstruct(recorder(), prepare(recorder(), result.inputs));
+  return result;
+}
+
 std::vector<float> values_of(const gpu::Buffer* buffer) {
   if (!buffer) return {};
   const auto values = buffer->as<const float>();
@@ -159,58 +165,28 @@ std::vector<SlantedPlane> slanted_planes(const std::vector<double>& tilts, const
   return all;
 }
 
-// Prepares a frame, puts a visibility beside it, and records one pass.
-
 namespace {
 
 std::size_t index_of(int x, int y, int width) { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
 
-gpu::Buffer& visibility(const std::vector<float>& values) {
-  gpu::Buffer& buffer = recorder().buffer("visibility of a test", values.size() * sizeof(float), gpu::Use::upload);
-  std::ranges::copy(values, buffer.as<float>().begin());
-  recorder().upload(buffer);
-  return buffer;
-}
-
-FrameInputs uploaded(const HostFrame& frame) {
-  const FrameInputs inputs = upload(recorder(), frame);
-  return inputs;
-}
-
-std::vector<float> finished(const gpu::Buffer& result) {
-  recorder().download(result);
-  recorder().run();
-  const auto values = result.as<float>();
-  return {values.begin(), values.end()};
-}
-
 }  // namespace
 
 std::vector<float> denoised(const HostFrame& frame, const std::vector<float>& ao, const EstimatorSettings& settings) {
-  const FrameInputs inputs = uploaded(frame);
-  const GBuffer gbuffer = prepare(recorder(), inputs);
-  reconstruct(recorder(), gbuffer);
-  return finished(denoise(recorder(), gbuffer, visibility(ao), denoiser_of(settings)));
+  const GBuffer gbuffer = prepared(frame).gbuffer;
+  return downloaded<float>(denoise(recorder(), gbuffer, given("visibility of a test", ao), denoiser_of(settings)));
 }
 
 std::vector<float> upsampled(const HostFrame& frame, const std::function<double(int, int)>& ao_of_block,
                              const EstimatorSettings& settings) {
-  const FrameInputs inputs = uploaded(frame);
-  const GBuffer gbuffer = prepare(recorder(), inputs);
-  reconstruct(recorder(), gbuffer);
-  const GBuffer low = downsample(recorder(), gbuffer, block_grid(inputs, int(settings.resolution)));
+  const Prepared whole = prepared(frame);
+  const GBuffer low = downsample(recorder(), whole.gbuffer, block_grid(whole.inputs, int(settings.resolution)));
   std::vector<float> ao;
   for (int y = 0; y < low.view.size.y; y++)
     for (int x = 0; x < low.view.size.x; x++) ao.push_back(float(ao_of_block(x, y)));
-  return finished(upsample(recorder(), gbuffer, low, visibility(ao)));
+  return downloaded<float>(upsample(recorder(), whole.gbuffer, low, given("visibility of a test", ao)));
 }
 
-Rendering furnished_room(int width, int height) {
-  const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5},
-                     parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
-  return render(scene, Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, width, height));
-}
+Rendering furnished_room(int width, int height) { return render(kRoom, room_shot(width, height)); }
 
 std::vector<float> mirrored(const std::vector<float>& plane, const HostFrame& frame, bool left_right) {
   const int width = frame.data.width, height = frame.data.height;
@@ -252,6 +228,71 @@ HostFrame random_bits(int width, int height, unsigned seed) {
     for (float& value : *plane)
       if (random() % 3) value = std::bit_cast<float>(std::uint32_t(random()));
   return frame;
+}
+
+FloorByWalls floor_by_walls(int walls, const Shot& shot, double radius) {
+  Scene scene{{kFloor, kWallX}};
+  if (walls > 1) scene.primitives.emplace_back(kWallY);
+  FloorByWalls floor{walls, radius, render(scene, shot), {}};
+  int seen = 0;
+  for (std::size_t i = 0; i < floor.rendering.hits.size(); i++) {
+    const Hit& hit = floor.rendering.hits[i];
+    const int x = int(i % std::size_t(shot.data.width)), y = int(i / std::size_t(shot.data.width));
+    if (hit.primitive == 0 && floor.rendering.primitives_within(2, x, y) == 1 &&
+        12 * floor.rendering.footprint(x, y) <= radius && shot.sees_ball(hit.position, radius) &&
+        hit.position.x <= 0.9 * radius && ++seen % 13 == 0)
+      floor.pixels.push_back(i);
+  }
+  EXPECT_GE(floor.pixels.size(), 30u);
+  return floor;
+}
+
+Shot rolled(Shot shot, double roll) {
+  const Vec3 right = shot.right, up = shot.up;
+  shot.right = std::cos(roll * kRadian) * right + std::sin(roll * kRadian) * up;
+  shot.up = std::cos(roll * kRadian) * up - std::sin(roll * kRadian) * right;
+  return shot;
+}
+
+Means means_of(const Scene& scene, const Shot& shot, const Chosen& chosen, int every,
+               const std::function<std::vector<float>(const HostFrame&, const std::vector<std::size_t>&)>& ao_at) {
+  const Rendering rendering = render(scene, shot);
+  std::vector<std::size_t> pixels;
+  for (int y = 1; y < shot.data.height - 1; y += every)
+    for (int x = 1; x < shot.data.width - 1; x += every) {
+      const Hit& hit = rendering.at(x, y);
+      if (hit.primitive >= 0 && rendering.primitives_within(1, x, y) == 1 && chosen(hit))
+        pixels.push_back(index_of(x, y, shot.data.width));
+    }
+  EXPECT_GE(pixels.size(), 30u);
+  const std::vector<float> ao = ao_at(rendering.frame, pixels);
+  Means means;
+  const double share = 1 / double(pixels.size());
+  for (const std::size_t i : pixels) {
+    const double truth = true_ao(scene, rendering.hits[i], 1, 40);
+    means.truth += share * truth;
+    means.ao += share * ao[i];
+    means.error += share * std::abs(ao[i] - truth);
+  }
+  return means;
+}
+
+Scene box_above_floor(double depth, double above, double height) {
+  Scene scene{{kFloor}};
+  scene.add(parallelepiped({-depth, -1.5, above}, {depth, 0, 0}, {0, 3, 0}, {0, 0, height}));
+  return scene;
+}
+
+Scene round_hole(double radius, double depth, int sides) {
+  Scene scene{
+      {Plane{.point = {}, .normal = {0, 0, 1}, .hole = radius}, Plane{.point = {0, 0, -depth}, .normal = {0, 0, 1}}}};
+  const auto corner = [&](int i) {
+    const double azimuth = 2 * kPi * (i + 0.5) / sides, r = radius / std::cos(kPi / sides);
+    return Vec3{r * std::cos(azimuth), r * std::sin(azimuth), -depth};
+  };
+  for (int i = 0; i < sides; i++)
+    scene.primitives.emplace_back(parallelogram(corner(i), corner(i + 1) - corner(i), {0, 0, depth}));
+  return scene;
 }
 
 }  // namespace alcove::test

@@ -21,6 +21,13 @@ EstimatorSettings shared_directions(double radius);
 /// What tells settings apart, for messages.
 std::string name_of(const EstimatorSettings& settings);
 
+/// A frame on the device with its G-buffer.
+struct Prepared {
+  FrameInputs inputs;
+  GBuffer gbuffer;
+};
+Prepared prepared(const HostFrame& frame);
+
 /// The values of a buffer that the chain left; none: empty.
 std::vector<float> values_of(const gpu::Buffer* buffer);
 
@@ -132,6 +139,40 @@ inline double true_ao(const Scene& scene, const Hit& receiver, double radius, in
                         [&](const Hit& hit, const Vec3&) { return hit.distance < radius ? 0.0 : 1.0; });
 }
 
+/// A floor beside one wall or two, and some pixels of it: wherever the picture shows all that is within the radius.
+struct FloorByWalls {
+  int walls;
+  double radius;
+  Rendering rendering;
+  std::vector<std::size_t> pixels;
+
+  bool is_open(std::size_t pixel, Vec3 w) const {
+    const Vec3 p = rendering.hits[pixel].position;
+    return w.x > -p.x / radius && (walls < 2 || w.y > -p.y / radius);
+  }
+};
+FloorByWalls floor_by_walls(int walls, const Shot& shot, double radius);
+/// The shot turned about its axis, degrees.
+Shot rolled(Shot shot, double roll);
+
+/// The AO of the chosen pixels for a radius of 1, by rays and by what `ao_at` gives: of the whole frame, and right at
+/// those pixels.
+struct Means {
+  double truth = 0, ao = 0, error = 0;
+};
+using Chosen = std::function<bool(const Hit&)>;
+Means means_of(const Scene& scene, const Shot& shot, const Chosen& chosen, int every,
+               const std::function<std::vector<float>(const HostFrame&, const std::vector<std::size_t>&)>& ao_at);
+
+/// A box above the floor, so deep and high, whose front is at x = 0.
+Scene box_above_floor(double depth, double above, double height);
+inline bool is_below_box(const Hit& hit) {
+  return hit.primitive == 0 && hit.position.x < 0 && std::abs(hit.position.y) < 1;
+}
+
+/// A round hole of that depth below z = 0. Its parts: 0 the ground, 1 the floor, further the walls.
+Scene round_hole(double radius, double depth, int sides);
+
 /// A wall x = 0 that ends behind a column, and what a receiver sees of the part of the wall's plane that the column
 /// hides from the eye: of that without wall, and with it.
 struct EndingWall {
@@ -156,8 +197,6 @@ struct EndingWall {
     return share;
   }
 };
-
-using Chosen = std::function<bool(const Hit&)>;
 
 /// Pixels of a grid, `every` pixels apart, that show a chosen surface, are not beside an edge, and whose sphere of the
 /// radius is in the picture.

@@ -87,12 +87,16 @@ class CommandLine : public Runs {
 
 // The settings of the presets that are installed.
 
-inline EstimatorSettings preset(const std::string& name, double radius) {
+/// What `run` takes these words for.
+inline EstimatorSettings estimator_of(const Options& words) {
   ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1);
   RunOptions options;
-  EXPECT_TRUE(
-      parse_run_options({"in.exr", "-o", "out.exr", "--preset", name, "--radius", std::to_string(radius)}, options));
+  parse_run_options(words, options);
   return options.settings.estimator;
+}
+inline EstimatorSettings preset(const std::string& name) { return estimator_of({"--preset", name}); }
+inline EstimatorSettings preset(const std::string& name, double radius) {
+  return estimator_of({"--preset", name, "--radius", std::to_string(radius)});
 }
 
 // A folder of pictures, and `alcove compare` on them.

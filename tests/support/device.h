@@ -14,6 +14,22 @@ namespace alcove::test {
 gpu::Device& device();
 /// A recorder on it.
 gpu::Recorder& recorder();
+/// A buffer of the recorder with these values.
+template <class T>
+gpu::Buffer& given(std::string_view name, const std::vector<T>& values, gpu::Recorder& gpu = recorder()) {
+  gpu::Buffer& buffer = gpu.buffer(name, values.size() * sizeof(T), gpu::Use::upload);
+  std::ranges::copy(values, buffer.as<T>().begin());
+  gpu.upload(buffer);
+  return buffer;
+}
+/// What a buffer holds once all that is recorded has run.
+template <class T>
+std::vector<T> downloaded(const gpu::Buffer& buffer, gpu::Recorder& gpu = recorder()) {
+  gpu.download(buffer);
+  gpu.run();
+  const auto values = buffer.as<T>();
+  return {values.begin(), values.end()};
+}
 /// GTAO and no more: every pixel by itself, occluders solid as far as the radius.
 EstimatorSettings plain_settings();
 

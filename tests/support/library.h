@@ -40,12 +40,13 @@ struct Library : testing::Test {
   }
   static int width() { return frame().data.width; }
   static int height() { return frame().data.height; }
+  static std::vector<float> chain_of(const HostFrame& of, double radius = 0.35) {
+    EstimatorSettings settings;
+    settings.radius = radius;
+    return compute_ao(recorder(), of, settings).ao;
+  }
   static const std::vector<float>& truth() {
-    static const std::vector<float> ao = [] {
-      EstimatorSettings settings;
-      settings.radius = 0.35;
-      return compute_ao(recorder(), frame(), settings).ao;
-    }();
+    static const std::vector<float> ao = chain_of(frame());
     return ao;
   }
 
@@ -66,6 +67,11 @@ struct Library : testing::Test {
     three.component_stride = std::ptrdiff_t(sizeof(float)) * width() * height();
     EXPECT_OK(handle, alcove_plane(handle.get(), "depth", frame().depth.data(), &one));
     EXPECT_OK(handle, alcove_plane(handle.get(), "normal", frame().normal.data(), &three));
+  }
+  static Handle with_planes() {
+    Handle handle = with_camera();
+    give_planes(handle);
+    return handle;
   }
   static std::vector<float> ao_of(const Handle& handle) {
     std::vector<float> ao(frame().data.pixels(), -1);

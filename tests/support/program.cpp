@@ -212,6 +212,16 @@ void write_bytes(const std::string& path, const std::string& bytes) {
     throw std::runtime_error(path + ": cannot be written");
 }
 
+std::string data_of_page(const std::string& html) {
+  const std::string open = "<script id=\"report\" type=\"application/json\">";
+  const std::size_t begin = html.find(open);
+  EXPECT_NE(begin, html.npos);
+  return begin == html.npos ? "null"
+                            : html.substr(begin + open.size(), html.find("</script>", begin) - begin - open.size());
+}
+
+json report_in(const std::string& page) { return json::parse(data_of_page(read_bytes(page))); }
+
 bool mount_memory(const std::string& folder, const std::string& options) {
   static const bool is_private =  // mounts of a name space of our own: nobody else sees them, and they go with us
       ::unshare(CLONE_NEWNS) == 0 && ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;

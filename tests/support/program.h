@@ -67,6 +67,11 @@ std::vector<std::string> names_in(const std::string& folder);
 std::string read_bytes(const std::string& path);
 void write_bytes(const std::string& path, const std::string& bytes);
 
+/// The data of a report page as a browser reads it: up to the first closing tag.
+std::string data_of_page(const std::string& html);
+/// The same of the page in a file.
+json report_in(const std::string& page);
+
 /// A file system of its own in memory at `folder`, seen by this process and its children only, so that it goes with
 /// them. Options as for mount -o: "size=64k". False where this process may not mount.
 bool mount_memory(const std::string& folder, const std::string& options);

@@ -168,11 +168,8 @@ Rendering render(const Scene& scene, const Shot& shot) {
           scene.hit(shot.ray(shot.data.x - shot.display.x + x + 0.5, shot.data.y - shot.display.y + y + 0.5));
       result.hits.push_back(hit);
       if (hit.primitive < 0) continue;
-      const Vec3 normal = shot.view_from_world(hit.normal);
       frame.depth[index] = float(hit.distance);
-      frame.normal[index] = float(normal.x);
-      frame.normal[index + pixels] = float(normal.y);
-      frame.normal[index + 2 * pixels] = float(normal.z);
+      put_normal(frame, index, shot.view_from_world(hit.normal));
     }
   }
   return result;

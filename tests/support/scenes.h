@@ -134,6 +134,24 @@ inline std::string place(const Difference& d, const HostFrame& frame) {
          std::to_string(frame.depth[d.worst]);
 }
 
+/// A normal as two numbers, by the octahedral map.
+inline Vec3 octahedral(Vec3 n) {
+  const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z), x = n.x / sum, y = n.y / sum;
+  return n.z >= 0 ? Vec3{x, y, 0} : Vec3{std::copysign(1 - std::abs(y), x), std::copysign(1 - std::abs(x), y), 0};
+}
+
+/// The normal of a pixel of a frame that has them as planes x, y, z.
+inline Vec3 normal_at(const HostFrame& frame, std::size_t i) {
+  const std::size_t pixels = frame.normal.size() / 3;
+  return {frame.normal[i], frame.normal[i + pixels], frame.normal[i + 2 * pixels]};
+}
+inline void put_normal(HostFrame& frame, std::size_t i, Vec3 normal) {
+  const std::size_t pixels = frame.normal.size() / 3;
+  frame.normal[i] = float(normal.x);
+  frame.normal[i + pixels] = float(normal.y);
+  frame.normal[i + 2 * pixels] = float(normal.z);
+}
+
 // Analytic scenes with the surfaces behind the first one, as a renderer peels them.
 
 /// The frame of a rendering with as many peels as there are surfaces but the first, of all faces.
@@ -152,12 +170,27 @@ void add_solid_peels(Rendering& rendering, const Scene& scene, int count, const 
 
 constexpr double kNear = 0.1;  // of its z-buffers, scene units
 
+/// A floor, a wall and a ball on the floor.
+inline const Scene kBallRoom{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}),
+                              parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
+                              Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
+/// The same with a slab in the air.
+inline const Scene kRoom = [] {
+  Scene scene = kBallRoom;
+  scene.add({parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})});
+  return scene;
+}();
+/// Sees the room and sky.
+inline Shot room_shot(int width, int height, bool orthographic = false, double fov = 55, double units = 4) {
+  const Vec3 eye{4.5, -1.5, 2.4}, target{1, 0, 0.6};
+  return orthographic ? Shot::orthographic(eye, target, units, width, height)
+                      : Shot::perspective(eye, target, fov, width, height);
+}
+
 /// A floor, a wall and a ball, from outside or from within a corner, with sky.
 inline Rendering furnished(bool inside = false) {
-  const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
-  return render(scene, inside ? Shot::perspective({0.3, -0.5, 0.2}, {1, 0.6, 0.3}, 90, 160, 120)
-                              : Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, 55, 160, 120));
+  return render(kBallRoom,
+                inside ? Shot::perspective({0.3, -0.5, 0.2}, {1, 0.6, 0.3}, 90, 160, 120) : room_shot(160, 120));
 }
 
 /// The frame with each depth of a surface replaced, and all sky by `sky`.

@@ -3,8 +3,7 @@
 #pragma once
 
 #include "core/chain/estimate/sites.h"
-#include "tests/support/device.h"
-#include "tests/support/scenes.h"
+#include "tests/support/chain.h"
 
 namespace alcove::test {
 
@@ -36,10 +35,9 @@ inline HostFrame random_picture(std::mt19937& random) {
   HostFrame frame = render({{Plane{.point = {5, 0, 0}, .normal = normal}}}, shot).frame;
   const auto put = [&](int x, int y, double depth) {
     if (x < 0 || y < 0 || x >= width || y >= height) return;
-    const std::size_t i = std::size_t(y * width + x), pixels = frame.depth.size();
+    const std::size_t i = std::size_t(y * width + x);
     frame.depth[i] = float(depth);
-    frame.normal[i] = frame.normal[i + pixels] = 0;
-    frame.normal[i + 2 * pixels] = 1;
+    put_normal(frame, i, {0, 0, 1});
   };
   for (int things = whole(0, 30); things > 0; things--) {
     const int x = whole(-4, width), y = whole(-4, height);
@@ -94,25 +92,6 @@ struct Crease {
 };
 
 // Sites of a G-buffer as the host sees them.
-
-template <class T>
-std::vector<T> downloaded(const gpu::Buffer& buffer) {
-  recorder().download(buffer);
-  recorder().run();
-  const auto values = buffer.as<T>();
-  return {values.begin(), values.end()};
-}
-
-struct Prepared {
-  FrameInputs inputs;
-  GBuffer gbuffer;
-};
-
-inline Prepared prepared(const HostFrame& frame) {
-  Prepared result{upload(recorder(), frame), {}};
-  result.gbuffer = reconstruct(recorder(), prepare(recorder(), result.inputs));
-  return result;
-}
 
 /// Pixels of an image, and which of them are sites.
 struct Picture {

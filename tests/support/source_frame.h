@@ -114,7 +114,7 @@ inline Scene scene() {
            parallelogram({0, 2, 0}, {4, 0, 0}, {0, 0, 1.5}), Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5}}};
 }
 inline const Rendering& rendering() {
-  static const Rendering made = render(scene(), Shot::perspective({4.5, -1.5, 2.4}, {1, 0, 0.6}, kFov, 160, 120));
+  static const Rendering made = render(scene(), room_shot(160, 120, false, kFov));
   return made;
 }
 

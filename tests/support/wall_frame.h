@@ -39,6 +39,11 @@ void write_plane(const std::string& path, const std::string& channel, const std:
 /// world's z is up. On the wall, everything above the middle of the display window is farther than 1 from the floor.
 FrameFile wall_frame(const Window& data = kWallWindow, const Window& display = kWallWindow, double pixel_aspect = 1);
 
+/// The length of a pixel's ray, of unit depth, in kWallWindow.
+inline double ray_length(std::size_t pixel) {
+  return std::hypot(1, (double(pixel % 64) + 0.5 - 32) / 60, (double(pixel / 64) + 0.5 - 18) / 60);
+}
+
 /// Puts the normals into view space, whose y is the world's z and whose z is the world's -y.
 void turn_normals_to_view(FrameFile& frame);
 

@@ -14,15 +14,6 @@ namespace {
 using namespace test;
 using Names = std::vector<std::string>;
 
-/// The JSON of a page.
-json report_in(const std::string& page) {
-  const std::string text = read_bytes(page), begin = "<script id=\"report\" type=\"application/json\">";
-  const std::size_t from = text.find(begin);
-  return from == text.npos
-             ? json()
-             : json::parse(text.substr(from + begin.size(), text.find("</script>", from) - from - begin.size()));
-}
-
 class Wedge : public SequenceFolder {
  protected:
   Wedge() { wall_frame().write(frame); }

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/bench/stability/cases.h"
 
-#include "cli/options.h"
+#include "tests/support/command_line.h"
 #include "tests/support/device.h"
-#include "tests/support/program.h"
 
 namespace alcove::test {
 namespace {
@@ -12,13 +11,6 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kRoomWidth = 4.5, kRoomDepth = 4.3;  // from the eye at 55 degrees
 const Vec3 kTarget{1, 0, 0.6}, kTowards = unit({3.5, -1.5, 1.8});
-
-EstimatorSettings preset(const std::string& name) {
-  ::setenv("ALCOVE_PRESETS", ALCOVE_SOURCE_DIR "/presets", 1);
-  RunOptions options;
-  parse_run_options({"--preset", name}, options);
-  return options.settings.estimator;
-}
 
 /// One axis: its values, and how each changes a spec.
 using Axis = std::vector<std::function<void(Spec&)>>;
@@ -96,13 +88,7 @@ Vec3 of_slice(const HostFrame& frame, std::size_t pixel, int slice, double degre
 }
 
 void spoil(HostFrame& frame, std::size_t i, NormalDefect defect, std::mt19937& random) {
-  std::vector<float>& normal = frame.normal;
-  const std::size_t pixels = frame.data.pixels();
-  const auto set = [&](float x, float y, float z) {
-    normal[i] = x;
-    normal[i + pixels] = y;
-    normal[i + 2 * pixels] = z;
-  };
+  const auto set = [&](float x, float y, float z) { put_normal(frame, i, {x, y, z}); };
   std::normal_distribution<float> gauss;
   switch (defect) {
     case NormalDefect::none:
@@ -115,15 +101,14 @@ void spoil(HostFrame& frame, std::size_t i, NormalDefect defect, std::mt19937& r
     case NormalDefect::in_slice:
     case NormalDefect::across_slice: {
       const int slice = int(random() % 3), degrees = int(random() % 181) - 90;
-      const Vec3 n = of_slice(frame, i, slice, degrees, defect == NormalDefect::across_slice);
-      return set(float(n.x), float(n.y), float(n.z));
+      return put_normal(frame, i, of_slice(frame, i, slice, degrees, defect == NormalDefect::across_slice));
     }
     case NormalDefect::zero: return set(0, -0.0f, 0);
     case NormalDefect::nan: return set(0, kNan, 1);
     case NormalDefect::infinite: return set(kInfinity, 0, random() % 2 ? -kInfinity : 1);
     case NormalDefect::denormal: return set(1e-41f, -1e-42f, 1e-40f);
     case NormalDefect::huge: return set(1e30f * gauss(random), 1e30f * gauss(random), 1e25f);
-    case NormalDefect::backfacing: return set(-normal[i], -normal[i + pixels], -normal[i + 2 * pixels]);
+    case NormalDefect::backfacing: return put_normal(frame, i, -normal_at(frame, i));
     case NormalDefect::random: return set(gauss(random), gauss(random), gauss(random));
   }
 }
@@ -255,12 +240,9 @@ Spec drawn(unsigned number) {
 }
 
 Rendering room(double fov, double aspect, double shift, int width, int height) {
-  const Scene scene{{parallelogram({0, -3, 0}, {4, 0, 0}, {0, 6, 0}), parallelogram({0, -3, 0}, {0, 6, 0}, {0, 0, 1.5}),
-                     Sphere{.center = {1.2, 0.4, 0.5}, .radius = 0.5},
-                     parallelogram({2, -1.5, 0.3}, {0.6, 0.2, 0.1}, {0, 0.9, 0})}};
   const double distance = fov > 0 ? 0.5 * kRoomWidth / std::tan(fov * std::numbers::pi / 360) : 10;
   const Vec3 eye = kTarget + distance * kTowards;
-  return seen(scene,
+  return seen(kRoom,
               fov > 0 ? Shot::perspective(eye, kTarget, fov, width, height)
                       : Shot::orthographic(eye, kTarget, kRoomWidth, width, height),
               aspect, shift);

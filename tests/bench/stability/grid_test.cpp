@@ -7,12 +7,7 @@
 
 #include <iostream>
 
-#include "core/chain/base/planes.h"
-#include "core/chain/chain.h"
 #include "core/chain/compute.h"
-#include "core/chain/estimate/estimate.h"
-#include "core/chain/estimate/exact.h"
-#include "core/chain/estimate/sites.h"
 #include "tests/bench/stability/cases.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"
@@ -135,54 +130,6 @@ TEST(Grid, what_lies_beside_buffers_and_in_new_ones_changes_no_bit) {
       EXPECT_TRUE(same_bits(ao, compute_ao(unguarded, made.frame, settings).ao))
           << variant.name << " " << width << "x" << height;
     }
-}
-
-// Each estimator writes the middle one of three planes; the other two, before and behind it, stay at 0.
-TEST(Grid, estimators_write_their_own_plane_and_all_of_it) {
-  for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {37, 1}, {3, 5}, {47, 43}, {16383, 1}, {1, 16383}})
-    for (const auto& variant : estimators())
-      for (const bool no_skip : {true, false}) {
-        const Case made = test::made({.width = width, .height = height});
-        EstimatorSettings settings = with_radius(variant.settings, made.radius);
-        settings.no_skip = no_skip;
-        ASSERT_EQ(spacing_of(settings), 1) << variant.name << ": every pixel is to be written";
-        gpu::Recorder& gpu = recorder();
-        const FrameInputs inputs = upload(gpu, made.frame);
-        const GBuffer gbuffer = prepare(gpu, inputs);
-        reconstruct(gpu, gbuffer);
-        const std::size_t pixels = made.frame.data.pixels();
-        gpu::Buffer& planes = gpu.buffer("three planes", 3 * pixels * sizeof(float), gpu::Use::device);
-        gpu.clear(planes);
-        Estimate out{&planes, 1};
-        const Reach reach = reach_of(settings, *settings.radius);
-        const Sampling sampling = sampling_of(settings, 0);
-        const Skipping skipping = skipping_of(settings, inputs, gbuffer.grid);
-        const SearchDirections directions = search_directions(settings);
-        if (searches_exactly(settings)) {
-          for (int direction = 0; direction < directions.count; direction++) {
-            Profile lines = profile(gpu, gbuffer, directions, direction, reach);
-            complete(gpu, gbuffer, lines, reach);
-            exact(gpu, gbuffer, lines, directions, reach, out);
-          }
-        } else {
-          out.listed = classify(gpu, gbuffer, skipping, reach, Sites{}, out);
-          switch (settings.estimator) {
-            case Estimator::gtao:
-            case Estimator::bitmask: horizon(gpu, gbuffer, reach, sampling, out); break;
-            case Estimator::hbao: hbao(gpu, gbuffer, reach, sampling, settings.elevation, out); break;
-            case Estimator::crytek:
-              crytek(gpu, gbuffer, reach, sampling, {settings.samples, settings.sample_kernel, settings.range_check},
-                     out);
-              break;
-          }
-        }
-        gpu.download(planes);
-        gpu.run();
-        const auto values = planes.as<float>();
-        for (std::size_t i = 0; i < 3 * pixels; i++)
-          ASSERT_TRUE(i / pixels == 1 ? values[i] > 0 && values[i] <= 1 : values[i] == 0)
-              << variant.name << " " << width << "x" << height << " value " << i << ": " << values[i];
-      }
 }
 
 }  // namespace

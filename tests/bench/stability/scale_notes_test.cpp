@@ -119,19 +119,21 @@ StabilityReport hostile() {
 }
 
 TEST(StabilityReport, is_json_with_every_curve) {
-  const json report = json::parse(stability_json(hostile()));
-  EXPECT_EQ(report["axes"][0]["curves"][0]["rmse"], json({0.01, 0.2, 0.3}));
-  EXPECT_EQ(report["axes"][0]["curves"][0]["breaks_at"], json({10.0}));
-  EXPECT_EQ(report["axes"][0]["points"][1]["notes"].size(), 1u);
+  const json axis = json::parse(stability_json(hostile()))["axes"][0], curve = axis["curves"][0];
+  EXPECT_EQ(axis["name"], "a \"quoted\" <axis>");
+  EXPECT_EQ(axis["points"][1]["notes"].size(), 1u);
+  EXPECT_EQ(curve["estimator"], "gtao");
+  EXPECT_EQ(curve["rmse"], json({0.01, 0.2, 0.3}));
+  EXPECT_EQ(curve["breaks_at"], json({10.0}));
 }
 
-/// The JSON within the page.
+TEST(StabilityReport, is_a_line_for_each_curve) {
+  EXPECT_THAT(lines_of(stability_text(hostile())),
+              ElementsAre(StartsWith("axis"), ContainsRegex("^a \"quoted\" <axis> +gtao +0.3000 10, said$")));
+}
+
 TEST(StabilityReport, is_a_page_with_a_row_for_each_point) {
-  const std::string page = stability_page(hostile()), begin = "<script id=\"report\" type=\"application/json\">";
-  const std::size_t first = page.find(begin);
-  ASSERT_NE(first, page.npos);
-  const std::size_t text = first + begin.size();
-  const json report = json::parse(page.substr(text, page.find("</script>", text) - text));
+  const json report = json::parse(data_of_page(stability_page(hostile())));
   EXPECT_EQ(report["device"], "<script>alert(1)</script>");
   ASSERT_EQ(report["rows"].size(), 3u);
   EXPECT_EQ(report["rows"][1]["frame"], "a \"quoted\" <axis> 10 units & more");
