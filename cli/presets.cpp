@@ -12,9 +12,9 @@
 #include "cli/parsing.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/base/flat_toml.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
+#include "core/base/toml.h"
 #include "core/formats/sequence.h"
 #include "core/options/options.h"
 
