@@ -9,7 +9,6 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/formats/absent_frames.h"
 #include "core/formats/sequence.h"
 #include "core/frame/raw_plane.h"
 
