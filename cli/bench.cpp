@@ -11,7 +11,6 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/gpu/device.h"
-#include "core/options/option_files.h"
 #include "core/options/options.h"
 
 namespace alcove {

@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
-#include "core/options/option_files.h"
+#include "core/options/options.h"
 
 namespace alcove {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/formats/sequence.h"
-#include "core/options/option_files.h"
+#include "core/options/options.h"
 
 namespace alcove {
 

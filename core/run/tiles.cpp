@@ -104,7 +104,7 @@ double sphere_reach(double radius, double nearest, double tangent, double pixels
 
 }  // namespace
 
-Window region_of(const FrameSource& source, const Region& roi) {
+Window region_of(const FrameSource& source, const Window& roi) {
   constexpr std::int64_t kFarthest = 1 << 30;  // px; no file has a window that reaches farther
   const Window& data = source.reading.data;
   const Window picture = picture_of(source.reading, source.reading.display);

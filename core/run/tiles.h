@@ -17,7 +17,7 @@ namespace alcove {
 
 /// Turns a region of the display window into pixels of the file. Fails with ErrorKind::usage where it is not within the
 /// data window.
-Window region_of(const FrameSource& source, const Region& roi);
+Window region_of(const FrameSource& source, const Window& roi);
 
 /// The margins around parts of a frame within which pixels influence their results: by the radius at the nearest depth,
 /// and by the filters of the settings.

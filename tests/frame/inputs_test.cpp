@@ -309,7 +309,7 @@ TEST_F(CommandLine, the_digest_changes_with_every_setting_of_the_input) {
       {"position-channels", digest([](InputSettings& s) { s.position_channels = "P"; })},
       {"--view", digest([](InputSettings& s) { s.view = "left"; })},
       {"--roi", digest([](InputSettings& s) {
-         s.roi = Region{0, 0, 1, 1};
+         s.roi = Window{0, 0, 1, 1};
        })},
   };
   for (const auto& [option, other] : changed) EXPECT_NE(plain, other) << option;
