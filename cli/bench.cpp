@@ -6,7 +6,6 @@
 #include "core/base/file.h"
 #include "core/bench/stability.h"
 #include "core/gpu/device.h"
-#include "core/options/option_files.h"
 #include "core/options/options.h"
 
 namespace alcove {

@@ -10,7 +10,7 @@
 #include "core/base/file.h"
 #include "core/base/frame_list.h"
 #include "core/base/text.h"
-#include "core/options/option_files.h"
+#include "core/options/options.h"
 
 namespace alcove {
 namespace {

@@ -6,6 +6,8 @@
 
 #include "cli/commands.h"
 #include "core/base/text.h"
+#include "core/formats/sequence.h"
+#include "core/options/options.h"
 
 namespace alcove {
 namespace {

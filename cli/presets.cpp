@@ -9,9 +9,9 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "core/base/file.h"
-#include "core/base/flat_toml.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
+#include "core/base/toml.h"
 #include "core/formats/sequence.h"
 #include "core/options/options.h"
 

@@ -13,7 +13,7 @@
 #include "core/base/text.h"
 #include "core/formats/sequence.h"
 #include "core/frame/raw_plane.h"
-#include "core/options/option_files.h"
+#include "core/options/options.h"
 #include "core/run/batch.h"
 #include "core/run/run_files.h"
 #include "core/run/run_preview.h"

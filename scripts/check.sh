@@ -10,7 +10,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-readers=(core/formats/{exr_check,exr_zip,sample_loops,dds,image_io,npy,open_image,png,row_reader,sequence}.cpp core/frame/{camera/header_camera,camera/camera,find/matte}.cpp core/base/{file,text}.cpp)
+readers=(core/formats/{exr_check,exr_zip,sample_loops,image_io,open_image,png,row_reader,sequence}.cpp core/frame/{camera/header_camera,camera/camera,find/matte}.cpp core/base/{file,text}.cpp)
 tests=(base/{text,new_file,memory_limit}_test
        formats/{file,file_names,open_image,bad_input,capture_formats,color,hostile,sequence,zip,zip_writer}_test
        frame/{camera,chan,resection,header_camera,frame_source,parts,inputs,readings,sources}_test

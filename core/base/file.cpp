@@ -52,6 +52,16 @@ std::string identity_of(const std::string& path) {
   return id + (below.empty() ? "" : "/" + below.string());
 }
 
+/// Reads the rest of a stream. If it cannot be read to its end, the stream is bad() afterwards.
+std::string read_rest(std::istream& stream) {
+  // The stream is read block by block, since an iterator would throw the library's own exception if the disk fails.
+  std::string text;
+  std::array<char, 1 << 14> block;
+  while (stream.read(block.data(), block.size()) || stream.gcount() > 0)
+    text.append(block.data(), std::size_t(stream.gcount()));
+  return text;
+}
+
 /// Says what stands in a file's place where a repository keeps its content elsewhere; "" for a file itself.
 std::string pointer_in(const std::string& path) {
   constexpr std::uintmax_t kLongestPointer = 1024;  // by the specification of Git LFS
@@ -76,15 +86,6 @@ void require_readable(const std::string& path, const char* what, const char* opt
     fail(ErrorKind::input, "{}: {} file cannot be read: {} ({})", path, what, why.message(), option);
   if (const std::string why = pointer_in(path); !why.empty())
     fail(ErrorKind::input, "{}: not the {} file itself but {} ({})", path, what, why, option);
-}
-
-std::string read_rest(std::istream& stream) {
-  // The stream is read block by block, since an iterator would throw the library's own exception if the disk fails.
-  std::string text;
-  std::array<char, 1 << 14> block;
-  while (stream.read(block.data(), block.size()) || stream.gcount() > 0)
-    text.append(block.data(), std::size_t(stream.gcount()));
-  return text;
 }
 
 std::string read_text(const std::string& path, const char* what, const char* option) {

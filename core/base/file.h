@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <iosfwd>
 #include <map>
 #include <set>
 #include <span>
@@ -16,9 +15,6 @@ namespace alcove {
 /// Fails with ErrorKind::input unless `path` is a readable file; `what` and `option` are for the message ("camera",
 /// "--camera").
 void require_readable(const std::string& path, const char* what, const char* option);
-
-/// Reads the rest of a stream. If it cannot be read to its end, the stream is bad() afterwards.
-std::string read_rest(std::istream& stream);
 
 /// Reads a whole file. Fails with ErrorKind::input.
 std::string read_text(const std::string& path, const char* what, const char* option);

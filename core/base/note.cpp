@@ -3,7 +3,6 @@
 #include "core/base/note.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 
 #include "core/base/text.h"
@@ -118,11 +117,9 @@ void add_new(Notes& notes, const Notes& more) {
     if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
 }
 
-Notes warnings_of(const Notes& notes) {
-  Notes warnings;
-  std::ranges::copy_if(notes, std::back_inserter(warnings),
-                       [](const Note& note) { return facts_of(note.code).is_warning; });
-  return warnings;
+Notes warnings_of(Notes notes) {
+  std::erase_if(notes, [](const Note& note) { return !facts_of(note.code).is_warning; });
+  return notes;
 }
 
 bool is_listed(NoteCode code, const std::string& codes) {

@@ -130,7 +130,7 @@ std::string line_of(const Note& note, const std::string& frame);
 /// Adds the notes of `more` that `notes` lacks.
 void add_new(Notes& notes, const Notes& more);
 
-Notes warnings_of(const Notes& notes);
+Notes warnings_of(Notes notes);
 
 /// Whether a list of codes with commas, such as that of --set allow, has this one.
 bool is_listed(NoteCode code, const std::string& codes);

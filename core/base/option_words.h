@@ -75,11 +75,6 @@ struct NormalFlips {
 constexpr std::size_t kMostBehind = 8;
 using FileList = std::array<std::string, kMostBehind>;
 
-/// A rectangle in pixels, from the display window's upper left corner.
-struct Region {
-  int x = 0, y = 0, width = 0, height = 0;
-};
-
 template <class T>
 using Word = std::pair<const char*, T>;
 

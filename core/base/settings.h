@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/image.h"
 #include "core/base/option_words.h"
 
 namespace alcove {
@@ -76,7 +77,8 @@ struct InputSettings {
   std::string view;   // of a stereo file; empty: its default
   // pixels of depth and normals for each of the picture, in x and in y, 1 to 4; auto: 1
   std::string supersampling = "auto";
-  std::optional<Region> roi;  // compute and write no more than this, in px of the picture; none: the data window
+  // compute and write no more than this, in px of the picture from its upper left corner; none: the data window
+  std::optional<Window> roi;
   // the program that wrote the frame, of presets/input; auto: by its header and channels
   std::string source = "auto";
   DepthKind depth_kind = DepthKind::automatic;  // automatic: as the camera file says, else planar

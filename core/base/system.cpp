@@ -315,17 +315,14 @@ struct GroupMount {
 
 /// mountinfo writes spaces, tabs, line ends and backslashes of names as three octal digits.
 std::string unescaped(const std::string& text) {
-  const auto is_octal = [](char c) { return c >= '0' && c <= '7'; };
   std::string plain;
   for (std::size_t i = 0; i < text.size(); i++) {
-    const bool is_escape = text[i] == '\\' && i + 3 < text.size() && is_octal(text[i + 1]) && is_octal(text[i + 2]) &&
-                           is_octal(text[i + 3]);
-    if (is_escape) {
-      plain += char((text[i + 1] - '0') * 64 + (text[i + 2] - '0') * 8 + (text[i + 3] - '0'));
-      i += 3;
-    } else {
-      plain += text[i];
-    }
+    unsigned char letter = 0;
+    const char* const digits = text.data() + i + 1;
+    const bool is_escape =
+        text[i] == '\\' && i + 3 < text.size() && std::from_chars(digits, digits + 3, letter, 8).ptr == digits + 3;
+    plain += is_escape ? char(letter) : text[i];
+    if (is_escape) i += 3;
   }
   return plain;
 }
@@ -356,12 +353,8 @@ std::vector<GroupMount> group_mounts(const std::string& root) {
 /// The least bytes left in a group and in all visible groups above it.
 std::uint64_t left_upwards(const std::string& root, const GroupMount& mount, const std::string& group) {
   // A container may see its own group as the top of the hierarchy, or by a path that leads outside of its view.
-  std::string below = group;
   const std::string top = mount.group == "/" ? "" : mount.group;
-  if (below == top || below.starts_with(top + "/"))
-    below = below.substr(top.size());
-  else
-    below.clear();
+  std::string below = (group + "/").starts_with(top + "/") ? group.substr(top.size()) : "";
   if (below.find("/..") != below.npos) below.clear();
   while (below.ends_with('/')) below.pop_back();
 
@@ -390,9 +383,10 @@ std::uint64_t memory_left_in_groups(const std::string& root) {
   std::uint64_t least = kNoMemoryLimit;
   // A line is "ID:CONTROLLERS:GROUP"; version 2 names no controllers.
   for (std::string line; std::getline(file, line);) {
-    const std::size_t first = line.find(':'), second = first == line.npos ? first : line.find(':', first + 1);
-    if (second == line.npos) continue;
-    const std::string controllers = line.substr(first + 1, second - first - 1), group = line.substr(second + 1);
+    std::istringstream fields(line);
+    std::string id, controllers, group;
+    std::getline(std::getline(fields, id, ':'), controllers, ':');
+    if (!std::getline(fields, group)) continue;
     if (!controllers.empty() && !is_in_list("memory", controllers)) continue;
     for (const auto& mount : mounts)
       if (mount.is_version_2 == controllers.empty()) least = std::min(least, left_upwards(root, mount, group));

@@ -12,7 +12,9 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <locale>
 #include <numeric>
+#include <sstream>
 
 namespace alcove {
 
@@ -120,10 +122,8 @@ std::vector<std::string> split(const std::string& text) {
 
 std::string list_of(std::span<const std::string> names, std::size_t most) {
   if (names.empty()) return "nothing";
-  std::string text = names[0];
-  for (std::size_t i = 1; i < std::min(names.size(), most); i++) text += ", " + names[i];
-  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
-  return text;
+  const std::string more = names.size() > most ? fmt::format(" and {} more", names.size() - most) : "";
+  return fmt::format("{}{}", fmt::join(names.first(std::min(names.size(), most)), ", "), more);
 }
 
 std::string linked(std::span<const std::string> words, const char* link) {
@@ -166,21 +166,6 @@ std::size_t distance_of(std::string_view name, std::string_view candidate) {
   return contained ? 1 : std::min(edit_distance(name, candidate), below);
 }
 
-/// The number of digits of a decimal number before its point; below 1 if they are all zeros.
-double decimal_exponent(std::string_view text) {
-  const std::size_t e = std::min(text.find_first_of("eE"), text.size());
-  const std::size_t point = std::min(text.substr(0, e).find('.'), e);
-  const double before = double(point) - double(text.find_first_of("123456789"));
-  double power = 0;
-  if (e < text.size()) {
-    const std::string_view digits = text.substr(e + 1 + (text[e + 1] == '+'));
-    int written = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), written);
-    power = error == std::errc() ? written : digits[0] == '-' ? -1e9 : 1e9;
-  }
-  return before + power;
-}
-
 }  // namespace
 
 std::vector<std::string> nearest_names(std::string_view name, std::span<const std::string> candidates,
@@ -203,9 +188,12 @@ std::optional<double> number_of(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
   if (error != std::errc::result_out_of_range) return value;
-  // std::from_chars leaves the value alone, whether the number is too large or too near to 0.
-  const double size = decimal_exponent(text) > 0 ? std::numeric_limits<double>::infinity() : 0;
-  return text.starts_with('-') ? -size : size;
+  // std::from_chars leaves the value alone, whether the number is too large or too near to 0. A stream gives the
+  // largest number, or 0.
+  std::istringstream stream{std::string(text)};
+  stream.imbue(std::locale::classic());
+  stream >> value;
+  return std::abs(value) < 1 ? value : std::copysign(std::numeric_limits<double>::infinity(), value);
 }
 
 std::string suggestion(std::string_view name, std::span<const std::string> candidates) {

@@ -1,4 +1,4 @@
-// Reads TOML.
+// Reads TOML: tables, and flat lists of keys and values, as presets are.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -20,6 +20,15 @@ toml::table parse_toml(const std::string& text);
 /// The same of a file; `what` it should be, and the option that names it, are for messages. Fails with
 /// ErrorKind::input.
 toml::table read_toml(const std::string& path, const char* what, const char* option);
+
+/// A key with its value, or with the values of its list, as typed on a command line.
+struct FlatEntry {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+/// Gives the entries in the order of the file's keys. Fails as parse_toml() does, and on tables.
+std::vector<FlatEntry> parse_flat_toml(const std::string& text);
 
 /// A table of a file; every complaint is ErrorKind::input, and names file, table and key.
 struct TomlTable {

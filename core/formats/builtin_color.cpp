@@ -23,8 +23,7 @@ void require_builtin(const char* option, const std::string& name, const std::str
 
 struct DisplayTransform::Impl {};
 
-DisplayTransform::DisplayTransform(const std::string& config, const std::string& display, const std::string& view)
-    : description_("sRGB / Standard") {
+DisplayTransform::DisplayTransform(const std::string& config, const std::string& display, const std::string& view) {
   if (const std::string file = display_config_file(config); !file.empty())
     fail(ErrorKind::input, "{}: this system's Alcove has no OpenColorIO: {} for the built-in view, sRGB", file,
          config.empty() ? "unset the variable OCIO" : "leave out --set ocio");

@@ -52,30 +52,18 @@ OCIO::ConstConfigRcPtr open_config(const std::string& path) {
   return OCIO::Config::CreateFromFile(file.c_str());
 }
 
-/// The name as the configuration spells it, found in any case of letters. Fails if it has none such.
-std::string known_name(const std::string& config, const char* option, const std::string& name,
-                       const std::vector<std::string>& names) {
+/// The name as the configuration spells it, found in any case of letters among `count`. Fails if it has none such.
+template <class NameAt>
+std::string known_name(const std::string& config, const char* option, const std::string& name, int count,
+                       const NameAt& name_at) {
+  std::vector<std::string> names;
+  for (int i = 0; i < count; i++) names.emplace_back(name_at(i));
   for (const auto& candidate : names)
     if (lower_case(candidate) == lower_case(name)) return candidate;
   const std::string file = display_config_file(config);
   fail(ErrorKind::input, "{}: {}: the configuration has no such name{}; it has {}",
        file.empty() ? "the built-in OpenColorIO configuration (--set ocio names another)" : file, typed(option, name),
        suggestion(name, names), list_of(names));
-}
-
-std::string known_display(const OCIO::Config& opened, const std::string& config, const std::string& name) {
-  if (name.empty()) return opened.getDefaultDisplay();
-  std::vector<std::string> names;
-  for (int i = 0; i < opened.getNumDisplays(); i++) names.emplace_back(opened.getDisplay(i));
-  return known_name(config, "--set display", name, names);
-}
-
-std::string known_view(const OCIO::Config& opened, const std::string& config, const std::string& display,
-                       const std::string& name) {
-  if (name.empty()) return opened.getDefaultView(display.c_str());
-  std::vector<std::string> names;
-  for (int i = 0; i < opened.getNumViews(display.c_str()); i++) names.emplace_back(opened.getView(display.c_str(), i));
-  return known_name(config, "--set view-transform", name, names);
 }
 
 }  // namespace
@@ -88,14 +76,18 @@ DisplayTransform::DisplayTransform(const std::string& config, const std::string&
     : impl_(std::make_unique<Impl>()) {
   try {
     const auto opened = open_config(config);
-    const std::string used = known_display(*opened, config, display);
-    const std::string shown = known_view(*opened, config, used, view);
+    const std::string used = display.empty() ? opened->getDefaultDisplay()
+                                             : known_name(config, "--set display", display, opened->getNumDisplays(),
+                                                          [&](int i) { return opened->getDisplay(i); });
+    const std::string shown = view.empty()
+                                  ? opened->getDefaultView(used.c_str())
+                                  : known_name(config, "--set view-transform", view, opened->getNumViews(used.c_str()),
+                                               [&](int i) { return opened->getView(used.c_str(), i); });
     const auto transform = OCIO::DisplayViewTransform::Create();
     transform->setSrc(OCIO::ROLE_SCENE_LINEAR);
     transform->setDisplay(used.c_str());
     transform->setView(shown.c_str());
     impl_->processor = opened->getProcessor(transform)->getDefaultCPUProcessor();
-    description_ = used + " / " + shown;
   } catch (const OCIO::Exception& error) {
     std::string text = error.what();
     std::ranges::replace(text, '\n', ' ');

@@ -24,13 +24,10 @@ class DisplayTransform {
   ~DisplayTransform();
   /// Converts interleaved r, g, b from the role scene_linear to display values, in place.
   void apply(std::span<float> rgb) const;
-  /// The text "display / view", for the log.
-  const std::string& description() const { return description_; }
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
-  std::string description_;
 };
 
 }  // namespace alcove

@@ -140,22 +140,33 @@ void require_host_room(const std::string& path, const Window& data);
 
 /// A plane to write: one float per pixel of the data window.
 struct ExrPlane {
-  std::string channel;
-  SampleType type;  // half: rounded to nearest, at most +-65504
+  std::string channel;  // of a copy: it replaces that of the original, or is new
+  SampleType type;      // half: rounded to nearest, at most +-65504
+  int part = 0;         // of a copy
 };
 
 struct ExrOutput {
-  Window data, display;
+  Window data;     // of a copy: of the planes' parts, or a part of theirs
+  Window display;  // this and the next are those of the original in a copy
   double pixel_aspect = 1;
-  std::string compression = "zip";  // none, rle, zips, zip, piz, dwaa, dwab
-  // attributes of the input to carry over; those that describe its channels and storage are left out
+  // none, rle, zips, zip, piz, dwaa, dwab; in a copy of the planes' parts, also keep: unchanged, or zip if that loses
+  // bits
+  std::string compression = "zip";
+  // attributes of the input to carry over; those that describe its channels and storage are left out; a copy has all
   std::shared_ptr<const ExrAttributes> attributes;
-  std::map<std::string, std::string> own_attributes;  // added as strings
+  // added as strings, in a copy to the first part and to those of the planes
+  std::map<std::string, std::string> own_attributes;
   std::vector<ExrPlane> planes;
+  std::string original = {};  // the path of an EXR file to copy; empty: none
 };
 
-/// Writes a single-part scan-line file from top to bottom. The file gets its name when it is finished, and vanishes if
-/// it is not. Fails with ErrorKind::output.
+/// Writes a file from top to bottom: a single part of scan lines, or a copy of an EXR file with some channels replaced
+/// or added. The file gets its name when it is finished, and vanishes if it is not.
+///
+/// Of an original, a part without planes is copied chunk by chunk as it is compressed, also deep samples, tiles and
+/// their levels. In a part with planes, all other channels keep their type and every bit, and tiles become scan lines.
+/// If the window is smaller than the planes' data window, all flat parts with that data window are cut to it too. Fails
+/// with ErrorKind::output, or with ErrorKind::input if the original cannot be read.
 class ExrWriter {
  public:
   ExrWriter(const std::string& path, const ExrOutput& output);
@@ -194,45 +205,6 @@ constexpr std::uint64_t kRowsOfOutput = 32;
 /// The bytes that a codec works on for groups of rows of `group_bytes` bytes, with the limit of set_exr_memory(), or of
 /// `most_bytes`.
 std::uint64_t exr_codec_bytes(std::uint64_t group_bytes, std::optional<std::uint64_t> most_bytes = {});
-
-/// A channel to write: one float per pixel of the window. It replaces that of the original, or is new.
-struct CopiedPlane {
-  int part;
-  std::string channel;
-  SampleType type;
-};
-
-struct ExrCopySettings {
-  std::string original;  // the file's path
-  Window window;         // pixels to write of the parts below: the data window of the planes' parts, or a part of it
-  std::string compression =
-      "keep";                       // of the planes' parts: as in ExrOutput; keep: unchanged, or zip if that loses bits
-  std::vector<CopiedPlane> planes;  // at least one
-  std::map<std::string, std::string> own_attributes;  // added as strings to the first part and to those of the planes
-};
-
-/// Copies an EXR file with some channels replaced or added, from top to bottom. The copy gets its name when it is
-/// finished, and vanishes if it is not.
-///
-/// A part without planes is copied chunk by chunk as it is compressed, also deep samples, tiles and their levels. In a
-/// part with planes, all other channels keep their type and every bit, and tiles become scan lines. If the window is
-/// smaller than the planes' data window, all flat parts with that data window are cut to it too. Fails with
-/// ErrorKind::output, or with ErrorKind::input if the original cannot be read.
-class ExrCopy {
- public:
-  ExrCopy(const std::string& path, const ExrCopySettings& settings);
-  ~ExrCopy();
-  ExrCopy(ExrCopy&&) noexcept;
-
-  /// Writes the next rows of every plane, as wide as the window.
-  void write(std::span<const std::span<const float>> planes);
-  /// Ends the file after its last row, as ExrWriter::finish() does.
-  void finish(const std::map<std::string, std::string>& late = {});
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
 
 /// Whether DWAA and DWAB lose bits of a channel. They go by the last part of its name.
 bool is_lossy_in_dwa(const std::string& channel);

@@ -7,9 +7,8 @@
 #include <algorithm>
 #include <exception>
 #include <mutex>
-#include <set>
 
-#include "core/formats/sample_loops.h"
+#include "core/base/text.h"
 
 namespace alcove {
 
@@ -91,49 +90,11 @@ std::string one_line(const std::exception& error) {
 }
 
 bool describes_storage(const std::string& name) {
-  static const std::set<std::string> kNames = {"channels",
-                                               "compression",
-                                               "dataWindow",
-                                               "displayWindow",
-                                               "pixelAspectRatio",
-                                               "lineOrder",
-                                               "tiles",
-                                               "chunkCount",
-                                               "type",
-                                               "version",
-                                               "name",
-                                               "preview",
-                                               "dwaCompressionLevel",
-                                               "zipCompressionLevel",
-                                               "multiView",
-                                               "deepImageState",
-                                               "maxSamplesPerPixel",
-                                               "idManifest",
-                                               "BlenderMultiChannel"};
-  return kNames.contains(name) || name.rfind("cryptomatte/", 0) == 0;
-}
-
-bool is_own_attribute(std::string_view name) { return name.starts_with("alcove/"); }
-
-Imf::Compression compression_of(const std::string& name) {
-  if (name == "none") return Imf::NO_COMPRESSION;
-  if (name == "rle") return Imf::RLE_COMPRESSION;
-  if (name == "zips") return Imf::ZIPS_COMPRESSION;
-  if (name == "piz") return Imf::PIZ_COMPRESSION;
-  if (name == "dwaa") return Imf::DWAA_COMPRESSION;
-  if (name == "dwab") return Imf::DWAB_COMPRESSION;
-  return Imf::ZIP_COMPRESSION;
-}
-
-Imf::PixelType pixel_type_of(SampleType type) { return type == SampleType::half_float ? Imf::HALF : Imf::FLOAT; }
-
-Imf::Slice slice_of(const Window& rows, SampleType type, std::span<const float> pixels,
-                    std::deque<std::vector<std::uint16_t>>& halves) {
-  const bool is_half = type == SampleType::half_float;
-  const std::size_t bytes = is_half ? sizeof(std::uint16_t) : sizeof(float);
-  if (is_half) narrow(pixels.data(), pixels.size(), halves.emplace_back(pixels.size()).data());
-  const void* values = is_half ? static_cast<const void*>(halves.back().data()) : pixels.data();
-  return Imf::Slice::Make(pixel_type_of(type), values, box_of(rows), bytes, bytes * std::size_t(rows.width));
+  static const std::vector<std::string> kNames = split(
+      "channels, compression, dataWindow, displayWindow, pixelAspectRatio, lineOrder, tiles, chunkCount, type, "
+      "version, name, preview, dwaCompressionLevel, zipCompressionLevel, multiView, deepImageState, "
+      "maxSamplesPerPixel, idManifest, BlenderMultiChannel");
+  return std::ranges::find(kNames, name) != kNames.end() || name.starts_with("cryptomatte/");
 }
 
 }  // namespace alcove

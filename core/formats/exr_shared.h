@@ -3,25 +3,15 @@
 #pragma once
 
 #include <ImathBox.h>
-#include <ImfCompression.h>
-#include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfPixelType.h>
 
 #include <cstdint>
-#include <deque>
 #include <exception>
 #include <functional>
 #include <iosfwd>
-#include <optional>
-#include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
-#include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/formats/exr.h"
 
 namespace alcove {
@@ -69,58 +59,5 @@ std::size_t exr_workers(std::size_t pieces, std::size_t most);
 /// and the failure of the lowest piece is thrown: so a damaged file ends the same on any number of threads.
 void on_exr_threads(std::size_t pieces, std::size_t workers,
                     const std::function<void(std::size_t piece, std::size_t worker)>& work);
-
-/// An output stream into a file in the making. OpenEXR swallows failures while it closes a file; failure() keeps them.
-class FileStream : public Imf::OStream {
- public:
-  explicit FileStream(const std::string& path) : Imf::OStream(path.c_str()), file_(path) {}
-  void write(const char data[], int count) override {
-    try {
-      file_.write_at(position_, {data, std::size_t(count)});
-    } catch (const Error& error) {
-      if (!failure_) failure_ = error;
-      throw;
-    }
-    position_ += std::uint64_t(count);
-  }
-  std::uint64_t tellp() override { return position_; }
-  void seekp(std::uint64_t position) override { position_ = position; }
-  const std::optional<Error>& failure() const { return failure_; }
-  void commit() { file_.commit(); }
-  const std::string& temporary() const { return file_.temporary(); }
-
- private:
-  NewFile file_;
-  std::uint64_t position_ = 0;
-  std::optional<Error> failure_;
-};
-
-/// Runs a step of writing a file into a stream. If the stream failed, its error is thrown, since OpenEXR does not tell
-/// the reason. An Error about a file that is read for it passes.
-template <class Function>
-void run_writing(const FileStream& stream, const std::string& path, Function&& function) {
-  try {
-    function();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& error) {
-    if (!stream.failure()) fail(ErrorKind::output, "{}: could not be encoded: {}", path, one_line(error));
-  }
-  if (stream.failure()) throw *stream.failure();
-}
-
-/// Whether an attribute records how Alcove made the input, which does not hold for an output made from it.
-bool is_own_attribute(std::string_view name);
-
-/// The compression of that name, as in ExrOutput; ZIP for unknown names.
-Imf::Compression compression_of(const std::string& name);
-
-/// The type of a plane's channel.
-Imf::PixelType pixel_type_of(SampleType type);
-
-/// Rows of a plane as OpenEXR takes them; `halves` keeps the converted ones. Values are rounded to the nearest half;
-/// beyond half's range they become its largest value, not infinity.
-Imf::Slice slice_of(const Window& rows, SampleType type, std::span<const float> pixels,
-                    std::deque<std::vector<std::uint16_t>>& halves);
 
 }  // namespace alcove

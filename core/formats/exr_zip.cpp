@@ -33,6 +33,16 @@ void round_integers(const std::uint8_t* from, std::size_t count, float* to) {
   for (std::size_t i = 0; i < count; i++) to[i] = float(number_at<std::uint32_t>(from + i * sizeof(float)));
 }
 
+/// The bytes of a row of all channels.
+std::size_t zip_row_bytes(const Imf::Header& header) {
+  std::size_t bytes = 0;
+  for (auto at = header.channels().begin(); at != header.channels().end(); ++at) bytes += bytes_of(at.channel().type);
+  return bytes * std::size_t(window_of(header.dataWindow()).width);
+}
+
+/// The rows of a chunk of ZIP or ZIPS.
+int rows_of_zip_chunk(const Imf::Header& header) { return header.compression() == Imf::ZIPS_COMPRESSION ? 1 : 16; }
+
 std::size_t bytes_in_memory(const ZipChannel& channel) {
   return channel.as_floats ? sizeof(float) : bytes_of(channel.type);
 }
@@ -203,14 +213,6 @@ class ZipReading {
 
 }  // namespace
 
-std::size_t zip_row_bytes(const Imf::Header& header) {
-  std::size_t bytes = 0;
-  for (auto at = header.channels().begin(); at != header.channels().end(); ++at) bytes += bytes_of(at.channel().type);
-  return bytes * std::size_t(window_of(header.dataWindow()).width);
-}
-
-int rows_of_zip_chunk(const Imf::Header& header) { return header.compression() == Imf::ZIPS_COMPRESSION ? 1 : 16; }
-
 bool is_zip_rows(const Imf::Header& header) {
   const bool is_zip = header.compression() == Imf::ZIP_COMPRESSION || header.compression() == Imf::ZIPS_COMPRESSION;
   if (!is_zip || header.hasTileDescription()) return false;
@@ -252,7 +254,6 @@ ZipWriter::ZipWriter(Imf::OStream& stream, const Imf::Header& header) : stream_(
   height_ = std::size_t(data.height);
   chunk_rows_ = std::size_t(rows_of_zip_chunk(header_));
   row_bytes_ = zip_row_bytes(header_);
-  if (!is_zip_rows(header_)) throw std::logic_error("this part is for OpenEXR");
   const std::size_t workers = exr_workers(kAll, kAll);
   chunks_ = std::vector<Chunk>(workers > 1 ? kChunksOfThread * workers : 1);
   Imf::StdOSStream head;  // one write instead of hundreds

@@ -80,12 +80,6 @@ class ZipPacker {
 /// channels.
 bool is_zip_rows(const Imf::Header& header);
 
-/// The bytes of a row of all channels of such a part.
-std::size_t zip_row_bytes(const Imf::Header& header);
-
-/// The rows of a chunk of ZIP or ZIPS.
-int rows_of_zip_chunk(const Imf::Header& header);
-
 /// A channel to read, as floats or as it is stored.
 struct ZipRead {
   std::string channel;

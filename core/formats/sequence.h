@@ -54,6 +54,13 @@ struct FrameNumber {
 /// a date do not count, nor do fewer digits at the end of a word, which may be a shot's (sh010).
 FrameNumber frame_number_in(const std::string& path);
 
+/// Explains a name without a file: it holds another program's token, or a range. "" if it holds neither.
+std::string foreign_pattern_in(const std::string& name);
+
+/// Explains a pattern without a file in the same way, or names the files that differ in digits, ending or separator.
+/// Begins with ": "; "" if there is no explanation.
+std::string why_no_frames(const FramePattern& pattern);
+
 /// Fails with ErrorKind::usage if the name of an output, where it has one, has not the ending of `format`, such as
 /// ".exr". A frame number or the suffix of a file in the making may follow the ending: ao.exr.0001, ao.exr.tmp.
 void require_ending(const std::string& path, const char* option, const char* ending, const char* format);

@@ -119,24 +119,21 @@ void Buffer::make_staging(Device& device) const {
 }
 
 bool Buffer::allocate(Device& device, MemoryUse use, Allocation& allocation) const {
-  VkBufferCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  auto info = structure<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
   info.size = capacity_ + 2 * guard_;
   info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT |
                VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-  VkBuffer buffer = VK_NULL_HANDLE;
-  check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer), "vkCreateBuffer");
   Allocation made;
-  made.buffer = {device.handle(), buffer};
+  make(made.buffer, device.handle(), vkCreateBuffer, info, "vkCreateBuffer");
   VkMemoryRequirements needs;
-  vkGetBufferMemoryRequirements(device.handle(), buffer, &needs);
+  vkGetBufferMemoryRequirements(device.handle(), made.buffer, &needs);
   const auto type = choose_memory(device.memory(), needs.memoryTypeBits, use);
   if (!type) return false;
   made.memory = device.allocate(needs.size, type->index);
   if (!made.memory) return false;
   made.is_cached = type->is_cached;
-  check(vkBindBufferMemory(device.handle(), buffer, made.memory, 0), "vkBindBufferMemory");
+  check(vkBindBufferMemory(device.handle(), made.buffer, made.memory, 0), "vkBindBufferMemory");
   allocation = std::move(made);
   return true;
 }
@@ -151,15 +148,13 @@ VkBufferView Buffer::texels(const Device& device, VkFormat format) const {
   auto& view = views_[format];
   if (view) return view;
   const VkDeviceSize texel_bytes = format == VK_FORMAT_R32G32B32A32_SFLOAT ? 4 * sizeof(float) : sizeof(float);
-  VkBufferViewCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
+  auto info = structure<VkBufferViewCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO);
   info.buffer = handle();
   info.format = format;
   info.offset = guard_;
   info.range = std::min<VkDeviceSize>((capacity_ + guard_) / texel_bytes, device.most_texels()) * texel_bytes;
-  VkBufferView made = VK_NULL_HANDLE;
-  check(vkCreateBufferView(device.handle(), &info, nullptr, &made), "vkCreateBufferView");
-  return view = {device.handle(), made};
+  make(view, device.handle(), vkCreateBufferView, info, "vkCreateBufferView");
+  return view;
 }
 
 bool Buffer::suits(std::size_t bytes) const {

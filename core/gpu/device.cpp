@@ -3,7 +3,6 @@
 #include "core/gpu/device.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
@@ -44,28 +43,62 @@ DeviceType type_of(VkPhysicalDeviceType type) {
   }
 }
 
+/// What `list` gives, a function of Vulkan's that tells the number of its entries first; nothing where it fails.
+template <class T, class List>
+std::vector<T> listed(const List& list) {
+  std::uint32_t count = 0;
+  if (list(&count, nullptr) != VK_SUCCESS) return {};
+  std::vector<T> entries(count);
+  return list(&count, entries.data()) == VK_SUCCESS ? entries : std::vector<T>();
+}
+
 bool is_among(const std::vector<VkExtensionProperties>& extensions, const char* name) {
   return std::ranges::any_of(extensions, [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+bool has_extension(VkPhysicalDevice device, const char* name) {
+  return is_among(listed<VkExtensionProperties>([&](std::uint32_t* count, VkExtensionProperties* extensions) {
+                    return vkEnumerateDeviceExtensionProperties(device, nullptr, count, extensions);
+                  }),
+                  name);
 }
 
 /// Whether the loader hides devices with only a portable part of Vulkan, such as MoltenVK's, unless a program asks for
 /// them.
 bool loader_hides_devices() {
+  return is_among(listed<VkExtensionProperties>([](std::uint32_t* count, VkExtensionProperties* extensions) {
+                    return vkEnumerateInstanceExtensionProperties(nullptr, count, extensions);
+                  }),
+                  VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+}
+
+struct PhysicalDevice {
+  VkPhysicalDevice handle;
+  DeviceInfo info;
+};
+
+struct QueueFamily {
+  std::uint32_t index;
+  std::uint32_t timestamp_bits;  // 0: no timestamps
+};
+
+/// The first queue family that computes; nullopt if none does.
+std::optional<QueueFamily> compute_family(VkPhysicalDevice device) {
   std::uint32_t count = 0;
-  if (vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr) != VK_SUCCESS) return false;
-  std::vector<VkExtensionProperties> extensions(count);
-  if (vkEnumerateInstanceExtensionProperties(nullptr, &count, extensions.data()) != VK_SUCCESS) return false;
-  return is_among(extensions, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  for (std::uint32_t i = 0; i < count; i++)
+    if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) return QueueFamily{i, families[i].timestampValidBits};
+  return std::nullopt;
 }
 
 /// The first thing that the kernels need and a device lacks; empty if it lacks nothing.
 std::string missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties& properties) {
   if (properties.apiVersion < VK_API_VERSION_1_2) return "Vulkan 1.2";
   if (!compute_family(device)) return "a compute queue";
-  VkPhysicalDeviceVulkan12Features features12{};
-  features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-  VkPhysicalDeviceFeatures2 features{};
-  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  auto features12 = structure<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+  auto features = structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.pNext = &features12;
   vkGetPhysicalDeviceFeatures2(device, &features);
   return features12.scalarBlockLayout ? "" : "scalar block layout";
@@ -73,10 +106,9 @@ std::string missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties
 
 /// The free bytes of the largest device-local heap; all its bytes if the driver does not tell.
 std::uint64_t free_bytes_of(VkPhysicalDevice device) {
-  VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{};
-  budget.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT;
-  VkPhysicalDeviceMemoryProperties2 properties{};
-  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2;
+  auto budget = structure<VkPhysicalDeviceMemoryBudgetPropertiesEXT>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT);
+  auto properties = structure<VkPhysicalDeviceMemoryProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2);
   const bool has_budget = has_extension(device, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
   if (has_budget) properties.pNext = &budget;
   vkGetPhysicalDeviceMemoryProperties2(device, &properties);
@@ -94,13 +126,12 @@ std::uint64_t free_bytes_of(VkPhysicalDevice device) {
 }
 
 PhysicalDevice describe(VkPhysicalDevice device, std::uint32_t index) {
-  VkPhysicalDeviceVulkan11Properties properties11{};
-  properties11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
-  VkPhysicalDeviceVulkan12Properties properties12{};
-  properties12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
+  auto properties11 =
+      structure<VkPhysicalDeviceVulkan11Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES);
+  auto properties12 =
+      structure<VkPhysicalDeviceVulkan12Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES);
   properties12.pNext = &properties11;
-  VkPhysicalDeviceProperties2 properties{};
-  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  auto properties = structure<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
   properties.pNext = &properties12;
   vkGetPhysicalDeviceProperties2(device, &properties);
   VkPhysicalDeviceMemoryProperties memory;
@@ -120,18 +151,6 @@ PhysicalDevice describe(VkPhysicalDevice device, std::uint32_t index) {
   const std::string missing = missing_in(device, properties.properties);
   if (!missing.empty()) info.unusable = "it lacks " + missing;
   return {device, info};
-}
-
-/// The rank of a type of device for `auto`, the best first.
-int rank_of(DeviceType type) {
-  switch (type) {
-    case DeviceType::discrete_gpu: return 0;
-    case DeviceType::integrated_gpu: return 1;
-    case DeviceType::virtual_gpu: return 2;
-    case DeviceType::other: return 3;
-    case DeviceType::cpu: return 4;
-  }
-  return 5;
 }
 
 bool is_number(const std::string& text) {
@@ -158,26 +177,12 @@ std::string list_of(const std::vector<PhysicalDevice>& devices) {
   return list;
 }
 
-}  // namespace
-
-const char* name_of(DeviceType type) {
-  switch (type) {
-    case DeviceType::cpu: return "cpu";
-    case DeviceType::integrated_gpu: return "integrated";
-    case DeviceType::discrete_gpu: return "discrete";
-    case DeviceType::virtual_gpu: return "virtual";
-    case DeviceType::other: break;
-  }
-  return "other";
-}
-
+/// A Vulkan instance, with the validation layer if `validate` asks for it; null if the loader finds no driver at all.
 VkInstance make_instance(bool validate) {
-  VkApplicationInfo application{};
-  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  auto application = structure<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
   application.pApplicationName = "alcove";
   application.apiVersion = VK_API_VERSION_1_2;
-  VkInstanceCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  auto info = structure<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
   info.pApplicationInfo = &application;
   std::vector<const char*> extensions;
   if (loader_hides_devices()) {
@@ -199,6 +204,7 @@ VkInstance make_instance(bool validate) {
   return instance;
 }
 
+/// The devices of an instance, also those that Alcove cannot use.
 std::vector<PhysicalDevice> physical_devices(VkInstance instance) {
   std::uint32_t count = 0;
   check(vkEnumeratePhysicalDevices(instance, &count, nullptr), "vkEnumeratePhysicalDevices");
@@ -207,6 +213,31 @@ std::vector<PhysicalDevice> physical_devices(VkInstance instance) {
   std::vector<PhysicalDevice> devices;
   for (std::uint32_t i = 0; i < count; i++) devices.push_back(describe(handles[i], i));
   return devices;
+}
+
+/// The device that the options ask for. Fails if none fits, naming those of the machine.
+PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const DeviceOptions& options) {
+  const PhysicalDevice* best = nullptr;
+  for (const auto& device : devices) {
+    if (!device.info.unusable.empty() || !is_named(device.info, options.choice)) continue;
+    if (!best || device.info.type < best->info.type) best = &device;
+  }
+  if (devices.empty())
+    fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
+  if (!best)
+    fail(ErrorKind::device, "no usable Vulkan device matches --device \"{}\"; this machine has {}", options.choice,
+         list_of(devices));
+  if (options.require_gpu && best->info.type == DeviceType::cpu)
+    fail(ErrorKind::device, "a GPU is required, and --device {} finds none; this machine has {}", options.choice,
+         list_of(devices));
+  return *best;
+}
+
+}  // namespace
+
+const char* name_of(DeviceType type) {
+  constexpr const char* kNames[] = {"discrete", "integrated", "virtual", "other", "cpu"};
+  return kNames[std::size_t(type)];
 }
 
 std::vector<DeviceInfo> list_devices() {
@@ -229,23 +260,6 @@ std::vector<std::string> driver_variables() {
           "LP_NUM_THREADS",  "LP_NATIVE_VECTOR_WIDTH", "CUDA_VISIBLE_DEVICES"};
 }
 
-PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const DeviceOptions& options) {
-  const PhysicalDevice* best = nullptr;
-  for (const auto& device : devices) {
-    if (!device.info.unusable.empty() || !is_named(device.info, options.choice)) continue;
-    if (!best || rank_of(device.info.type) < rank_of(best->info.type)) best = &device;
-  }
-  if (devices.empty())
-    fail(ErrorKind::device, "no Vulkan device found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
-  if (!best)
-    fail(ErrorKind::device, "no usable Vulkan device matches --device \"{}\"; this machine has {}", options.choice,
-         list_of(devices));
-  if (options.require_gpu && best->info.type == DeviceType::cpu)
-    fail(ErrorKind::device, "a GPU is required, and --device {} finds none; this machine has {}", options.choice,
-         list_of(devices));
-  return *best;
-}
-
 bool is_fast_with_texels(VkDriverId driver, std::string_view driver_info) {
   constexpr std::string_view kMesa = "Mesa ";
   constexpr int kFirstWithoutLoops = 25;  // seen: 22.3 and the source of 23.2 have loops over lanes, 25.0 has none
@@ -253,24 +267,6 @@ bool is_fast_with_texels(VkDriverId driver, std::string_view driver_info) {
   if (driver_info.starts_with(kMesa))
     std::from_chars(driver_info.data() + kMesa.size(), driver_info.data() + driver_info.size(), version);
   return driver == VK_DRIVER_ID_MESA_LLVMPIPE && version < kFirstWithoutLoops;
-}
-
-std::optional<QueueFamily> compute_family(VkPhysicalDevice device) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  for (std::uint32_t i = 0; i < count; i++)
-    if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) return QueueFamily{i, families[i].timestampValidBits};
-  return std::nullopt;
-}
-
-bool has_extension(VkPhysicalDevice device, const char* name) {
-  std::uint32_t count = 0;
-  if (vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr) != VK_SUCCESS) return false;
-  std::vector<VkExtensionProperties> extensions(count);
-  if (vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()) != VK_SUCCESS) return false;
-  return is_among(extensions, name);
 }
 
 namespace {
@@ -337,8 +333,7 @@ void Device::create_instance() {
   if (!instance_)
     fail(ErrorKind::device, "no Vulkan driver found; lavapipe computes on the CPU (Debian: mesa-vulkan-drivers)");
   if (!options_.validate) return;
-  VkDebugUtilsMessengerCreateInfoEXT info{};
-  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+  auto info = structure<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
   info.messageSeverity =
       VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
   info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
@@ -354,10 +349,9 @@ void Device::read_properties() {
   queue_family_ = family.index;
   timestamp_bits_ = family.timestamp_bits;
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
-  VkPhysicalDeviceVulkan12Properties properties12{};
-  properties12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
-  VkPhysicalDeviceProperties2 properties2{};
-  properties2.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  auto properties12 =
+      structure<VkPhysicalDeviceVulkan12Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES);
+  auto properties2 = structure<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
   properties2.pNext = &properties12;
   vkGetPhysicalDeviceProperties2(physical_, &properties2);
   const VkPhysicalDeviceProperties& properties = properties2.properties;
@@ -378,23 +372,19 @@ void Device::read_properties() {
 
 void Device::create_device() {
   const float priority = 1;
-  VkDeviceQueueCreateInfo queue{};
-  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  auto queue = structure<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
   queue.queueFamilyIndex = queue_family_;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  VkPhysicalDeviceVulkan12Features features12{};
-  features12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+  auto features12 = structure<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
   features12.scalarBlockLayout = VK_TRUE;
   // Every device has robustBufferAccess: an index that came from bad input must not end in a lost device.
-  VkPhysicalDeviceFeatures2 features{};
-  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  auto features = structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.pNext = &features12;
   features.features.robustBufferAccess = VK_TRUE;
   std::vector<const char*> extensions;
   if (has_extension(physical_, kPortabilitySubset)) extensions.push_back(kPortabilitySubset);
-  VkDeviceCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  auto info = structure<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
   info.pNext = &features;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
@@ -433,8 +423,7 @@ Memory Device::allocate(VkDeviceSize bytes, std::uint32_t type) {
                                   "take fewer",
                                   info_.name, most_allocations_));
   }
-  VkMemoryAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  auto info = structure<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
   info.allocationSize = bytes;
   info.memoryTypeIndex = type;
   VkDeviceMemory memory = VK_NULL_HANDLE;
@@ -472,8 +461,7 @@ void Device::wait_for(VkFence done, double expected_ms) {
 
 void Device::submit(std::span<const VkCommandBuffer> submissions, std::span<const VkFence> fences) {
   for (std::size_t i = 0; i < submissions.size(); i++) {
-    VkSubmitInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    auto info = structure<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
     info.commandBufferCount = 1;
     info.pCommandBuffers = &submissions[i];
     const std::lock_guard lock(mutex_);

@@ -10,7 +10,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,32 +38,16 @@ class OutOfMemory : public Error {
 /// DeviceLost, and a lack of memory OutOfMemory.
 void check(VkResult result, const char* call);
 
-struct PhysicalDevice {
-  VkPhysicalDevice handle;
-  DeviceInfo info;
-};
+/// A structure of Vulkan's of this type, empty otherwise.
+template <class T>
+T structure(VkStructureType type) {
+  T made{};
+  made.sType = type;
+  return made;
+}
 
-/// A Vulkan instance, with the validation layer if `validate` asks for it; null if the loader finds no driver at all.
-VkInstance make_instance(bool validate);
-
-/// The devices of an instance, also those that Alcove cannot use.
-std::vector<PhysicalDevice> physical_devices(VkInstance instance);
-
-/// The device that the options ask for; `auto` prefers discrete GPUs, and takes a CPU last. Fails with
-/// ErrorKind::device if none fits, naming those of the machine.
-PhysicalDevice choose_device(const std::vector<PhysicalDevice>& devices, const DeviceOptions& options);
-
-struct QueueFamily {
-  std::uint32_t index;
-  std::uint32_t timestamp_bits;  // 0: no timestamps
-};
 /// Whether a driver reads buffers of texels so much faster than storage buffers that kernels should: see with_texels().
 bool is_fast_with_texels(VkDriverId driver, std::string_view driver_info);
-
-/// The first queue family that computes; nullopt if none does.
-std::optional<QueueFamily> compute_family(VkPhysicalDevice device);
-
-bool has_extension(VkPhysicalDevice device, const char* name);
 
 class Device;
 class Kernel;
@@ -95,6 +78,16 @@ class Handle {
 };
 template <class T, void (*destroy)(VkDevice, T, const VkAllocationCallbacks*)>
 using DeviceHandle = Handle<VkDevice, T, destroy>;
+
+/// Makes an object of a device by one of Vulkan's functions, whose name is for messages. Fails as check() does.
+template <class T, void (*destroy)(VkDevice, T, const VkAllocationCallbacks*), class Info>
+void make(DeviceHandle<T, destroy>& to, VkDevice device,
+          VkResult(VKAPI_PTR* create)(VkDevice, const Info*, const VkAllocationCallbacks*, T*), const Info& info,
+          const char* name) {
+  T made{};
+  check(create(device, &info, nullptr, &made), name);
+  to = {device, made};
+}
 
 void free_memory(Device* device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks);
 /// Device memory; it counts among the allocations that the driver allows.

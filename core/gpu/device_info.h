@@ -11,7 +11,8 @@
 
 namespace alcove::gpu {
 
-enum class DeviceType { cpu, integrated_gpu, discrete_gpu, virtual_gpu, other };
+/// The kinds of devices, in the order in which `auto` prefers them.
+enum class DeviceType { discrete_gpu, integrated_gpu, virtual_gpu, other, cpu };
 
 /// A Vulkan device of this machine, as `alcove devices` lists it.
 struct DeviceInfo {

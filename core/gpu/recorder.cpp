@@ -92,12 +92,9 @@ Binding::Binding(std::string_view name, const Buffer* bound) : block(name), buff
 }
 
 Recorder::Recorder(Device& device) : device_(&device) {
-  VkCommandPoolCreateInfo pool_info{};
-  pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  auto pool_info = structure<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
   pool_info.queueFamilyIndex = device.queue_family();
-  VkCommandPool pool = VK_NULL_HANDLE;
-  check(vkCreateCommandPool(device.handle(), &pool_info, nullptr, &pool), "vkCreateCommandPool");
-  pool_ = {device.handle(), pool};
+  make(pool_, device.handle(), vkCreateCommandPool, pool_info, "vkCreateCommandPool");
 }
 
 Recorder::~Recorder() {
@@ -108,31 +105,22 @@ Recorder::~Recorder() {
 Recorder::Submission Recorder::make_submission() {
   const VkDescriptorPoolSize descriptors[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostDispatches * kMostBlocks},
                                               {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, kMostDispatches * kMostBlocks}};
-  VkDescriptorPoolCreateInfo sets_info{};
-  sets_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  auto sets_info = structure<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
   sets_info.maxSets = kMostDispatches;
   sets_info.poolSizeCount = std::uint32_t(std::size(descriptors));
   sets_info.pPoolSizes = descriptors;
-  VkDescriptorPool sets = VK_NULL_HANDLE;
-  check(vkCreateDescriptorPool(device_->handle(), &sets_info, nullptr, &sets), "vkCreateDescriptorPool");
-  Submission submission{VK_NULL_HANDLE, {device_->handle(), sets}, {}, {}};
+  Submission submission;
+  make(submission.sets, device_->handle(), vkCreateDescriptorPool, sets_info, "vkCreateDescriptorPool");
 
-  VkQueryPoolCreateInfo query_info{};
-  query_info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+  auto query_info = structure<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
   query_info.queryType = VK_QUERY_TYPE_TIMESTAMP;
   query_info.queryCount = 2 * kMostDispatches;
-  VkQueryPool queries = VK_NULL_HANDLE;
-  check(vkCreateQueryPool(device_->handle(), &query_info, nullptr, &queries), "vkCreateQueryPool");
-  submission.queries = {device_->handle(), queries};
+  make(submission.queries, device_->handle(), vkCreateQueryPool, query_info, "vkCreateQueryPool");
 
-  VkFenceCreateInfo fence_info{};
-  fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  VkFence done = VK_NULL_HANDLE;
-  check(vkCreateFence(device_->handle(), &fence_info, nullptr, &done), "vkCreateFence");
-  submission.done = {device_->handle(), done};
+  auto fence_info = structure<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+  make(submission.done, device_->handle(), vkCreateFence, fence_info, "vkCreateFence");
 
-  VkCommandBufferAllocateInfo buffer_info{};
-  buffer_info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  auto buffer_info = structure<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
   buffer_info.commandPool = pool_;
   buffer_info.commandBufferCount = 1;
   check(vkAllocateCommandBuffers(device_->handle(), &buffer_info, &submission.commands), "vkAllocateCommandBuffers");
@@ -194,8 +182,7 @@ void Recorder::next_submission() {
   check(vkResetDescriptorPool(device_->handle(), next.sets, 0), "vkResetDescriptorPool");
   next.timed.clear();
   next.ms = 0;
-  VkCommandBufferBeginInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  auto info = structure<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(next.commands, &info), "vkBeginCommandBuffer");
   if (device_->has_timestamps()) vkCmdResetQueryPool(next.commands, next.queries, 0, 2 * kMostDispatches);
@@ -216,8 +203,7 @@ void Recorder::make_room_for(double ms) {
 }
 
 void Recorder::barrier() {
-  VkMemoryBarrier memory{};
-  memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  auto memory = structure<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
   memory.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
   memory.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
   const VkPipelineStageFlags stages =
@@ -339,8 +325,7 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
 /// A descriptor set of the current submission that holds the buffers of the kernel's blocks.
 VkDescriptorSet Recorder::bind(const Kernel& kernel, std::span<const Buffer* const> buffers) {
   const VkDescriptorSetLayout layout = kernel.set_layout();
-  VkDescriptorSetAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  auto info = structure<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
   info.descriptorPool = submissions_[used_ - 1].sets;
   info.descriptorSetCount = 1;
   info.pSetLayouts = &layout;
@@ -353,8 +338,7 @@ VkDescriptorSet Recorder::bind(const Kernel& kernel, std::span<const Buffer* con
     const Block& block = kernel.reflection().blocks[i];
     infos[i] = buffers[i]->bound();
     if (block.texel != VK_FORMAT_UNDEFINED) views[i] = buffers[i]->texels(*device_, block.texel);
-    VkWriteDescriptorSet write{};
-    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    auto write = structure<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
     write.dstSet = set;
     write.dstBinding = block.binding;
     write.descriptorCount = 1;

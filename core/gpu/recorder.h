@@ -127,7 +127,7 @@ class Recorder {
   };
   /// Commands that go to the queue at once.
   struct Submission {
-    VkCommandBuffer commands;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
     DeviceHandle<VkDescriptorPool, vkDestroyDescriptorPool> sets;  // one set per dispatch
     DeviceHandle<VkQueryPool, vkDestroyQueryPool> queries;
     DeviceHandle<VkFence, vkDestroyFence> done;

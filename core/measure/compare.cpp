@@ -13,7 +13,6 @@
 
 #include "core/base/frame_list.h"
 #include "core/base/text.h"
-#include "core/formats/absent_frames.h"
 #include "core/formats/picture.h"
 #include "core/formats/sequence.h"
 #include "core/frame/find/frame_source.h"

@@ -13,6 +13,9 @@
 namespace alcove {
 namespace {
 
+using S = EstimatorSettings;
+using EstimatorGroup = OptionGroup<Settings, S Settings::*>;
+
 /// The range of a radius.
 Range reach() { return above_to(0, 1e18); }
 
@@ -96,9 +99,7 @@ std::string if_by_error_alone(const Settings& all) { return asks_for_confidence(
 std::string if_undenoised(const Settings& all) { return asks_for_shadows(all) ? "" : if_by_error_alone(all); }
 std::string unless_slices_anywhere(const Settings& all) { return asks_for_confidence(all) ? "" : unless_slices(all); }
 
-void add_radius_rows(std::vector<SettingRow>& rows) {
-  using S = EstimatorSettings;
-  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
+void add_radius_rows(EstimatorGroup& pixels) {
   pixels.choice("--estimator", &S::estimator, "gtao: horizons; bitmask: sectors; hbao, crytek: as in older renderers");
   SettingRow& radius = pixels.add(
       {"--radius", "auto|NUMBER[%][,NUMBER[%]...]", "scene units", reach().text,
@@ -107,7 +108,8 @@ void add_radius_rows(std::vector<SettingRow>& rows) {
   radius.repeats = radius.is_common = true;
   pixels.choice("--falloff", &S::falloff, "how a hit's weight fades towards the radius").others_idle(unless_fading);
   pixels
-      .number("falloff-start", &S::falloff_start, "of the radius", below_and_at_least(0, 1), "where the falloff begins")
+      .number("falloff-start", &S::falloff_start, "of the radius", Range{0, 1, false, true, "at least 0 and below 1"},
+              "where the falloff begins")
       .others_idle(unless_fading)
       .idle([](const Settings& all) { return all.estimator.falloff == Falloff::none ? "--falloff is none" : ""; });
   pixels
@@ -116,9 +118,7 @@ void add_radius_rows(std::vector<SettingRow>& rows) {
       .others_idle(unless_slices_anywhere);
 }
 
-void add_search_rows(std::vector<SettingRow>& rows) {
-  using S = EstimatorSettings;
-  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
+void add_search_rows(EstimatorGroup& pixels) {
   const auto unless_crytek = [](const Settings& all) { return unless_estimator(all, {Estimator::crytek}); };
   pixels.number("--slices", &S::slices, "per pixel", between(1, 64), "directions of the search, and to a soft light")
       .idle(unless_slices_anywhere)
@@ -141,16 +141,12 @@ void add_search_rows(std::vector<SettingRow>& rows) {
   pixels.number("--samples", &S::samples, "per pixel", between(4, 64), "samples in the hemisphere").idle(unless_crytek);
   pixels.number("bias", &S::bias, "", between(0, 1e18),
                 "sine of an elevation that blocks nothing, below 1; crytek: scene units of depth");
-  pixels
-      .number("shadow-reach", &S::shadow_reach, "scene units", above_to(0, 1e15),
-              "the farthest blocker of a light; else anywhere in the frame")
-      .idle(unless_lights);
-  pixels
-      .number("sun-azimuth", &S::sun_azimuth, "degrees", between(-360, 360),
-              "a sun's azimuth, counterclockwise from x, seen from above")
-      .idle(unless_lights);
-  pixels.number("sun-elevation", &S::sun_elevation, "degrees", between(-90, 90), "a sun's elevation above the ground")
-      .idle(unless_lights);
+  auto lights = pixels.others_idle(unless_lights);
+  lights.number("shadow-reach", &S::shadow_reach, "scene units", above_to(0, 1e15),
+                "the farthest blocker of a light; else anywhere in the frame");
+  lights.number("sun-azimuth", &S::sun_azimuth, "degrees", between(-360, 360),
+                "a sun's azimuth, counterclockwise from x, seen from above");
+  lights.number("sun-elevation", &S::sun_elevation, "degrees", between(-90, 90), "a sun's elevation above the ground");
   pixels.text("sun", &S::sun, "NAME", "the sun of --lights that these two turn; else its only one")
       .idle([](const Settings& all) {
         const auto& e = all.estimator;
@@ -181,9 +177,7 @@ void add_search_rows(std::vector<SettingRow>& rows) {
       });
 }
 
-void add_filter_rows(std::vector<SettingRow>& rows) {
-  using S = EstimatorSettings;
-  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
+void add_filter_rows(EstimatorGroup& pixels) {
   pixels.choice("--resolution", &S::resolution,
                 "resolution of the estimate; half, quarter: by the nearest surface of 2 x 2, 4 x 4 pixels");
   pixels
@@ -213,9 +207,7 @@ void add_filter_rows(std::vector<SettingRow>& rows) {
       });
 }
 
-void add_denoise_rows(std::vector<SettingRow>& rows) {
-  using S = EstimatorSettings;
-  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
+void add_denoise_rows(EstimatorGroup& pixels) {
   const auto unless_bilateral = [](const Settings& all) {
     return first_of({unless_denoised(all, {Denoise::bilateral}), if_undenoised(all)});
   };
@@ -254,9 +246,7 @@ void add_denoise_rows(std::vector<SettingRow>& rows) {
       .idle(if_undenoised);
 }
 
-void add_shape_rows(std::vector<SettingRow>& rows) {
-  using S = EstimatorSettings;
-  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
+void add_shape_rows(EstimatorGroup& pixels) {
   pixels.number("--intensity", &S::intensity, "", between(0, 100), "factor on the occlusion");
   pixels.number("power", &S::power, "", above_to(0, 100), "exponent of the visibility");
   pixels.number("least", &S::least, "", between(0, 1), "the least AO, in composites too");
@@ -275,8 +265,6 @@ void add_shape_rows(std::vector<SettingRow>& rows) {
       });
   pixels.number("--seed", &S::seed, "", between(0, 4294967295.0), "shifts the pattern of samples")
       .others_idle(if_unsampled);
-  OptionGroup(rows, "Estimator", Effect::none, &Settings::estimator, true)
-      .flag("--no-skip", &S::no_skip, "compute sky and unchanged tiles too; slower, the same bits");
 }
 
 /// Of frames to each side: more are too far away to show the same.
@@ -317,11 +305,14 @@ void add_estimator_rows(std::vector<SettingRow>& rows) {
       .implies(FileRole::input, [](const Settings& all) { return all.preset_files; });
   command_line.show({"--project", "", "", "", "settings from alcove.toml beside the input, or in a folder above it"});
   show("--set", "KEY=VALUE", "any setting: see docs/options.md or man alcove-run");
-  add_radius_rows(rows);
-  add_search_rows(rows);
-  add_filter_rows(rows);
-  add_denoise_rows(rows);
-  add_shape_rows(rows);
+  OptionGroup pixels(rows, "Estimator", Effect::pixels, &Settings::estimator, true);
+  add_radius_rows(pixels);
+  add_search_rows(pixels);
+  add_filter_rows(pixels);
+  add_denoise_rows(pixels);
+  add_shape_rows(pixels);
+  OptionGroup(rows, "Estimator", Effect::none, &Settings::estimator, true)
+      .flag("--no-skip", &EstimatorSettings::no_skip, "compute sky and unchanged tiles too; slower, the same bits");
   add_time_rows(rows);
 }
 

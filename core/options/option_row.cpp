@@ -27,9 +27,6 @@ std::string OptionRow::key() const { return is_only_key() ? name : name.substr(n
 Range above(double low) { return {low, kInfinity, true, true, fmt::format("above {}", low)}; }
 Range at_least(double low) { return {low, kInfinity, false, true, fmt::format("{} or more", low)}; }
 Range between(double low, double high) { return {low, high, false, false, fmt::format("{} to {}", low, high)}; }
-Range below_and_at_least(double low, double high) {
-  return {low, high, false, true, fmt::format("at least {} and below {}", low, high)};
-}
 Range strictly_between(double low, double high) {
   return {low, high, true, true, fmt::format("above {} and below {}", low, high)};
 }

@@ -4,8 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -118,6 +119,14 @@ struct RowOf : OptionRow {
   bool is_given(const Options& options) const { return words(options) != usual; }
 };
 
+/// The files that options name in a role, in the order of the rows.
+template <class Options>
+std::vector<NamedFile> files_of(const std::vector<RowOf<Options>>& rows, const Options& options, FileRole role) {
+  std::vector<NamedFile> files;
+  for (const auto& row : rows) std::ranges::copy(row.files(options, role), std::back_inserter(files));
+  return files;
+}
+
 /// A number's allowed range, as text and as a check.
 struct Range {
   double low, high;
@@ -129,7 +138,6 @@ struct Range {
 Range above(double low);
 Range at_least(double low);
 Range between(double low, double high);
-Range below_and_at_least(double low, double high);
 Range strictly_between(double low, double high);
 Range above_to(double low, double high);
 
@@ -169,6 +177,13 @@ class OptionGroup {
 
   OptionGroup(std::vector<Row>& rows, std::string group, Effect effect, Part part = {}, bool in_library = false)
       : rows_(rows), group_(std::move(group)), effect_(effect), part_(part), in_library_(in_library) {}
+
+  /// The same group for rows that all have this reason: see RowOf::others_idle().
+  OptionGroup others_idle(std::function<std::string(const Options&)> why) const {
+    OptionGroup group = *this;
+    group.others_idle_ = std::move(why);
+    return group;
+  }
 
   template <class Member>
   Row& text(const char* name, Member member, const char* value, const std::string& sentence) {
@@ -260,7 +275,7 @@ class OptionGroup {
     };
     row.usual = row.words(Options{});
     if (!row.usual.empty()) row.default_text = row.usual.front();
-    return row;
+    return others_idle_ ? row.others_idle(others_idle_) : row;
   }
 
   /// An option of the command line alone.
@@ -282,6 +297,7 @@ class OptionGroup {
   const Effect effect_;
   const Part part_;
   const bool in_library_;
+  std::function<std::string(const Options&)> others_idle_ = nullptr;
 };
 
 /// The options that are settings.

@@ -1,13 +1,12 @@
 // Values are tried together, by which the table tells what has no effect; then settings that contradict each other are
 // found, and the option that mends each is named.
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
 #include <algorithm>
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/flat_toml.h"
 #include "core/base/text.h"
+#include "core/base/toml.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
@@ -374,8 +373,6 @@ void check_settings(const Settings& settings) {
   check_scales(settings);
   check_numbers(settings.estimator);
   check_disparity(settings);
-  if (settings.frames.chunk > settings.frames.chunks)
-    fail(ErrorKind::usage, "--chunk {}/{}: there is no such chunk", settings.frames.chunk, settings.frames.chunks);
 }
 
 }  // namespace alcove

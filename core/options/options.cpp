@@ -155,6 +155,24 @@ const std::vector<SettingRow>& option_table() {
   return kTable;
 }
 
+const std::vector<SettingRow>& file_rows() {
+  static const std::vector<SettingRow> kRows = [] {
+    std::vector<SettingRow> rows;
+    OptionGroup(rows, "", Effect::pixels, &Settings::input)
+        .text("INPUT", &InputSettings::input, "",
+              "an EXR file with depth and normals, or a pattern such as frame.%04d.exr")
+        .names(FileRole::input);
+    std::ranges::copy_if(option_table(), std::back_inserter(rows),
+                         [](const SettingRow& row) { return row.role != FileRole::none; });
+    return rows;
+  }();
+  return kRows;
+}
+
+std::vector<NamedFile> files_of(const Settings& settings, FileRole role) {
+  return files_of(file_rows(), settings, role);
+}
+
 const SettingRow& row_of_key(const std::string& key) {
   const auto row = std::ranges::find(option_table(), key, &SettingRow::key);
   if (row == option_table().end()) {

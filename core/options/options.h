@@ -15,6 +15,13 @@ namespace alcove {
 /// The table of all options of `alcove run` but INPUT; it is made once.
 const std::vector<SettingRow>& option_table();
 
+/// INPUT, and the rows of the table that name files: ONE table of the inputs of frames, of their digests for --resume,
+/// of the outputs, and of the refusal to overwrite inputs.
+const std::vector<SettingRow>& file_rows();
+
+/// The files that settings name in a role.
+std::vector<NamedFile> files_of(const Settings& settings, FileRole role);
+
 /// Gives the row of a key of presets. Fails with ErrorKind::usage, naming the nearest, where there is none.
 const SettingRow& row_of_key(const std::string& key);
 

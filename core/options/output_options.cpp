@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/text.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
@@ -30,15 +32,11 @@ std::string unless_shown_composite(const Settings& all) {
 
 /// Reads tint: three numbers from 0 to 1.
 bool read_tint(const std::string& text, std::array<double, 3>& tint) {
-  const auto words = split(text);
-  std::array<double, 3> values{};
-  if (words.size() != values.size()) return false;
-  for (std::size_t c = 0; c < values.size(); c++) {
-    const auto value = number_of(words[c]);
-    if (!value || !(*value >= 0 && *value <= 1)) return false;
-    values[c] = *value;
-  }
-  tint = values;
+  std::vector<double> values;
+  for (const auto& word : split(text)) values.push_back(number_of(word).value_or(-1));
+  const auto is_part = [](double x) { return x >= 0 && x <= 1; };
+  if (values.size() != tint.size() || !std::ranges::all_of(values, is_part)) return false;
+  std::ranges::copy(values, tint.begin());
   return true;
 }
 
@@ -51,39 +49,26 @@ Words debug_files(const Settings& all) {
 
 void add_composite_rows(std::vector<SettingRow>& rows) {
   using S = OutputSettings;
-  OptionGroup pixels(rows, "Output", Effect::pixels, &Settings::output);
-  pixels
-      .number("fog-density", within(&S::look, &CompositeLook::fog_density), "1 / scene units", between(0, 1e30),
-              "density of exponential fog in the beauty, which hides AO")
-      .others_idle(unless_composite);
-  pixels
-      .number("gain", within(&S::look, &CompositeLook::gain), "", between(0, 100),
-              "factor on the occlusion in the composite")
-      .others_idle(unless_composite);
-  pixels
-      .own(
-          {"tint", "R,G,B", "", "0 to 1", "the colour of fully occluded white light in the composite"},
-          [](const S& s) {
-            const auto& tint = s.look.tint;
-            return tint == std::array<double, 3>{} ? "" : fmt::format("{}", fmt::join(tint, ","));
-          },
-          [](S& s, const std::string& text) { return read_tint(text, s.look.tint); },
-          "is not three numbers from 0 to 1")
-      .others_idle(unless_composite);
-  pixels
-      .number("mix", within(&S::look, &CompositeLook::mix), "", between(0, 1), "share of the composite; 0: the beauty")
-      .others_idle(unless_composite);
-  pixels
-      .word("composite-layers", &S::composite_layers, {"all", "rgba"},
-            "all: every channel, part and attribute of the beauty's file; rgba: R, G, B, A alone")
-      .others_idle(unless_composite);
-  pixels
-      .word("composite-compression", &S::composite_compression,
-            {"keep", "none", "rle", "zips", "zip", "piz", "dwaa", "dwab"},
-            "compression of the beauty's part in the composite; keep: the file's, but zip for a lossy one")
-      .others_idle(unless_composite);
-  pixels.text("append-ao", &S::append_ao, "LAYER[.CHANNEL]", "add the AO to the composite as this channel: AO is AO.Y")
-      .idle(unless_composite);
+  auto pixels = OptionGroup(rows, "Output", Effect::pixels, &Settings::output).others_idle(unless_composite);
+  pixels.number("fog-density", within(&S::look, &CompositeLook::fog_density), "1 / scene units", between(0, 1e30),
+                "density of exponential fog in the beauty, which hides AO");
+  pixels.number("gain", within(&S::look, &CompositeLook::gain), "", between(0, 100),
+                "factor on the occlusion in the composite");
+  pixels.own(
+      {"tint", "R,G,B", "", "0 to 1", "the colour of fully occluded white light in the composite"},
+      [](const S& s) {
+        const auto& tint = s.look.tint;
+        return tint == std::array<double, 3>{} ? "" : fmt::format("{}", fmt::join(tint, ","));
+      },
+      [](S& s, const std::string& text) { return read_tint(text, s.look.tint); }, "is not three numbers from 0 to 1");
+  pixels.number("mix", within(&S::look, &CompositeLook::mix), "", between(0, 1),
+                "share of the composite; 0: the beauty");
+  pixels.word("composite-layers", &S::composite_layers, {"all", "rgba"},
+              "all: every channel, part and attribute of the beauty's file; rgba: R, G, B, A alone");
+  pixels.word("composite-compression", &S::composite_compression,
+              {"keep", "none", "rle", "zips", "zip", "piz", "dwaa", "dwab"},
+              "compression of the beauty's part in the composite; keep: the file's, but zip for a lossy one");
+  pixels.text("append-ao", &S::append_ao, "LAYER[.CHANNEL]", "add the AO to the composite as this channel: AO is AO.Y");
 }
 
 std::string unless_supersampled(const Settings& all) {
@@ -93,17 +78,16 @@ std::string unless_supersampled(const Settings& all) {
 
 void add_preview_rows(std::vector<SettingRow>& rows) {
   using S = OutputSettings;
-  OptionGroup pixels(rows, "Output", Effect::pixels, &Settings::output);
   // What it says is known by its bytes, whether the variable names it or the option.
-  OptionGroup files(rows, "Output", Effect::none, &Settings::output);
-  SettingRow& ocio = files.text("ocio", &S::ocio, "FILE",
-                                "OpenColorIO configuration of the preview; else of the variable OCIO, else sRGB");
-  ocio.names(FileRole::input).idle(unless_shown_composite);
-  ocio.is_of_frame = false;
-  pixels.text("display", &S::display, "NAME", "the display of the OpenColorIO configuration; else its default")
-      .idle(unless_shown_composite);
-  pixels.text("view-transform", &S::view_transform, "NAME", "the view of the display; else its default")
-      .idle(unless_shown_composite);
+  OptionGroup(rows, "Output", Effect::none, &Settings::output)
+      .others_idle(unless_shown_composite)
+      .text("ocio", &S::ocio, "FILE", "OpenColorIO configuration of the preview; else of the variable OCIO, else sRGB")
+      .names(FileRole::input)
+      .is_of_frame = false;
+  OptionGroup pixels(rows, "Output", Effect::pixels, &Settings::output);
+  auto shown = pixels.others_idle(unless_shown_composite);
+  shown.text("display", &S::display, "NAME", "the display of the OpenColorIO configuration; else its default");
+  shown.text("view-transform", &S::view_transform, "NAME", "the view of the display; else its default");
   pixels
       .word("preview-style", &S::preview_style, {"auto", "ao", "composite", "split"},
             "auto: the composite, or AO, or the first light's shadow; split: beauty left, composite right")

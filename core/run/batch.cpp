@@ -12,7 +12,6 @@
 #include "core/base/system.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
-#include "core/chain/chain.h"
 #include "core/chain/results/outputs.h"
 #include "core/chain/warm_up.h"
 #include "core/formats/color.h"
@@ -20,13 +19,11 @@
 #include "core/options/options.h"
 #include "core/run/frame_run.h"
 #include "core/run/frame_tally.h"
-#include "core/run/lanes.h"
 #include "core/run/memory.h"
 #include "core/run/pipeline.h"
 #include "core/run/resume.h"
 #include "core/run/run_files.h"
 #include "core/run/run_preview.h"
-#include "core/run/shot_frames.h"
 
 namespace alcove {
 namespace {
@@ -47,7 +44,7 @@ class RunDevice {
       : settings_(plan.settings()), plan_(plan), settled_(settled), frames_(frames) {
     const DeviceSettings& d = settings_.device;
     lanes_.emplace(gpu::DeviceOptions{d.device, d.require_gpu, d.validate}, share_cores());
-    RunMemory memory = memory_for_frames(settings_, info());
+    MemoryBudget memory = memory_for_frames(settings_, info());
     if (settled_) {
       require_room_for_others(memory, plan_, *settled_, settings_, frames_);
       require_buffers_for_others(info().buffer_bytes, *settled_, settings_);
@@ -57,7 +54,7 @@ class RunDevice {
     if (lanes_->count() == 1 && threads_ > 1)
       warm_up_.emplace(lanes_->device(), settings_.estimator, settings_.output, std::min(threads_, kWarmingThreads));
     if (settled_) memory = without_shared_frames(memory, plan_, *settled_, settings_, frames_, lanes_->count());
-    budget_ = budget_of_lane(memory, lanes_->count(), info());
+    budget_ = budget_of_lane(memory, lanes_->count());
   }
 
   const gpu::DeviceInfo& info() { return lanes_->device().info(); }
@@ -68,9 +65,9 @@ class RunDevice {
   /// Divides the cores among the frames in flight on a CPU, and tells the codecs and lavapipe how many threads each
   /// has. A CPU device reads that when it is made, and so before anybody knows whether it is one. Gives the lanes.
   int share_cores() {
-    const RunMemory memory = memory_of_host(settings_);
+    const MemoryBudget memory = memory_of_host(settings_);
     const int lanes = lanes_within(memory, threads_), of_a_frame = threads_ / lanes;
-    set_exr_memory(memory.host_bytes / kCodecPart / std::uint64_t(lanes));
+    set_exr_memory(memory.bytes / kCodecPart / std::uint64_t(lanes));
     set_exr_threads(lanes == 1 ? threads_ : std::max(0, threads_ - lanes));
     // The variable is lavapipe's own; with 0 it makes no threads beside the one that submits.
     if (lanes > 1 || settings_.device.threads > 0)
@@ -79,7 +76,7 @@ class RunDevice {
   }
 
   /// The number of frames at once, up to `most`, for which the memory has room.
-  int lanes_within(const RunMemory& memory, int most) const {
+  int lanes_within(const MemoryBudget& memory, int most) const {
     if (!settled_ || frames_.size() < 2) return 1;
     return frames_at_once(memory, plan_, *settled_, settings_, frames_, most);
   }
@@ -105,7 +102,7 @@ class Batch {
   /// Computes the frames; those that a lost device took with it once more, on a fresh one.
   void compute(const std::vector<int>& frames) {
     const Settings& settings = plan_.settings();
-    const std::uint64_t bytes = memory_of_host(settings).host_bytes;
+    const std::uint64_t bytes = memory_of_host(settings).bytes;
     set_exr_memory(bytes / kCodecPart);
     const auto settled = plan_.is_sequence() ? look_.settle(bytes) : std::nullopt;
     if (settled) note(FrameTally::notes_on(*settled, settings.input));

@@ -4,9 +4,7 @@
 
 #include <functional>
 #include <span>
-#include <string>
 
-#include "core/base/settings.h"
 #include "core/run/run_preview.h"
 #include "core/run/run_report.h"
 

@@ -1,4 +1,4 @@
-// Finds cuts between estimates, and packs estimates as kernels take them.
+// Finds cuts between estimates, packs estimates as kernels take them, and keeps the frames that others use.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/estimates.h"
 
@@ -7,10 +7,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <span>
-
-#include "core/base/text.h"
-#include "kernels/base/reprojection.h"
+#include <utility>
 
 namespace alcove {
 namespace {
@@ -122,13 +121,6 @@ void put(const EstimatedFrame& frame, std::span<std::uint32_t> words) {
       words[(2 + plane / 2) * pixels + i] = value(plane, i) | value(plane + 1, i) << 16;
 }
 
-template <class T>
-gpu::Buffer& uploaded(gpu::Recorder& gpu, const char* name, const std::vector<T>& values) {
-  gpu::Buffer& buffer = gpu.buffer(name, values.size() * sizeof(T), gpu::Use::upload);
-  std::ranges::copy(values, buffer.as<T>().begin());
-  return buffer;
-}
-
 }  // namespace
 
 EstimateSet EstimateSlots::filled(gpu::Recorder& gpu, const FramePlan& plan, const NeighbourEstimates& taken, int frame,
@@ -183,12 +175,55 @@ const EstimatedFrame& NeighbourEstimates::own(int frame) const {
 }
 
 std::string text_of(const NeighbourEstimates& taken) {
-  if (taken.of.empty()) return "";
-  std::vector<int> frames;
-  for (const auto& estimated : taken.of) frames.push_back(estimated->frame);
-  std::ranges::sort(frames);
-  const std::string missing = taken.missing.empty() ? "" : "; missing " + frames_text(taken.missing);
-  return "frames " + frames_text(frames) + missing;
+  Neighbours others;
+  for (const auto& estimated : taken.of) others.frames.push_back(estimated->frame);
+  others.missing = taken.missing;
+  return text_of(others);
+}
+
+NeighbourEstimates SharedFrames::estimates_of(int frame, const std::function<EstimatedFrame(int)>& estimate) {
+  const FramesAround window = plan_.accumulated(frame);
+  NeighbourEstimates taken{{}, estimated_.of(window.there, estimate), window.missing};
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto read = read_.extract(frame)) taken.read = std::move(read.mapped());
+  }
+  const EstimatedFrame& own = taken.own(frame);
+  std::erase_if(taken.of, [&](const auto& other) { return other->frame != frame && is_cut_between(own, *other); });
+  return taken;
+}
+
+void SharedFrames::keep_planes(int frame, ReadPlanes&& read) {
+  const std::lock_guard lock(mutex_);
+  if (std::ranges::find(left_, frame) != left_.end()) read_.insert_or_assign(frame, std::move(read));
+}
+
+void SharedFrames::begin(int frame) {
+  const std::lock_guard lock(mutex_);
+  begun_.insert(frame);
+}
+
+void SharedFrames::done(int frame) {
+  const std::lock_guard lock(mutex_);
+  std::erase(left_, frame);
+  begun_.erase(frame);
+  // Those that take something now, and the next one.
+  std::vector<int> takers(begun_.begin(), begun_.end());
+  const auto next = std::ranges::find_if(left_, [&](int other) { return !begun_.contains(other); });
+  if (next != left_.end()) takers.push_back(*next);
+  const std::vector<int>& shot = plan_.shot();
+  const auto place_of = [&](int number) { return std::ranges::lower_bound(shot, number) - shot.begin(); };
+  const InputSettings input = plan_.at(frame).input;
+  const std::int64_t reach = std::int64_t(farthest_seen(around_of(input))) + 2 * std::int64_t(input.accumulate);
+  const auto is_seen = [&](int other) {
+    return std::ranges::any_of(takers, [&](int taker) { return std::abs(place_of(taker) - place_of(other)) <= reach; });
+  };
+  const auto is_taken = [&](int other) {
+    return std::ranges::any_of(takers, [&](int taker) { return plan_.is_accumulated(other, taker); });
+  };
+  views_.keep(is_seen);
+  estimated_.keep(is_taken);
+  std::erase_if(read_, [&](const auto& read) { return !is_taken(read.first); });
 }
 
 }  // namespace alcove

@@ -1,10 +1,16 @@
-// The estimates of the frames around one frame, which is their mean; and the upload buffers of estimates.
+// The estimates of the frames around one frame, which is their mean; and the upload buffers of estimates. The frames of
+// a shot that use each other.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -63,6 +69,41 @@ class EstimateSlots {
     std::vector<Estimated> held;        // by slot
   };
   std::vector<Group> groups_;
+};
+
+/// Prepared and estimated frames. A frame is kept while one that uses it is being computed or comes next. If neighbours
+/// are computed one after the other, each frame is made once. In any other order memory is bounded all the same, and
+/// late frames are made again. The results depend neither on the lane that asks nor on the order.
+class SharedFrames {
+ public:
+  /// `frames`: the frames to compute, in their order; begin() and done() must be called for each. All are read as
+  /// `settled` is; null: each by itself.
+  SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames)
+      : plan_(plan), views_(plan, settled), left_(frames.begin(), frames.end()) {}
+
+  NeighbourViews& views() { return views_; }
+
+  /// Gives the estimates around a frame, but none behind a cut; `estimate` makes one. Fails as `estimate` does.
+  NeighbourEstimates estimates_of(int frame, const std::function<EstimatedFrame(int)>& estimate);
+  /// Keeps the planes that were read for a frame's estimate until estimates_of() gives them.
+  void keep_planes(int frame, ReadPlanes&& read);
+
+  /// Pins the frames that this one needs.
+  void begin(int frame);
+  /// Releases them.
+  void done(int frame);
+
+  /// The number of estimates that are kept now.
+  std::size_t estimated_count() const { return estimated_.count(); }
+
+ private:
+  const FramePlan& plan_;
+  NeighbourViews views_;
+  SharedCache<EstimatedFrame> estimated_;
+  std::mutex mutex_;                // of all below
+  std::vector<int> left_;           // frames that are not done, in their order
+  std::set<int> begun_;             // of them
+  std::map<int, ReadPlanes> read_;  // of frames that are estimated, until they are computed themselves
 };
 
 }  // namespace alcove

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <limits>
 #include <mutex>
+#include <utility>
 
 #include "core/base/error.h"
-#include "core/base/file.h"
 #include "core/base/image.h"
 #include "core/base/option_words.h"
 #include "core/base/ranks.h"
@@ -75,35 +75,6 @@ std::vector<std::vector<float>> composite_over(FrameSource& source, std::size_t 
 std::uint64_t composite_bytes(const FrameSource& source) {
   if (source.channels[RawPlane::beauty].empty() || composite_window(source) == written_picture(source)) return 0;
   return 2 * std::max(kBytesAtOnce, kRowsOfOutput * row_bytes(source));  // what is read, and what is made of it
-}
-
-CompositeRows::CompositeRows(FrameSource& source, const Window& computed, std::size_t planes, WriteRows write_rows)
-    : source_(source),
-      write_rows_(std::move(write_rows)),
-      computed_(computed),
-      window_(composite_window(source)),
-      planes_(planes),
-      computed_row_(computed.y),
-      row_(window_.y) {}
-
-void CompositeRows::write(std::span<const std::span<const float>> planes) {
-  const int rows = int(planes[0].size() / std::size_t(computed_.width));
-  const Window from{computed_.x, computed_row_, computed_.width, rows};
-  write_until(from.y, {}, {});
-  write_until(from.y + rows, from, planes);
-  computed_row_ += rows;
-}
-
-void CompositeRows::finish() { write_until(window_.y + window_.height, {}, {}); }
-
-void CompositeRows::write_until(int bottom, const Window& from, std::span<const std::span<const float>> planes) {
-  const int step = int(std::clamp<std::uint64_t>(kBytesAtOnce / row_bytes(source_), kRowsOfOutput, 1 << 20));
-  for (const int end = std::min(bottom, window_.y + window_.height); row_ < end;) {
-    const Window part{window_.x, row_, window_.width, std::min(step, end - row_)};
-    const auto composite = composite_over(source_, planes_, part, from, planes);
-    write_rows_(std::vector<std::span<const float>>(composite.begin(), composite.end()));
-    row_ += part.height;
-  }
 }
 
 // Pictures: numbers on a scale of colours, and frames in the display window.
@@ -303,15 +274,17 @@ ExrOutput output_like(const FrameSource& source, const ChannelRef& like, const W
   if (source.reading.supersampling > 1)
     output.own_attributes["alcove/filter"] = fmt::format("{} x {} px by {}", source.reading.supersampling,
                                                          source.reading.supersampling, text_of(settings.filter));
-  if (const std::string hidden = hidden_sources_text(source); !hidden.empty())
-    output.own_attributes[kHiddenAttribute] = hidden;
-  if (!provenance.others.empty()) {
-    std::string& hidden_from = output.own_attributes[kHiddenAttribute];
-    hidden_from += (hidden_from.empty() ? "" : "; ") + provenance.others;
-  }
-  if (!provenance.estimates.empty()) output.own_attributes[kAccumulatedAttribute] = provenance.estimates;
+  std::string hidden = hidden_sources_text(source);
+  if (!hidden.empty() && !provenance.others.empty()) hidden += "; ";
+  hidden += provenance.others;
+  if (!hidden.empty()) output.own_attributes["alcove/hidden"] = hidden;
+  if (!provenance.estimates.empty()) output.own_attributes["alcove/accumulated"] = provenance.estimates;
   if (!provenance.notes.empty()) output.own_attributes[kNotesAttribute] = provenance.notes;
   return output;
+}
+
+SampleType type_of(const OutputSettings& settings) {
+  return settings.type == OutputType::half_float ? SampleType::half_float : SampleType::single_float;
 }
 
 /// The AO file, without pixels.
@@ -322,8 +295,7 @@ ExrOutput aov_file(const FrameSource& source, const EstimatorSettings& estimator
   output.compression = settings.compression;
   if (needs_radius(settings)) output.own_attributes["alcove/radius"] = radius_text(estimator);
   for (const auto& aov : aovs_of(settings)) {
-    const SampleType type =
-        settings.type == OutputType::half_float && !aov.is_float ? SampleType::half_float : SampleType::single_float;
+    const SampleType type = aov.is_float ? SampleType::single_float : type_of(settings);
     for (const auto& channel : channels_of(aov, planes_of(aov, estimator))) output.planes.push_back({channel, type});
   }
   if (wants(settings, &FrameOutputs::scales)) output.own_attributes["alcove/radii"] = radius_text(estimator);
@@ -354,10 +326,6 @@ std::string appended_channel(const OutputSettings& settings) {
   return settings.append_ao.find('.') == settings.append_ao.npos ? settings.append_ao + ".Y" : settings.append_ao;
 }
 
-SampleType type_of(const OutputSettings& settings) {
-  return settings.type == OutputType::half_float ? SampleType::half_float : SampleType::single_float;
-}
-
 /// Whether the composite is a copy of the beauty's file, which is an EXR.
 bool keeps_layers(const FrameSource& source, const OutputSettings& settings) {
   return settings.composite_layers == "all" &&
@@ -367,32 +335,21 @@ bool keeps_layers(const FrameSource& source, const OutputSettings& settings) {
 /// The composite, without pixels. Every channel keeps the beauty's precision.
 ExrOutput composite_file(const FrameSource& source, const Settings& all, const Provenance& provenance) {
   const OutputSettings& settings = all.output;
-  ExrOutput output =
-      output_like(source, source.channels[RawPlane::beauty][0], composite_window(source), settings, provenance);
+  const auto& beauty = source.channels[RawPlane::beauty];
+  ExrOutput output = output_like(source, beauty[0], composite_window(source), settings, provenance);
   output.own_attributes["alcove/composite"] = composite_text(source, all);
   output.own_attributes["alcove/radius"] = radius_text(all.estimator);
   output.compression = settings.composite_compression;
+  const bool is_copy = keeps_layers(source, settings);
+  if (is_copy) output.original = source.files[beauty[0].file].path();
   const char* names[] = {"R", "G", "B", "A"};
-  for (std::size_t c = 0; c < source.channels[RawPlane::beauty].size(); c++)
-    output.planes.push_back({names[c], source.is_half(source.channels[RawPlane::beauty][c])
-                                           ? SampleType::half_float
-                                           : SampleType::single_float});
-  if (!settings.append_ao.empty()) output.planes.push_back({appended_channel(settings), type_of(settings)});
+  for (std::size_t c = 0; c < beauty.size(); c++)
+    output.planes.push_back({is_copy ? beauty[c].channel : names[c],
+                             source.is_half(beauty[c]) ? SampleType::half_float : SampleType::single_float,
+                             is_copy ? beauty[c].part : 0});
+  if (!settings.append_ao.empty())
+    output.planes.push_back({appended_channel(settings), type_of(settings), is_copy ? beauty[0].part : 0});
   return output;
-}
-
-/// The same as a copy of the beauty's file.
-ExrCopySettings composite_copy(const FrameSource& source, const ExrOutput& composite) {
-  const auto& beauty = source.channels[RawPlane::beauty];
-  ExrCopySettings copy{
-      source.files[beauty[0].file].path(), composite.data, composite.compression, {}, composite.own_attributes};
-  for (std::size_t c = 0; c < composite.planes.size(); c++) {
-    const bool is_beauty = c < beauty.size();
-    const ChannelRef& place = beauty[is_beauty ? c : 0];
-    copy.planes.push_back(
-        {place.part, is_beauty ? place.channel : composite.planes[c].channel, composite.planes[c].type});
-  }
-  return copy;
 }
 
 /// Fails where the AO has no place in the composite.
@@ -543,22 +500,19 @@ ReadPlanes kept_planes(const FrameInputs& inputs) {
 
 void read_for_parts(FrameSource& source, const Settings& settings, ReadPlanes& known, std::uint64_t most_bytes) {
   const bool is_read = !are_of(known, source);
+  ReadPlanes planes = std::exchange(known, {});  // where reading fails, there are none
   if (is_read) {
-    known = {};  // where reading fails, there are none
-    ReadPlanes planes;
     std::vector<PlaneRead> reads;
     for (const auto& row : kRawPlanes) {
-      planes[row.plane].resize(source.channels[row.plane].size() * source.reading.data.pixels());
+      planes[row.plane].assign(source.channels[row.plane].size() * source.reading.data.pixels(), 0);
       reads.push_back({&source.channels[row.plane], planes[row.plane].data()});
     }
     read_planes(source, source.reading.data, reads);
-    if (!source.evidence)
-      settle_by_planes(source, settings.input, planes[RawPlane::depth], planes[RawPlane::normal], most_bytes);
-    cut_ramps(source.reading, planes[RawPlane::depth]);
-    known = std::move(planes);
-  } else if (!source.evidence) {
-    settle_by_planes(source, settings.input, known[RawPlane::depth], known[RawPlane::normal], most_bytes);
   }
+  if (!source.evidence)
+    settle_by_planes(source, settings.input, planes[RawPlane::depth], planes[RawPlane::normal], most_bytes);
+  if (is_read) cut_ramps(source.reading, planes[RawPlane::depth]);
+  known = std::move(planes);
 }
 
 FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& window, const Settings& settings,
@@ -615,26 +569,18 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
   return results;
 }
 
-void FrameWriter::write_to(File& file, std::span<const std::span<const float>> rows) {
-  std::visit([&](auto& open) { open.write(rows); }, file);
-}
-
 FrameWriter::FrameWriter(FrameSource& source, const Settings& all, const Provenance& provenance)
     : source_(source), row_(written_of(source).y), notes_(provenance.notes) {
   const OutputSettings& settings = all.output;
   const ExrOutput aovs = aov_file(source, all.estimator, settings, provenance);
-  files_.emplace_back(ExrWriter(settings.output, aovs));
+  files_.emplace_back(settings.output, aovs);
   planes_.push_back(aovs.planes.size());
   if (settings.composite.empty()) return;
   const ExrOutput composite = composite_file(source, all, provenance);
-  if (keeps_layers(source, settings))
-    files_.emplace_back(ExrCopy(settings.composite, composite_copy(source, composite)));
-  else
-    files_.emplace_back(ExrWriter(settings.composite, composite));
+  files_.emplace_back(settings.composite, composite);
   planes_.push_back(composite.planes.size());
-  if (composite_window(source) != written_picture(source))
-    composite_.emplace(source, written_picture(source), composite.planes.size(),
-                       [this](std::span<const std::span<const float>> rows) { write_to(files_.back(), rows); });
+  if (composite.data != aovs.data) composite_row_ = composite.data.y;
+  computed_row_ = aovs.data.y;
 }
 
 void FrameWriter::write(std::span<const std::span<const float>> planes) {
@@ -653,19 +599,39 @@ void FrameWriter::write(std::span<const std::span<const float>> planes) {
 void FrameWriter::write_pixels(std::span<const std::span<const float>> planes) {
   for (std::size_t i = 0; i < files_.size(); i++) {
     const auto rows = planes.first(planes_[i]);
-    if (i > 0 && composite_)
-      composite_->write(rows);
+    if (i > 0 && composite_row_)
+      write_composite(rows);
     else
-      write_to(files_[i], rows);
+      files_[i].write(rows);
     planes = planes.subspan(planes_[i]);
+  }
+}
+
+void FrameWriter::write_composite(std::span<const std::span<const float>> planes) {
+  Window from = written_picture(source_);
+  from.y = computed_row_;
+  from.height = int(planes[0].size() / std::size_t(from.width));
+  write_composite_until(from.y, {}, {});
+  write_composite_until(computed_row_ += from.height, from, planes);
+}
+
+void FrameWriter::write_composite_until(int bottom, const Window& from,
+                                        std::span<const std::span<const float>> planes) {
+  const Window window = composite_window(source_);
+  const int step = int(std::clamp<std::uint64_t>(kBytesAtOnce / row_bytes(source_), kRowsOfOutput, 1 << 20));
+  for (const int end = std::min(bottom, window.y + window.height); *composite_row_ < end;) {
+    const Window part{window.x, *composite_row_, window.width, std::min(step, end - *composite_row_)};
+    const auto composite = composite_over(source_, planes_.back(), part, from, planes);
+    files_.back().write(std::vector<std::span<const float>>(composite.begin(), composite.end()));
+    *composite_row_ += part.height;
   }
 }
 
 void FrameWriter::finish(const std::string& notes) {
   std::map<std::string, std::string> late;
   if (notes != notes_) late[kNotesAttribute] = notes;
-  if (composite_) composite_->finish();
-  for (auto& file : files_) std::visit([&](auto& open) { open.finish(late); }, file);
+  if (composite_row_) write_composite_until(std::numeric_limits<int>::max(), {}, {});
+  for (auto& file : files_) file.finish(late);
 }
 
 std::string radius_text(const EstimatorSettings& estimator) {

@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/chain/chain.h"
@@ -44,10 +43,6 @@ FrameInputs load_frame(gpu::Recorder& gpu, FrameSource& source, const Window& wi
 /// The attribute that holds the warnings of an output's frame; an output without warnings has none.
 inline constexpr const char* kNotesAttribute = "alcove/notes";
 
-/// The attributes that list the frames and views that a frame has used.
-inline constexpr const char* kHiddenAttribute = "alcove/hidden";
-inline constexpr const char* kAccumulatedAttribute = "alcove/accumulated";
-
 /// The origin of an output, for its header.
 struct Provenance {
   std::string options, device;  // the digest of the settings, and the device's name
@@ -71,30 +66,6 @@ std::vector<std::span<const float>> result_planes(const FrameOutputs& outputs, c
 /// The bytes for assembling a composite with another window than the AO; else 0.
 std::uint64_t composite_bytes(const FrameSource& source);
 
-/// Writes the next rows of a composite, plane by plane.
-using WriteRows = std::function<void(std::span<const std::span<const float>>)>;
-
-/// Writes a composite whose window is not the computed one, row by row.
-class CompositeRows {
- public:
-  /// The source must outlive this. `computed`: the window of the rows to come, of so many planes.
-  CompositeRows(FrameSource& source, const Window& computed, std::size_t planes, WriteRows write_rows);
-
-  /// The next computed rows, as wide as that window; the beauty's rows above them go first.
-  void write(std::span<const std::span<const float>> planes);
-  /// The beauty's rows below all computed ones.
-  void finish();
-
- private:
-  void write_until(int bottom, const Window& from, std::span<const std::span<const float>> planes);
-
-  FrameSource& source_;
-  const WriteRows write_rows_;
-  const Window computed_, window_;
-  const std::size_t planes_;
-  int computed_row_, row_;  // the next ones
-};
-
 /// The AO file and the composite, written from top to bottom, each whole or not at all. Fails with ErrorKind::output.
 class FrameWriter {
  public:
@@ -110,17 +81,19 @@ class FrameWriter {
   void finish() { finish(notes_); }
 
  private:
-  using File = std::variant<ExrWriter, ExrCopy>;
-  static void write_to(File& file, std::span<const std::span<const float>> rows);
   /// Gives the files pixels of their own window.
   void write_pixels(std::span<const std::span<const float>> planes);
+  /// The next computed rows of a composite with another window than the AO; the beauty's rows above them go first.
+  void write_composite(std::span<const std::span<const float>> planes);
+  void write_composite_until(int bottom, const Window& from, std::span<const std::span<const float>> planes);
 
-  const FrameSource& source_;
+  FrameSource& source_;
   int row_;                  // of the frame, the next one
   const std::string notes_;  // that the headers have
-  std::vector<File> files_;
-  std::vector<std::size_t> planes_;         // the number of planes of each file
-  std::optional<CompositeRows> composite_;  // where it has another window than the AO
+  std::vector<ExrWriter> files_;
+  std::vector<std::size_t> planes_;   // the number of planes of each file
+  std::optional<int> composite_row_;  // the next one of a composite with another window than the AO
+  int computed_row_ = 0;              // the next computed one of the picture
 };
 
 /// A plane over a window, as it is, in the picture's display window; 0 where there are no pixels.

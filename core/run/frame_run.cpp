@@ -1,10 +1,9 @@
-// The steps of a frame, and the rows of tiles of a large one.
+// Takes and gives back lanes; the steps of a frame, and the rows of tiles of a large one.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/frame_run.h"
 
 #include <algorithm>
 #include <new>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +20,59 @@
 #include "core/run/tiles.h"
 
 namespace alcove {
+
+Lanes::Lanes(const gpu::DeviceOptions& options, int count) : options_(options), count_(count) {
+  devices_.push_back(std::make_unique<gpu::Device>(options));
+}
+
+int Lanes::count() const {
+  const std::lock_guard lock(mutex_);
+  return count_;
+}
+
+int Lanes::validation_messages() const {
+  int messages = 0;
+  for (const auto& device : devices_) messages += device->validation_messages();
+  return messages;
+}
+
+void Lanes::set_count(int count) {
+  const std::lock_guard lock(mutex_);
+  count_ = count;
+  for (auto& place : free_) place.lane.reset();
+}
+
+Lanes::Place Lanes::take() {
+  const std::lock_guard lock(mutex_);
+  if (!free_.empty()) {
+    Place place = std::move(free_.back());
+    free_.pop_back();
+    return place;
+  }
+  if (is_first_taken_ && device().info().type == gpu::DeviceType::cpu)
+    devices_.push_back(std::make_unique<gpu::Device>(options_));
+  is_first_taken_ = true;
+  return {devices_.back().get(), nullptr};
+}
+
+void Lanes::give_back(Place place) {
+  const std::lock_guard lock(mutex_);
+  free_.push_back(std::move(place));
+}
+
+Lanes::Lease::Lease(Lanes& lanes) : lanes_(lanes), place_(lanes.take()) {
+  try {
+    if (!place_.lane) place_.lane = std::make_unique<Lane>(*place_.device);
+  } catch (...) {
+    lanes_.give_back(std::move(place_));
+    throw;
+  }
+}
+
+Lanes::Lease::~Lease() {
+  if (!keeps_buffers_) place_.lane.reset();
+  lanes_.give_back(std::move(place_));
+}
 
 namespace {
 
@@ -53,17 +105,6 @@ struct FramePart {
 /// Rows of them, from the top.
 using PartRows = std::vector<std::vector<FramePart>>;
 
-/// Copies the results over a part into the planes of the whole frame.
-struct PartCopy {
-  const FramePart& of;
-  const Window& whole;
-
-  template <class T>
-  void operator()(const gpu::Buffer* planes, std::vector<T>& all) const {
-    if (planes) put_in(planes->as<const T>(), of.computed, of.part, whole, all);
-  }
-};
-
 /// One frame on a lane: for its files, or for the estimate that other frames use.
 class FrameRun {
  public:
@@ -76,7 +117,7 @@ class FrameRun {
     throw_if_stopped();
     FrameSource source = open();
     require_numbered_lines(source, settings_.estimator);
-    const WindowLimits limits{memory_of_looks(source), budget_, longest_side(settings_.estimator)};
+    const WindowLimits limits{memory_of_looks(source), budget_};
     require_room_for_preview(source, limits);
     take_others(source);
     const PartRows rows = cut(source, limits, [&](const WindowLimits& of_parts, const Window& computed) {
@@ -129,8 +170,7 @@ class FrameRun {
     Wanted wanted{settings_.output};
     wanted.only_own = wanted.visibility = true;
     std::vector<float> scales, moments;  // over the whole frame
-    const WindowLimits limits{memory_with_others(run_.plan, source, settings_), budget_,
-                              longest_side(settings_.estimator)};
+    const WindowLimits limits{memory_with_others(run_.plan, source, settings_), budget_};
     for (const auto& row : cut(source, limits))
       for (const FramePart& part : row) {
         throw_if_stopped();
@@ -142,7 +182,9 @@ class FrameRun {
         tally_.add_outputs(outputs, part.computed, false);
         const OwnEstimate& own = outputs.own.value();
         result.depth_precision = own.gbuffer.depth_precision;
-        const PartCopy copy{part, whole};
+        const auto copy = [&]<class T>(const gpu::Buffer* planes, std::vector<T>& all) {
+          if (planes) put_in(planes->as<const T>(), part.computed, part.part, whole, all);
+        };
         copy(own.gbuffer.depth, result.depth);
         copy(own.gbuffer.normal, result.normal);
         copy(own.visibility.ao, result.values);
@@ -524,12 +566,11 @@ FrameReport run_on(Lane& lane, const RunContext& run, const MemoryBudget& budget
                           std::string_view(error.what()).find(report.input) != std::string_view::npos;
     if (!is_named) report.error = Error(error.kind(), fmt::format("{}: {}", report.input, error.what()));
   } catch (const std::bad_alloc&) {
-    report.state = FrameState::failed;
-    report.error = Error(ErrorKind::device,
-                         fmt::format("{}: no memory is left for it: let a run take less by --memory", report.input));
+    put_failure(report,
+                Error(ErrorKind::device,
+                      fmt::format("{}: no memory is left for it: let a run take less by --memory", report.input)));
   } catch (const std::exception& error) {
-    report.state = FrameState::failed;
-    report.error = Error(ErrorKind::some_frames_failed, fmt::format("{}: {}", report.input, error.what()));
+    put_failure(report, Error(ErrorKind::some_frames_failed, fmt::format("{}: {}", report.input, error.what())));
   }
   return report;
 }

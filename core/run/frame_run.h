@@ -1,23 +1,83 @@
-// One frame of a run: read, computed and written, whole or in tiles.
+// One frame of a run: read, computed and written, whole or in tiles; and lanes, of which each computes one frame after
+// the other.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <vector>
 
-#include "core/chain/chain.h"
+#include "core/chain/reuse.h"
 #include "core/formats/color.h"
 #include "core/frame/find/frame_source.h"
+#include "core/gpu/recorder.h"
+#include "core/run/estimates.h"
 #include "core/run/frame_files.h"
-#include "core/run/lanes.h"
 #include "core/run/memory.h"
 #include "core/run/plan.h"
 #include "core/run/resume.h"
 #include "core/run/run_preview.h"
 #include "core/run/run_report.h"
-#include "core/run/shot.h"
 
 namespace alcove {
+
+/// The buffers of one frame after the other, and their contents from the frame before.
+struct Lane {
+  explicit Lane(gpu::Device& device) : gpu(device) {}
+
+  gpu::Recorder gpu;
+  LastFrame last;
+  EstimateSlots estimates;
+};
+
+/// One lane for each frame in flight; its buffers are kept from frame to frame. On a CPU each lane has a device of its
+/// own, so that every frame has a core from its first byte to its last. A GPU is shared by all lanes.
+class Lanes {
+  struct Place {
+    gpu::Device* device;
+    std::unique_ptr<Lane> lane;  // null: without buffers
+  };
+
+ public:
+  Lanes(const gpu::DeviceOptions& options, int count);
+
+  gpu::Device& device() { return *devices_.front(); }
+  int count() const;
+  int validation_messages() const;
+
+  /// Changes the number of lanes. Idle lanes release their buffers.
+  void set_count(int count);
+
+  /// Exclusive use of a lane. At most count() threads may have one at once.
+  class Lease {
+   public:
+    explicit Lease(Lanes& lanes);
+    Lease(const Lease&) = delete;
+    Lease& operator=(const Lease&) = delete;
+    ~Lease();
+
+    Lane& lane() { return *place_.lane; }
+    /// Keeps the lane's buffers for the next frame; else they are released with the lease.
+    void keep_buffers() { keeps_buffers_ = true; }
+
+   private:
+    Lanes& lanes_;
+    Place place_;
+    bool keeps_buffers_ = false;
+  };
+
+ private:
+  Place take();
+  void give_back(Place place);
+
+  gpu::DeviceOptions options_;
+  int count_;
+  mutable std::mutex mutex_;  // of all that may change
+  std::vector<std::unique_ptr<gpu::Device>> devices_;
+  std::vector<Place> free_;
+  bool is_first_taken_ = false;
+};
 
 /// The device time of a look. The sum is the time of a run with this look alone.
 struct LookTime {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -95,12 +94,6 @@ std::pair<double, double> sums_in(const gpu::Buffer& pairs) {
   return sums;
 }
 
-/// The member of a report that is there from its first count on.
-template <class T>
-T& counted(std::optional<T>& member) {
-  return member ? *member : member.emplace();
-}
-
 }  // namespace
 
 void FrameTally::add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same) {
@@ -126,9 +119,9 @@ void FrameTally::add_surfaces(const FrameOutputs& outputs) {
   report_.unconfirmed += views.unconfirmed;
   if (!outputs.layer_counts) return;
   const auto layers = counts_in<LayerCounts>(outputs.layer_counts);
-  auto& hidden = counted(report_.hidden);
-  hidden.surfaces += layers.surfaces;
-  hidden.dropped += layers.dropped;
+  if (!report_.hidden) report_.hidden.emplace();
+  report_.hidden->surfaces += layers.surfaces;
+  report_.hidden->dropped += layers.dropped;
 }
 
 /// Adds errors, the share of completed surfaces, and the number of averaged frames.
@@ -140,9 +133,9 @@ void FrameTally::add_errors(const FrameOutputs& outputs, const Window& computed)
   }
   if (outputs.completion) {
     const auto [by_completed, whole] = sums_in(*outputs.completion);
-    auto& occlusion = counted(report_.occlusion);
-    occlusion.by_completed += by_completed;
-    occlusion.whole += whole;
+    if (!report_.occlusion) report_.occlusion.emplace();
+    report_.occlusion->by_completed += by_completed;
+    report_.occlusion->whole += whole;
   }
   if (outputs.count)
     for (const float count : outputs.count->as<const float>().first(computed.pixels()))
@@ -166,12 +159,12 @@ void FrameTally::add_work(const FrameOutputs& outputs, bool is_same) {
   report_.tiles.kept += tiles.kept + (is_same ? tiles.listed : 0);
   report_.tiles.computed += is_same ? 0 : tiles.listed;
   if (!outputs.sites) return;
-  auto& estimates = counted(report_.estimates);
+  if (!report_.estimates) report_.estimates.emplace();
   if (is_same) return;
   const auto sites = counts_in<SiteCounts>(outputs.sites);
-  for (std::size_t k = 0; k < kLattices; k++) estimates[k] += sites.of_lattice[k];
+  for (std::size_t k = 0; k < kLattices; k++) (*report_.estimates)[k] += sites.of_lattice[k];
   // A quick search does not count its sites by lattice.
-  if (outputs.is_quick) estimates.back() += sites.listed;
+  if (outputs.is_quick) report_.estimates->back() += sites.listed;
 }
 
 /// The search along slices that made the estimate, which the settings may only ask for; empty: there is none.
@@ -235,39 +228,28 @@ static std::string window_of_normals(const FrameSource& source) {
 }
 
 void FrameTally::note_repairs(const FrameSource& source) {
-  auto& notes = report_.notes;
-  if (counts_.repaired_depth)
-    notes.push_back(
-        {NoteCode::repaired_depth,
-         fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth),
-         source.note_file(RawPlane::depth)});
-  if (counts_.repaired_normals)
-    notes.push_back({NoteCode::repaired_normals,
-                     fmt::format("{} pixels had no usable normal{}, and got one from depth: give all surfaces normals "
-                                 "(--normal), or if these pixels are sky, its depth (--sky)",
-                                 counts_.repaired_normals, window_of_normals(source)),
-                     source.note_file(RawPlane::normal)});
-  if (counts_.turned_normals)
-    notes.push_back({NoteCode::turned_normals,
-                     fmt::format("the normals of {} pixels faced away from the eye, as on mirrored things and the "
-                                 "backs of cards, and were turned round",
-                                 counts_.turned_normals),
-                     source.note_file(RawPlane::normal)});
-  if (counts_.repaired_material)
-    notes.push_back(
-        {NoteCode::repaired_material_ao,
-         fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material),
-         source.note_file(RawPlane::material_ao)});
-  if (counts_.repaired_beauty)
-    notes.push_back({NoteCode::repaired_beauty,
-                     fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
-                                 counts_.repaired_beauty),
-                     source.note_file(RawPlane::beauty)});
-  if (has_alpha_ && !has_coverage_ && counts_.sky < report_.pixels)
-    notes.push_back({NoteCode::transparent_beauty,
-                     "the beauty's alpha is 0 in all pixels, so the composite is the unchanged beauty: give --beauty a "
-                     "picture without alpha, or with the surfaces' alpha",
-                     source.note_file(RawPlane::beauty)});
+  const auto note = [&](std::uint64_t count, NoteCode code, RawPlane plane, const std::string& text) {
+    if (count > 0) report_.notes.push_back({code, text, source.note_file(plane)});
+  };
+  note(counts_.repaired_depth, NoteCode::repaired_depth, RawPlane::depth,
+       fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth));
+  note(counts_.repaired_normals, NoteCode::repaired_normals, RawPlane::normal,
+       fmt::format("{} pixels had no usable normal{}, and got one from depth: give all surfaces normals (--normal), or "
+                   "if these pixels are sky, its depth (--sky)",
+                   counts_.repaired_normals, window_of_normals(source)));
+  note(
+      counts_.turned_normals, NoteCode::turned_normals, RawPlane::normal,
+      fmt::format("the normals of {} pixels faced away from the eye, as on mirrored things and the backs of cards, and "
+                  "were turned round",
+                  counts_.turned_normals));
+  note(counts_.repaired_material, NoteCode::repaired_material_ao, RawPlane::material_ao,
+       fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material));
+  note(counts_.repaired_beauty, NoteCode::repaired_beauty, RawPlane::beauty,
+       fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
+                   counts_.repaired_beauty));
+  note(has_alpha_ && !has_coverage_ && counts_.sky < report_.pixels, NoteCode::transparent_beauty, RawPlane::beauty,
+       "the beauty's alpha is 0 in all pixels, so the composite is the unchanged beauty: give --beauty a picture "
+       "without alpha, or with the surfaces' alpha");
 }
 
 Notes FrameTally::notes_on(const FrameSource& source, const InputSettings& settings) {

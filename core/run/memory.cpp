@@ -16,7 +16,6 @@
 #include "core/frame/pixels/ramps.h"
 #include "core/gpu/kernel.h"
 #include "core/run/frame_files.h"
-#include "core/run/shot_frames.h"
 #include "kernels/estimate/estimate.h"
 #include "kernels/estimate/exact.h"
 #include "kernels/time/accumulate.h"
@@ -172,52 +171,41 @@ constexpr std::uint64_t kDriverBytes = 96ull << 20;
 /// number decides about speed alone.
 constexpr double kPlannedPart = 0.75;
 
-RunMemory memory_with(const DeviceSettings& settings, std::uint64_t program_bytes, std::uint64_t lane_bytes) {
-  RunMemory memory;
-  memory.program_bytes = program_bytes;
-  memory.lane_bytes = lane_bytes;
-  memory.is_chosen = settings.memory > 0;
+MemoryBudget memory_with(const DeviceSettings& settings, std::uint64_t program_bytes, std::uint64_t lane_bytes) {
   const std::uint64_t allowed = settings.memory ? settings.memory : free_memory() / 2;
-  memory.host_bytes = std::max(settings.least_memory, allowed - std::min(allowed, program_bytes));
-  memory.device_bytes = MemoryBudget::kEndless;
-  return memory;
+  return {.bytes = std::max(settings.least_memory, allowed - std::min(allowed, program_bytes)),
+          .program_bytes = program_bytes,
+          .lane_bytes = lane_bytes,
+          .is_chosen = settings.memory > 0};
 }
 
 }  // namespace
 
-RunMemory memory_of_host(const Settings& settings) {
+MemoryBudget memory_of_host(const Settings& settings) {
   const std::uint64_t kernels = kernel_bytes(settings);
   return memory_with(settings.device, kProcessBytes + kernels, kCpuLaneBytes + kernels);
 }
 
-RunMemory memory_for_frames(const Settings& settings, const gpu::DeviceInfo& device) {
+MemoryBudget memory_for_frames(const Settings& settings, const gpu::DeviceInfo& device) {
   // A CPU device computes in host memory, which is counted already. An integrated GPU's memory is counted as both: its
   // driver may give away less of it than the host has.
-  if (device.type == gpu::DeviceType::cpu) return memory_of_host(settings);
-  const std::uint64_t program_bytes = std::max(kProgramBytes, resident_memory_bytes() + kDriverBytes);
-  RunMemory memory = memory_with(settings.device, program_bytes, kGpuLaneBytes);
-  memory.device_bytes = std::uint64_t(kPlannedPart * double(device.free_bytes));
+  MemoryBudget memory;
+  if (device.type == gpu::DeviceType::cpu) {
+    memory = memory_of_host(settings);
+  } else {
+    const std::uint64_t program_bytes = std::max(kProgramBytes, resident_memory_bytes() + kDriverBytes);
+    memory = memory_with(settings.device, program_bytes, kGpuLaneBytes);
+    memory.device_bytes = std::uint64_t(kPlannedPart * double(device.free_bytes));
+  }
+  memory.buffer_bytes = device.buffer_bytes;
   return memory;
 }
 
-std::uint64_t frames_in(const RunMemory& memory, const FrameMemory& frame, const Window& computed) {
-  const FrameMemory::Bytes bytes = frame.of(computed);
-  const std::uint64_t of_lane = bytes.host + memory.lane_bytes;
-  const std::uint64_t on_host = (memory.host_bytes + memory.lane_bytes) / of_lane;
-  const std::uint64_t on_device = memory.device_bytes / bytes.device;
-  return std::max<std::uint64_t>(1, std::min(on_host, on_device));
-}
-
-MemoryBudget budget_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& device) {
+MemoryBudget budget_of_lane(MemoryBudget memory, int lanes) {
   const auto count = std::uint64_t(lanes);
-  const std::uint64_t of_lanes = (count - 1) * memory.lane_bytes;
-  MemoryBudget budget;
-  budget.bytes = (memory.host_bytes - std::min(memory.host_bytes, of_lanes)) / count;
-  budget.device_bytes = memory.device_bytes / count;
-  budget.buffer_bytes = device.buffer_bytes;
-  budget.program_bytes = memory.program_bytes;
-  budget.is_chosen = memory.is_chosen;
-  return budget;
+  memory.bytes = (memory.bytes - std::min(memory.bytes, (count - 1) * memory.lane_bytes)) / count;
+  memory.device_bytes /= count;
+  return memory;
 }
 
 // What frames see of each other.
@@ -330,23 +318,23 @@ std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame
          most_estimates(plan, frames, std::size_t(lanes));
 }
 
-RunMemory without_shared_frames(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                                const Settings& settings, std::span<const int> frames, int lanes) {
-  RunMemory left = memory;
-  const std::uint64_t bytes = std::min(memory.host_bytes, bytes_of_shot(plan, frame, settings.input, lanes) +
-                                                              bytes_of_estimates(plan, frame, settings, frames, lanes));
-  left.host_bytes -= bytes;
-  left.program_bytes += bytes;
-  return left;
+MemoryBudget without_shared_frames(MemoryBudget memory, const FramePlan& plan, const FrameSource& frame,
+                                   const Settings& settings, std::span<const int> frames, int lanes) {
+  const std::uint64_t bytes = std::min(memory.bytes, bytes_of_shot(plan, frame, settings.input, lanes) +
+                                                         bytes_of_estimates(plan, frame, settings, frames, lanes));
+  memory.bytes -= bytes;
+  memory.program_bytes += bytes;
+  return memory;
 }
 
-int frames_at_once(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame, const Settings& settings,
-                   std::span<const int> frames, int most) {
-  const FrameMemory of_frame = memory_with_others(plan, frame, settings);
+int frames_at_once(const MemoryBudget& memory, const FramePlan& plan, const FrameSource& frame,
+                   const Settings& settings, std::span<const int> frames, int most) {
+  const FrameMemory::Bytes of_frame = memory_with_others(plan, frame, settings).of(frame.reading.data);
   int count = int(std::min(frames.size(), std::size_t(most)));
   const auto has_room = [&] {
-    const RunMemory left = without_shared_frames(memory, plan, frame, settings, frames, count);
-    return frames_in(left, of_frame, frame.reading.data) >= std::uint64_t(count);
+    const MemoryBudget left = without_shared_frames(memory, plan, frame, settings, frames, count);
+    return std::min((left.bytes + left.lane_bytes) / (of_frame.host + left.lane_bytes),
+                    left.device_bytes / of_frame.device) >= std::uint64_t(count);
   };
   while (count > 1 && !has_room()) count--;
   return std::max(1, count);
@@ -354,22 +342,21 @@ int frames_at_once(const RunMemory& memory, const FramePlan& plan, const FrameSo
 
 int threads_of(const DeviceSettings& settings) { return settings.threads > 0 ? settings.threads : core_count(); }
 
-void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+void require_room_for_others(const MemoryBudget& memory, const FramePlan& plan, const FrameSource& frame,
                              const Settings& settings, std::span<const int> frames) {
   const InputSettings& input = settings.input;
   if (around_of(input) == 0 && input.accumulate == 0) return;
-  if (bytes_of_one(plan, frame, settings, frames, false) <= memory.host_bytes) return;
+  if (bytes_of_one(plan, frame, settings, frames, false) <= memory.bytes) return;
   Settings fewer = settings;
   fewer.input.around = int(std::min<std::size_t>(plan.shot().size(), std::size_t(around_of(input))));
   fewer.input.around_all = false;
-  while (fewer.input.around > 0 && bytes_of_one(plan, frame, fewer, frames, true) > memory.host_bytes)
-    fewer.input.around--;
+  while (fewer.input.around > 0 && bytes_of_one(plan, frame, fewer, frames, true) > memory.bytes) fewer.input.around--;
   const std::string mend = input.accumulate > 0 ? fmt::format("a smaller --accumulate than {}", input.accumulate)
                                                 : fmt::format("--around {}", fewer.input.around);
   fail(memory.is_chosen ? ErrorKind::usage : ErrorKind::device,
        "{}: {} leaves {} MiB for frames, too few for each frame's neighbours: give {}, or --memory {}M",
-       frame.depth_path(), memory.is_chosen ? "--memory" : "half of the free memory", memory.host_bytes / kMebibyte,
-       mend, (memory.program_bytes + bytes_of_one(plan, frame, settings, frames, true)) / kMebibyte + 1);
+       frame.depth_path(), memory.is_chosen ? "--memory" : "half of the free memory", memory.bytes / kMebibyte, mend,
+       (memory.program_bytes + bytes_of_one(plan, frame, settings, frames, true)) / kMebibyte + 1);
 }
 
 void require_buffers_for_others(std::uint64_t most_bytes, const FrameSource& frame, const Settings& all) {

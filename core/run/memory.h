@@ -62,37 +62,25 @@ std::uint64_t raw_bytes_of(const FrameSource& source);
 
 // What a run may take.
 
-/// The memory that a run may take: as much as the user says, or half of the free memory.
-struct RunMemory {
-  std::uint64_t program_bytes = 0;  // of host memory: the process with one lane, and without frames
-  std::uint64_t lane_bytes = 0;     // of host memory: each further lane without its frame
-  std::uint64_t host_bytes = 0;     // left for all frames of one lane
-  std::uint64_t device_bytes = 0;   // of buffers in the device's own memory; without a limit where it is the host's
-  bool is_chosen = false;           // the user has said how much
-};
-
-/// For an unknown device: assumes the CPU, which needs the most host memory.
-RunMemory memory_of_host(const Settings& settings);
-RunMemory memory_for_frames(const Settings& settings, const gpu::DeviceInfo& device);
-
-/// The number of frames that fit into the memory if this window of each is computed; at least 1.
-std::uint64_t frames_in(const RunMemory& memory, const FrameMemory& frame, const Window& computed);
-
-/// The memory that one frame in flight may take.
+/// The memory that a run, or one frame in flight, may take: as much as the user says, or half of the free memory.
 struct MemoryBudget {
   static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
 
-  std::uint64_t bytes = 0;                // of host memory
-  std::uint64_t device_bytes = kEndless;  // of the device's own memory
-  std::uint64_t buffer_bytes = 0;         // of one buffer of the device
+  std::uint64_t bytes = 0;                // of host memory, left for frames
+  std::uint64_t device_bytes = kEndless;  // of buffers in the device's own memory; no limit where it is the host's
+  std::uint64_t buffer_bytes = kEndless;  // of one buffer of the device
   std::uint64_t pixels = kEndless;        // at once: fewer than those for which the device had no memory
-  // For messages: the memory of the process without frames, and whether the user has set the limit.
-  std::uint64_t program_bytes = 0;
-  bool is_chosen = false;
+  std::uint64_t program_bytes = 0;        // of host memory: the process with one lane, and without frames
+  std::uint64_t lane_bytes = 0;           // of host memory: each further lane without its frame
+  bool is_chosen = false;                 // the user has said how much
 };
 
+/// For an unknown device: assumes the CPU, which needs the most host memory.
+MemoryBudget memory_of_host(const Settings& settings);
+MemoryBudget memory_for_frames(const Settings& settings, const gpu::DeviceInfo& device);
+
 /// The room of each of `lanes` frames in flight.
-MemoryBudget budget_of_lane(const RunMemory& memory, int lanes, const gpu::DeviceInfo& device);
+MemoryBudget budget_of_lane(MemoryBudget memory, int lanes);
 
 // Other frames of a shot.
 
@@ -111,19 +99,19 @@ std::uint64_t bytes_of_estimates(const FramePlan& plan, const FrameSource& frame
                                  std::span<const int> frames, int lanes);
 
 /// The memory without the part for prepared frames and estimates.
-RunMemory without_shared_frames(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
-                                const Settings& settings, std::span<const int> frames, int lanes);
+MemoryBudget without_shared_frames(MemoryBudget memory, const FramePlan& plan, const FrameSource& frame,
+                                   const Settings& settings, std::span<const int> frames, int lanes);
 
 /// The number of these frames, up to `most`, that the memory has room for at once.
-int frames_at_once(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame, const Settings& settings,
-                   std::span<const int> frames, int most);
+int frames_at_once(const MemoryBudget& memory, const FramePlan& plan, const FrameSource& frame,
+                   const Settings& settings, std::span<const int> frames, int most);
 
 /// The threads of the process: as many as --threads says, else one per core.
 int threads_of(const DeviceSettings& settings);
 
 /// Fails if the memory has no room for the frames around one: with ErrorKind::usage if --memory was given, else with
 /// ErrorKind::device. The message names the number of frames that fit, and the memory that is enough.
-void require_room_for_others(const RunMemory& memory, const FramePlan& plan, const FrameSource& frame,
+void require_room_for_others(const MemoryBudget& memory, const FramePlan& plan, const FrameSource& frame,
                              const Settings& settings, std::span<const int> frames);
 
 /// Fails with ErrorKind::device if a plane of a frame does not fit into a buffer of `most_bytes`. A frame for others is

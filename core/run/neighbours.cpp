@@ -17,7 +17,6 @@
 #include "core/frame/find/motion.h"
 #include "core/frame/settle/settle.h"
 #include "core/run/frame_files.h"
-#include "core/run/shot_frames.h"
 #include "kernels/base/reprojection.h"
 
 namespace alcove {
@@ -72,12 +71,8 @@ Movement movement(std::vector<std::uint32_t> flags) {
 /// Puts what was seen into upload buffers, the `place`-th of the frame that is computed.
 OtherView filled(gpu::Recorder& gpu, const NeighbourView& seen, const Movement& moving, const Camera& here,
                  std::size_t place) {
-  const auto plane = [&]<class T>(const char* name, const std::vector<T>& values) -> const gpu::Buffer* {
-    if (values.empty()) return nullptr;
-    gpu::Buffer& buffer =
-        gpu.buffer(fmt::format("other {} {}", place, name), values.size() * sizeof(T), gpu::Use::upload);
-    std::ranges::copy(values, buffer.as<T>().begin());
-    return &buffer;
+  const auto plane = [&](const char* name, const auto& values) -> const gpu::Buffer* {
+    return values.empty() ? nullptr : &uploaded(gpu, fmt::format("other {} {}", place, name), values);
   };
   OtherView view;
   view.view = seen.view;

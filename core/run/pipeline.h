@@ -6,7 +6,6 @@
 #include <span>
 
 #include "core/run/frame_run.h"
-#include "core/run/lanes.h"
 
 namespace alcove {
 

@@ -9,7 +9,6 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/formats/absent_frames.h"
 #include "core/formats/sequence.h"
 #include "core/frame/raw_plane.h"
 
@@ -220,23 +219,25 @@ void FramePlan::find_shot() {
   std::ranges::copy_if(shot_, std::inserter(absent_, absent_.end()), [&](int frame) { return !has_inputs(frame); });
 }
 
-FramesAround FramePlan::around(int frame, int count) const {
-  const auto here = std::ranges::lower_bound(shot_, frame);
-  const auto before = std::min<std::ptrdiff_t>(count, here - shot_.begin());
-  const auto behind = here != shot_.end() && *here == frame ? here + 1 : here;
-  const auto after = std::min<std::ptrdiff_t>(count, shot_.end() - behind);
+FramesAround FramePlan::within(const Span& span) const {
   FramesAround found;
-  const auto add = [&](int other) { (absent_.contains(other) ? found.missing : found.there).push_back(other); };
-  std::for_each(here - before, here, add);
-  std::for_each(behind, behind + after, add);
+  std::for_each(shot_.begin() + span.first, shot_.begin() + span.last,
+                [&](int frame) { (absent_.contains(frame) ? found.missing : found.there).push_back(frame); });
+  return found;
+}
+
+FramesAround FramePlan::around(int frame, int count) const {
+  const auto here = place_of(frame), size = std::ptrdiff_t(shot_.size());
+  const auto behind = here < size && shot_[std::size_t(here)] == frame ? here + 1 : here;
+  FramesAround found = within({std::max<std::ptrdiff_t>(0, here - count), std::min(size, behind + count)});
+  std::erase(found.there, frame);
+  std::erase(found.missing, frame);
   return found;
 }
 
 std::vector<int> FramePlan::nearest(int frame, int count) const {
-  const auto [first, last] = nearest_places(frame, count);
-  std::vector<int> found;
-  std::copy_if(shot_.begin() + first, shot_.begin() + last, std::back_inserter(found),
-               [&](int other) { return other != frame && !absent_.contains(other); });
+  std::vector<int> found = within(nearest_places(frame, count)).there;
+  std::erase(found, frame);
   return found;
 }
 
@@ -250,12 +251,8 @@ FramePlan::Span FramePlan::nearest_places(int frame, int count) const {
 }
 
 FramesAround FramePlan::accumulated(int frame) const {
-  FramesAround found;
-  if (settings_.input.accumulate == 0) return found;
-  const auto [first, last] = nearest_places(frame, settings_.input.accumulate);
-  std::for_each(shot_.begin() + first, shot_.begin() + last,
-                [&](int other) { (absent_.contains(other) ? found.missing : found.there).push_back(other); });
-  return found;
+  if (settings_.input.accumulate == 0) return {};
+  return within(nearest_places(frame, settings_.input.accumulate));
 }
 
 bool FramePlan::is_accumulated(int other, int frame) const {
@@ -332,6 +329,83 @@ std::vector<int> chunk_of(const std::vector<int>& frames, int chunk, int chunks)
     return frames.begin() + std::ptrdiff_t(frames.size() * std::size_t(i) / std::size_t(chunks));
   };
   return {at(chunk - 1), at(chunk)};
+}
+
+// Frames of a shot that detect movement, are prepared and are estimated.
+
+namespace {
+
+/// The least number of frames on each side that detect motion in a frame. More do if more are used: a thing that rests
+/// for a while is detected only by frames that see the place before it comes or after it has left.
+constexpr int kLeastWitnesses = 2;
+
+int witnesses_to_each_side(int count) { return std::max(count, kLeastWitnesses); }
+
+}  // namespace
+
+bool takes_frames(const InputSettings& settings) {
+  const bool asks_vectors = settings.accumulate > 0 && !settings.motion.empty();
+  return around_of(settings) > 0 || asks_vectors;
+}
+
+bool takes_others(const InputSettings& settings) { return takes_frames(settings) || settings.other_views; }
+
+std::vector<int> seen_around(const FramePlan& plan, int frame) {
+  const int count = around_of(plan.at(frame).input);
+  const std::vector<int> around = plan.around(frame, count).there;
+  if (count == kWholeShot) return around;
+  std::set<int> seen(around.begin(), around.end());
+  for (const int other : around)
+    for (const int witness : witnesses_of(plan, other)) seen.insert(witness);
+  seen.erase(frame);
+  return {seen.begin(), seen.end()};
+}
+
+std::vector<int> witnesses_of(const FramePlan& plan, int frame) {
+  return plan.nearest(frame, witnesses_to_each_side(around_of(plan.at(frame).input)));
+}
+
+int most_witnesses(int count) { return count == kWholeShot ? count : 2 * witnesses_to_each_side(count); }
+
+std::vector<int> frames_seen_for(const FramePlan& plan, int frame) {
+  std::vector<int> first = plan.accumulated(frame).there;
+  if (first.empty()) return seen_around(plan, frame);
+  const InputSettings input = plan.at(frame).input;
+  std::set<int> seen(first.begin(), first.end());
+  for (const int estimated : first) {
+    const std::vector<int> around = seen_around(plan, estimated);
+    seen.insert(around.begin(), around.end());
+    // Vectors are proved by the frames beside theirs.
+    if (input.motion.empty()) continue;
+    const std::vector<int> beside = plan.around(estimated, 1).there;
+    seen.insert(beside.begin(), beside.end());
+  }
+  seen.erase(frame);
+  return {seen.begin(), seen.end()};
+}
+
+SharedCounts shared_counts(const FramePlan& plan, std::span<const int> frames) {
+  std::set<int> prepared, estimated;
+  const auto add = [](std::set<int>& all, const std::vector<int>& more) { all.insert(more.begin(), more.end()); };
+  for (const int frame : frames) add(estimated, plan.accumulated(frame).there);
+  const std::set<int> takers = estimated.empty() ? std::set<int>(frames.begin(), frames.end()) : estimated;
+  const InputSettings& input = plan.settings().input;
+  for (const int taker : takers) {
+    const std::vector<int> seen = seen_around(plan, taker);
+    add(prepared, seen);
+    // Vectors are proved by the frames beside theirs.
+    const bool takes_vectors = !estimated.empty() && !input.motion.empty();
+    if (takes_vectors) add(prepared, plan.around(taker, 1).there);
+    // It is a witness of the frames around it.
+    if (takes_vectors || !seen.empty()) prepared.insert(taker);
+  }
+  return {prepared.size(), estimated.size()};
+}
+
+int farthest_seen(int count) {
+  const int witnesses = witnesses_to_each_side(count);
+  // At the ends of the shot they all lie on one side.
+  return count == kWholeShot ? count : std::max(count + witnesses, 2 * witnesses);
 }
 
 }  // namespace alcove

@@ -1,16 +1,19 @@
-// The frames of a run and the names of their files, found before any work.
+// The frames of a run, the names of their files, and the frames of a shot that influence each other.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/note.h"
 #include "core/base/settings.h"
 #include "core/formats/sequence.h"
-#include "core/options/option_files.h"
+#include "core/options/options.h"
 
 namespace alcove {
 
@@ -83,6 +86,7 @@ class FramePlan {
   struct Span {
     std::ptrdiff_t first, last;  // of the shot; last is beyond it
   };
+  FramesAround within(const Span& span) const;
   Span nearest_places(int frame, int count) const;
   std::ptrdiff_t place_of(int frame) const;
 
@@ -111,6 +115,29 @@ class FramePlan {
   std::vector<int> all_, frames_, missing_, evidence_, holes_, shot_;
   std::set<int> absent_;  // of the shot
 };
+
+/// takes_frames: whether frames use surfaces or movement of other frames; takes_others: of other frames or views.
+bool takes_frames(const InputSettings& settings);
+bool takes_others(const InputSettings& settings);
+
+/// The frames that show movement in `frame`.
+std::vector<int> witnesses_of(const FramePlan& plan, int frame);
+/// Their largest number with `count` frames to each side.
+int most_witnesses(int count);
+
+/// The frames that influence the hidden surfaces of a frame: those around it, and the witnesses of these. In order.
+std::vector<int> seen_around(const FramePlan& plan, int frame);
+
+/// All frames that influence a frame: those around it, and the frames that show movement in these. In order.
+std::vector<int> frames_seen_for(const FramePlan& plan, int frame);
+/// The distance of the farthest of them, in frames of the shot.
+int farthest_seen(int count);
+
+/// The numbers of frames of the shot that are prepared and estimated, each once, for frames computed in this order.
+struct SharedCounts {
+  std::size_t prepared = 0, estimated = 0;
+};
+SharedCounts shared_counts(const FramePlan& plan, std::span<const int> frames);
 
 /// The pattern of the sequence of a single file, by the number in its name, such as shot.####.exr. "" if the name has
 /// no number, or only that of a version or a size. The number may be of a frame or of a shot.

@@ -16,7 +16,6 @@
 #include "core/options/options.h"
 #include "core/run/frame_files.h"
 #include "core/run/run_files.h"
-#include "core/run/shot_frames.h"
 
 namespace alcove {
 namespace {
@@ -26,9 +25,7 @@ namespace {
 Words telling_words(const SettingRow& row, const Settings& settings) {
   if (row.effect == Effect::none) return {};
   Words words = row.words(settings);
-  const auto is_input = [&](const std::string& word) {
-    return row.role == FileRole::input && (!row.is_file || row.is_file(word));
-  };
+  const auto is_input = [&](const std::string& word) { return row.role == FileRole::input && row.names_file(word); };
   std::ranges::replace_if(words, is_input, "given");
   return words;
 }

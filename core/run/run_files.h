@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/options/option_files.h"
+#include "core/options/options.h"
 #include "core/run/plan.h"
 
 namespace alcove {

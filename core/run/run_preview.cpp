@@ -19,7 +19,6 @@
 #include "core/run/memory.h"
 #include "core/run/resume.h"
 #include "core/run/run_files.h"
-#include "core/run/shot_frames.h"
 #include "core/run/tiles.h"
 
 namespace alcove {
@@ -325,22 +324,13 @@ std::string span_text(const std::string& first, const std::string& last) {
 }
 
 /// The frames that a CPU computes at once, and why no more.
-std::string at_once_text(const RunMemory& memory, const FramePlan& plan, const FrameSource& source,
+std::string at_once_text(const MemoryBudget& memory, const FramePlan& plan, const FrameSource& source,
                          const Settings& settings, std::span<const int> wanted) {
   const int threads = threads_of(settings.device),
             count = wanted.size() < 2 ? 1 : frames_at_once(memory, plan, source, settings, wanted, threads);
   if (wanted.size() <= std::size_t(count)) return fmt::format("{} at once, since there are no more", count);
   if (count == threads) return fmt::format("{} at once on a CPU, one per thread (--threads)", count);
   return fmt::format("{} at once, for which there is room (--memory)", count);
-}
-
-/// The memory that a frame of a CPU has.
-WindowLimits limits_of(const Settings& settings, const RunMemory& memory, const FrameMemory& frame) {
-  const MemoryBudget budget{.bytes = memory.host_bytes,
-                            .buffer_bytes = MemoryBudget::kEndless,
-                            .program_bytes = memory.program_bytes,
-                            .is_chosen = memory.is_chosen};
-  return {frame, budget, longest_side(settings.estimator)};
 }
 
 /// The number of tiles, and what they cost; "in tiles" where the depth is unreadable.
@@ -407,11 +397,11 @@ std::string plan_text(RunPreview& look, bool is_wedge) {
 
   // As a run does: codecs take memory for each thread, and as much as they may.
   set_exr_threads(threads_of(first.device));
-  set_exr_memory(memory_of_host(first).host_bytes / kCodecPart);
+  set_exr_memory(memory_of_host(first).bytes / kCodecPart);
   FrameSource source = look.open(first, plan.frames().front());
   if (first.output.read_lights) first.output.read_lights->in_view(source.reading.camera, plan.frames().front());
   // Frames of a sequence are read as one of them that shows enough.
-  if (!plan.is_sequence() && !source.evidence) settle_by_rows(source, first.input, memory_of_host(first).host_bytes);
+  if (!plan.is_sequence() && !source.evidence) settle_by_rows(source, first.input, memory_of_host(first).bytes);
   std::vector<std::string> channels;
   for (const auto& plane : source.channels.entries)
     for (const auto& channel : plane) channels.push_back(channel.channel);
@@ -425,12 +415,12 @@ std::string plan_text(RunPreview& look, bool is_wedge) {
   const std::uint64_t bytes = frame.of(source.reading.data).host;
   InputIdentities identities(plan);
   const auto [wanted, resumed] = frames_to_compute(plan, options_digest(first), identities);
-  const RunMemory host = memory_of_host(first);
+  const MemoryBudget host = memory_of_host(first);
   require_room_for_others(host, plan, source, first, wanted);
-  const RunMemory of_frames = without_shared_frames(host, plan, source, first, wanted, 1);
-  const std::uint64_t memory = of_frames.host_bytes;
+  const MemoryBudget of_frames = without_shared_frames(host, plan, source, first, wanted, 1);
+  const std::uint64_t memory = of_frames.bytes;
   line("size", to_string(written_picture(source)));
-  const WindowLimits limits = limits_of(first, of_frames, frame);
+  const WindowLimits limits{frame, of_frames};
   if (is_wedge && bytes > memory)
     limits.refuse(fmt::format("{}: a wedge needs a frame whole: give a part by --roi", source.depth_path()),
                   source.reading.data);

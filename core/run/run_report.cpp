@@ -9,7 +9,6 @@
 
 #include "core/base/system.h"
 #include "core/base/text.h"
-#include "core/formats/sequence.h"
 
 namespace alcove {
 namespace {

@@ -104,7 +104,7 @@ double sphere_reach(double radius, double nearest, double tangent, double pixels
 
 }  // namespace
 
-Window region_of(const FrameSource& source, const Region& roi) {
+Window region_of(const FrameSource& source, const Window& roi) {
   constexpr std::int64_t kFarthest = 1 << 30;  // px; no file has a window that reaches farther
   const Window& data = source.reading.data;
   const Window picture = picture_of(source.reading, source.reading.display);
@@ -114,10 +114,7 @@ Window region_of(const FrameSource& source, const Region& roi) {
   if (is_near)
     region =
         enlarged({int(left), int(top), roi.width, roi.height}, source.reading.display, source.reading.supersampling);
-  const bool inside = is_near && region.x >= data.x && region.y >= data.y &&
-                      std::int64_t(region.x) + region.width <= std::int64_t(data.x) + data.width &&
-                      std::int64_t(region.y) + region.height <= std::int64_t(data.y) + data.height;
-  if (!inside)
+  if (!is_near || common_part(region, data) != region)
     fail(ErrorKind::usage, "{}: --roi is {}x{} at ({}, {}), and the data window is {}: give a region within it",
          source.depth_path(), roi.width, roi.height, left, top, to_string(picture_of(source.reading, data)));
   return region;
@@ -323,6 +320,8 @@ std::string MemoryNeeds::cost() const {
                      factor < 10 ? fmt::format("{:.2g}", factor) : fmt::format("{:.0f}", factor));
 }
 
+namespace {
+
 MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, const WindowLimits& limits) {
   const Window& whole = written_of(source);
   const Window row{whole.x, whole.y, whole.width, std::min(whole.height, kLeastRows)};
@@ -332,7 +331,7 @@ MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, 
   smallest.kept = raw_bytes_of(source);
   needs.least =
       smallest.kept + row_bytes(limits, row) + limits.memory.of(largest_least(whole, surroundings, limits.memory)).host;
-  smallest.budget = {.bytes = needs.least, .buffer_bytes = MemoryBudget::kEndless};
+  smallest.budget = {.bytes = needs.least};
   // All of it at once may take less than such parts.
   const auto cut = needs.least < needs.at_once ? Cutter(surroundings, smallest).cut(whole) : Cutter::Cut();
   if (cut.rows.empty()) return {needs.at_once, needs.at_once};
@@ -341,8 +340,6 @@ MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, 
   needs.factor = double(cut.pixels) / double(surroundings.around(whole).pixels());
   return needs;
 }
-
-namespace {
 
 /// The surroundings by a depth that is read when they are asked for. Settles the frame where nobody has.
 Surroundings surroundings_of(FrameSource& source, const Settings& settings, const WindowLimits& limits) {
@@ -384,16 +381,20 @@ WindowLimits WindowLimits::in_parts(FrameSource& source, const Settings& setting
          memory_needs(source, settings, limits));
 }
 
+bool WindowLimits::is_too_long(const Window& computed) const {
+  return std::max(computed.width, computed.height) > longest_side(memory.estimator);
+}
+
 bool WindowLimits::allow(const Window& computed, std::uint64_t beside) const {
-  if (computed.pixels() > budget.pixels || std::max(computed.width, computed.height) > longest_side) return false;
+  if (computed.pixels() > budget.pixels || is_too_long(computed)) return false;
   const FrameMemory::Bytes bytes = memory.of(computed);
   return bytes.host + kept + beside <= budget.bytes && bytes.device <= budget.device_bytes &&
          bytes.buffer <= budget.buffer_bytes;
 }
 
 std::string WindowLimits::why_not(const Window& computed) const {
-  if (std::max(computed.width, computed.height) > longest_side)
-    return fmt::format("lines of an exact search have at most {} pixels", longest_side);
+  if (is_too_long(computed))
+    return fmt::format("lines of an exact search have at most {} pixels", longest_side(memory.estimator));
   const FrameMemory::Bytes bytes = memory.of(computed);
   if (bytes.host + kept > budget.bytes)
     return fmt::format("{} leaves {} MiB for it, and at once it takes {} MiB",
@@ -407,9 +408,9 @@ std::string WindowLimits::why_not(const Window& computed) const {
 void WindowLimits::refuse(const std::string& what, const Window& computed) const {
   const std::uint64_t bytes = memory.of(computed).host + kept;
   if (bytes > budget.bytes) refuse(what, MemoryNeeds{bytes, bytes});
-  if (std::max(computed.width, computed.height) > longest_side)
+  if (is_too_long(computed))
     fail(ErrorKind::device, "{}, or give --search steps, since lines of an exact search have at most {} pixels", what,
-         longest_side);
+         longest_side(memory.estimator));
   fail(ErrorKind::device, "{}, or use another --device, with more memory or larger buffers", what);
 }
 

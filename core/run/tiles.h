@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,7 +16,7 @@ namespace alcove {
 
 /// Turns a region of the display window into pixels of the file. Fails with ErrorKind::usage where it is not within the
 /// data window.
-Window region_of(const FrameSource& source, const Region& roi);
+Window region_of(const FrameSource& source, const Window& roi);
 
 /// The margins around parts of a frame. Pixels within a margin influence the results of its part. A margin follows from
 /// the radius at the nearest depth, and from the filters of the settings.
@@ -90,13 +89,14 @@ struct MemoryNeeds {
 struct WindowLimits {
   FrameMemory memory;
   MemoryBudget budget;
-  int longest_side = std::numeric_limits<int>::max();  // px
-  std::uint64_t kept = 0;                              // bytes of host memory that are in use for any window
+  std::uint64_t kept = 0;  // bytes of host memory that are in use for any window
 
   /// The limits of a frame's parts while the frame's decoded planes stay in host memory. Fails as refuse() does if the
   /// planes do not fit.
   WindowLimits in_parts(FrameSource& source, const Settings& settings) const;
 
+  /// Whether the passes number no lines of it.
+  bool is_too_long(const Window& computed) const;
   /// `beside`: further bytes of host memory in use meanwhile.
   bool allow(const Window& computed, std::uint64_t beside = 0) const;
   /// The reason why a window is not allowed: a clause for messages.
@@ -111,9 +111,7 @@ struct WindowLimits {
   std::string option_for(std::uint64_t bytes) const;
 };
 
-/// The needs of a settled frame, cut into parts or not.
-MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, const WindowLimits& limits);
-/// The same; reads the depth row by row, and settles the frame if it is not settled.
+/// The needs of a frame, cut into parts or not. Reads the depth row by row, and settles the frame if it is not settled.
 MemoryNeeds memory_needs(FrameSource& source, const Settings& settings, const WindowLimits& limits);
 
 /// The parts of a frame within the limits, and their cost. Settles the frame if it is not settled. Fails as tiles_of()

@@ -22,7 +22,6 @@
 #include "core/run/memory.h"
 #include "core/run/pipeline.h"
 #include "core/run/run_preview.h"
-#include "core/run/shot_frames.h"
 
 namespace alcove {
 namespace {
@@ -96,14 +95,14 @@ class WedgeMaker {
     }
     memory_ = memory_for_frames(plan().settings(), lanes_.device().info());
     set_exr_threads(core_count());
-    set_exr_memory(memory_.host_bytes / kCodecPart);
+    set_exr_memory(memory_.bytes / kCodecPart);
   }
 
   std::size_t frames() { return plan().frames().size(); }
 
   /// `sheet` may be null.
   void make(Sheet* sheet) {
-    settled_ = firsts_.front().settle(memory_.host_bytes);
+    settled_ = firsts_.front().settle(memory_.bytes);
     for (const int frame : plan().frames()) {
       const std::string file = std::filesystem::path(main_input(looks_.front().settings.input)).filename().string();
       planes_ = {};
@@ -205,7 +204,7 @@ class WedgeMaker {
         add_new(look.notes, report.notes);
       }
     };
-    run_pipeline(lanes_, run, budget_of_lane(memory_, 1, lanes_.device().info()), std::span(&frame, 1), take, {});
+    run_pipeline(lanes_, run, memory_, std::span(&frame, 1), take, {});
   }
 
   /// The AO, or the shadow of the sun that looks turn, and the composite, if there is one.
@@ -242,7 +241,7 @@ class WedgeMaker {
   Lanes lanes_{{device_.device, device_.require_gpu, device_.validate}, 1};
   const std::vector<std::vector<std::size_t>> groups_ = groups_of(looks_);
   std::deque<RunPreview> firsts_;  // of each look
-  RunMemory memory_;
+  MemoryBudget memory_;
   std::optional<FrameSource> settled_;  // as which all are read
   ReadPlanes planes_;                   // of the frame
   std::size_t first_cell_ = 0;          // of the sheet, of the frame

@@ -3,7 +3,7 @@
 #include "core/base/text.h"
 
 #include "core/base/error.h"
-#include "core/base/flat_toml.h"
+#include "core/base/toml.h"
 #include "tests/support/test.h"
 
 namespace alcove::text_test {

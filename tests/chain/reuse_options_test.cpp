@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/options.h"
 #include "core/run/frame_files.h"
-#include "core/run/lanes.h"
+#include "core/run/frame_run.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"

@@ -3,7 +3,7 @@
 #include "core/options/options.h"
 
 #include "core/base/error.h"
-#include "core/base/flat_toml.h"
+#include "core/base/toml.h"
 #include "core/run/resume.h"
 #include "tests/support/command_line.h"
 #include "tests/support/exr_header.h"

@@ -4,7 +4,7 @@
 #include <spirv/unified1/spirv.hpp>
 
 #include "core/chain/chain.h"
-#include "core/run/lanes.h"
+#include "core/run/frame_run.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"

@@ -21,7 +21,6 @@ TEST_F(Color, built_in_is_srgb) {
   const auto linear = rgb;
   transform.apply(rgb);
   for (std::size_t i = 0; i < rgb.size(); i++) EXPECT_NEAR(rgb[i], srgb(linear[i]), 2e-4) << linear[i];
-  EXPECT_THAT(transform.description(), HasSubstr("sRGB"));
 }
 
 TEST_F(Color, a_configuration_is_that_of_the_option_else_of_the_variable) {
@@ -39,7 +38,6 @@ colorspaces:
     std::array<float, 3> rgb{0.2f, 0.4f, 0.8f};
     transform.apply(rgb);
     EXPECT_THAT(rgb, testing::Pointwise(testing::FloatNear(1e-6f), {0.1f, 0.2f, 0.4f}));
-    EXPECT_EQ(transform.description(), "screen / darker");
   };
   ::unsetenv("OCIO");
   expect_half(DisplayTransform(file));

@@ -3,7 +3,6 @@
 #include "core/formats/sequence.h"
 
 #include "core/base/text.h"
-#include "core/formats/absent_frames.h"
 
 #include "tests/support/program.h"
 #include "tests/support/test.h"

@@ -1,6 +1,6 @@
 // TOML: rules of input presets, suites and limits of the benchmark.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/base/flat_toml.h"
+#include "core/base/toml.h"
 #include "core/bench/bench.h"
 #include "core/frame/find/input_rules.h"
 #include "tests/fuzz/fuzz.h"

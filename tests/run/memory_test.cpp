@@ -4,7 +4,6 @@
 #include "core/frame/pixels/ramps.h"
 #include "core/run/frame_files.h"
 #include "core/run/frame_run.h"
-#include "core/run/shot_frames.h"
 #include "core/run/tiles.h"
 #include "tests/support/device.h"
 #include "tests/support/program.h"

@@ -1,11 +1,10 @@
 // What the frames of a shot take from each other: the same whatever is computed beside them, each read once.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/run/shot.h"
+#include "core/run/estimates.h"
 #include "core/run/frame_files.h"
 #include "core/run/memory.h"
 #include "core/run/plan.h"
 #include "core/run/resume.h"
-#include "core/run/shot_frames.h"
 #include "tests/support/device.h"
 #include "tests/support/openexr.h"
 #include "tests/support/walked_shot.h"

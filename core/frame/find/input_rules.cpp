@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/flat_toml.h"
 #include "core/base/option_words.h"
 #include "core/base/text.h"
+#include "core/base/toml.h"
 
 namespace alcove {
 namespace {
