@@ -71,19 +71,20 @@ class EstimateSlots {
   std::vector<Group> groups_;
 };
 
-/// Prepared and estimated frames. A frame is kept while one that uses it is being computed or comes next. If neighbours
-/// are computed one after the other, each frame is made once. In any other order memory is bounded all the same, and
-/// late frames are made again. The results depend neither on the lane that asks nor on the order.
+/// Prepared and estimated frames. A frame stays while one of its users is being computed or comes next. If neighbours
+/// are computed one after the other, each frame is made once. In any other order, late frames are made again, and
+/// memory is bounded all the same. The results depend neither on the asking lane nor on the order.
 class SharedFrames {
  public:
-  /// `frames`: the frames to compute, in their order; begin() and done() must be called for each. All are read as
-  /// `settled` is; null: each by itself.
+  /// `frames`: the frames to compute, in their order. The caller must call begin() and done() for each. `settled` has
+  /// the reading of all frames; null: each frame has its own.
   SharedFrames(const FramePlan& plan, const FrameSource* settled, std::span<const int> frames)
       : plan_(plan), views_(plan, settled), left_(frames.begin(), frames.end()) {}
 
   NeighbourViews& views() { return views_; }
 
-  /// Gives the estimates around a frame, but none behind a cut; `estimate` makes one. Fails as `estimate` does.
+  /// Gives the estimates around a frame, but none behind a cut. `estimate` makes the estimate of one frame. Fails as
+  /// `estimate` does.
   NeighbourEstimates estimates_of(int frame, const std::function<EstimatedFrame(int)>& estimate);
   /// Keeps the planes that were read for a frame's estimate until estimates_of() gives them.
   void keep_planes(int frame, ReadPlanes&& read);

@@ -1,5 +1,5 @@
-// One frame of a run: read, computed and written, whole or in tiles; and lanes, of which each computes one frame after
-// the other.
+// One frame of a run: read, computed and written, whole or in tiles. And lanes: each computes one frame after the
+// other.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -31,8 +31,8 @@ struct Lane {
   EstimateSlots estimates;
 };
 
-/// One lane for each frame in flight; its buffers are kept from frame to frame. On a CPU each lane has a device of its
-/// own, so that every frame has a core from its first byte to its last. A GPU is shared by all lanes.
+/// One lane for each frame in flight. A lane keeps its buffers from frame to frame. On a CPU each lane has a device of
+/// its own, so that every frame has a core from its first byte to its last. A GPU is shared by all lanes.
 class Lanes {
   struct Place {
     gpu::Device* device;
@@ -58,7 +58,7 @@ class Lanes {
     ~Lease();
 
     Lane& lane() { return *place_.lane; }
-    /// Keeps the lane's buffers for the next frame; else they are released with the lease.
+    /// Keeps the lane's buffers for the next frame. Without this call, the end of the lease releases the buffers.
     void keep_buffers() { keeps_buffers_ = true; }
 
    private:

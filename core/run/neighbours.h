@@ -22,8 +22,8 @@
 
 namespace alcove {
 
-/// Values of frames that several frames take: each is made once, by the first thread that needs it. Any thread may ask.
-/// A thread whose value is being made elsewhere makes another missing value first, then waits.
+/// Values of frames for several users. The first thread that needs a value makes it, once. Any thread may ask. If
+/// another thread is making the value, the asking thread makes another missing value first, and then waits.
 template <class T>
 class SharedCache {
  public:

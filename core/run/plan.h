@@ -122,15 +122,15 @@ bool takes_others(const InputSettings& settings);
 
 /// The frames that show movement in `frame`.
 std::vector<int> witnesses_of(const FramePlan& plan, int frame);
-/// Their largest number with `count` frames to each side.
+/// The largest number of such frames, with `count` frames to each side.
 int most_witnesses(int count);
 
-/// The frames that influence the hidden surfaces of a frame: those around it, and the witnesses of these. In order.
+/// The frames that influence the hidden surfaces of a frame, in order: the frames around it, and their witnesses.
 std::vector<int> seen_around(const FramePlan& plan, int frame);
 
-/// All frames that influence a frame: those around it, and the frames that show movement in these. In order.
+/// All frames that influence a frame, in order: the frames around it, and the frames that show their movement.
 std::vector<int> frames_seen_for(const FramePlan& plan, int frame);
-/// The distance of the farthest of them, in frames of the shot.
+/// The distance of the farthest of these frames, in frames of the shot.
 int farthest_seen(int count);
 
 /// The numbers of frames of the shot that are prepared and estimated, each once, for frames computed in this order.

@@ -95,7 +95,7 @@ struct WindowLimits {
   /// planes do not fit.
   WindowLimits in_parts(FrameSource& source, const Settings& settings) const;
 
-  /// Whether the passes number no lines of it.
+  /// Whether the window is too long for the passes to number its lines.
   bool is_too_long(const Window& computed) const;
   /// `beside`: further bytes of host memory in use meanwhile.
   bool allow(const Window& computed, std::uint64_t beside = 0) const;

@@ -30,7 +30,8 @@ struct FakeDriver {
   bool is_robust = false;
   std::vector<std::uint32_t> mapped_types = {};          // types of memory that were mapped
   std::vector<std::vector<std::uint32_t>> modules = {};  // SPIR-V
-  int idle_waits = 0, submissions = 0, queries = 0, slices = 0, allocations = 0, live_allocations = 0, live_instances = 0;
+  int idle_waits = 0, submissions = 0, queries = 0, slices = 0, allocations = 0, live_allocations = 0,
+      live_instances = 0;
 };
 
 FakeDriver& fake_driver();
