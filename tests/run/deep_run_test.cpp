@@ -94,7 +94,7 @@ TEST_F(DeepRun, peels_as_samples_give_the_bits_of_behind) {
 
 TEST_F(DeepRun, samples_along_the_ray_are_told_by_the_flat_depth) {
   const auto planar = result("--aov hidden --deep " + deep);
-  write_deep(deep, {samples(ray_length)});
+  write_deep(deep, {samples([](std::size_t i) { return ray_length(i); })});
   const auto along = result("--aov hidden --deep " + deep);
   ASSERT_EQ(along.size(), planar.size());
   for (std::size_t i = 0; i < along.size(); i++)
@@ -248,7 +248,7 @@ TEST_F(DeepRun, inspect_says_what_samples_hold) {
   EXPECT_EQ(alone[0]["depth"], "the depth of the frame");
   EXPECT_EQ(alone[0]["state"], "messy");
   EXPECT_EQ(inspected({frame, "--deep", deep})["deep"][0]["depth"], "planar");
-  write_deep(deep, {samples(ray_length)});
+  write_deep(deep, {samples([](std::size_t i) { return ray_length(i); })});
   EXPECT_EQ(inspected({frame, "--deep", deep})["deep"][0]["depth"], "along the ray");
 
   write_deep(deep, {samples_of_first()});

@@ -112,7 +112,6 @@ StabilityReport hostile() {
   StabilityReport report{"<script>alert(1)</script>", {{"gtao", 0.01}}, {}};
   report.axes.push_back({"a \"quoted\" <axis>",
                          "units & more",
-                         true,
                          {{1, {}}, {10, {{NoteCode::radius_below_pixel, "<b>radius</b>"}}}, {100, {}}},
                          {{"gtao", {0.01, 0.2, 0.3}, {1}, true}}});
   return report;
