@@ -1,5 +1,5 @@
-// The reading of a frame: the windows of its planes, the meaning of their values, and its camera; evidence for it in the
-// pixels. One map leads from any kind of depth to planar depth, the same on the host and in prepare.comp.
+// The reading of a frame: the windows of its planes, the meaning of their values, and its camera; evidence for it in
+// the pixels. One map leads from any kind of depth to planar depth, the same on the host and in prepare.comp.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

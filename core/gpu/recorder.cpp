@@ -316,8 +316,8 @@ void Recorder::dispatch_bytes(const std::string& stem, std::span<const std::byte
                           std::min(cut.slice_y, cut.y - row), 1);
       });
     }
-  // Nothing follows a last slice in its submission: lavapipe (Mesa 22) begins an indirect dispatch where the last direct
-  // one of the same commands began.
+  // Nothing follows a last slice in its submission: lavapipe (Mesa 22) begins an indirect dispatch where the last
+  // direct one of the same commands began.
   Submission& last = submissions_[used_ - 1];
   if (cut.slices() > 1) last.ms = std::max(last.ms, device_->submission_ms());
 }

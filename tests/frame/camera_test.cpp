@@ -394,11 +394,12 @@ TEST_F(CameraFiles, another_aspect_does_not_fit) {
 }
 
 TEST_F(CameraFiles, none_and_one_that_floats_cannot_hold_are_usage_errors) {
-  const std::vector<std::string> options{"--camera", "--fov",      "--vertical-fov", "--focal-px",
-                                         "--focal",  "--aperture", "--ortho-width"};
+  const std::vector<std::string> options{"--fov",   "--vertical-fov", "--focal-px",
+                                         "--focal", "--aperture",     "--ortho-width"};
   for (const auto& by : {with_fov(1e-300), with_vertical_fov(1e-300), with_focal_px(1e-300), with_lens(1e30, 1e-30),
                          with_ortho_width(1e-200), InputSettings{}})
     expect_error(ErrorKind::usage, options, [&] { camera_for(by, kDisplay, 1, 0); });
+  expect_error(ErrorKind::usage, {"--camera"}, [] { camera_for(InputSettings{}, kDisplay, 1, 0); });
 }
 
 // What kernels are given.
