@@ -36,7 +36,6 @@
 //     (line 30): so it is exactly 1 where nothing rises above the tangent plane.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
 #include "kernels/estimate/estimate.h"
 #include "kernels/base/view.glsl"
 #include "kernels/base/normal.glsl"
@@ -96,9 +95,8 @@ const bool kBehindOthers = (kSolid & kCompletesHidden) != 0u;
 const bool kAllInSectors = (kSolid & kInSectors) != 0u;
 const bool kHasBacks = (kSolid & kTellsBacks) != 0u;
 
-/// A run is so many times as thick as it is wide; less where it is known what lies behind it within reach: else its
-/// width stands in for what is hidden, too.
-const float kThicknessPerWidth = 1.25, kKnownThicknessPerWidth = 0.6;
+/// A run is so many times as thick as it is wide.
+const float kThicknessPerWidth = 1.25;
 
 /// All that is endless is one surface. Two samples of it on either side of the sphere are neighbours if their squared
 /// distances are within this factor of its.
@@ -118,18 +116,7 @@ struct Run {
   float gap;        // steps from the sample before it
   bool is_round;    // it begins behind a rounded outline, of which its back is the mirror image
   float deepest;    // of its samples before the sphere: how far back along the eye's ray they are told to be solid
-  bool is_open;     // samples of it that block have no known back
-  bool is_before;   // such samples are before the sphere
-  bool knows;       // a surface behind it within reach is known
 };
-
-Run run_from(vec2 place, float gap) { return Run(place, place, -1.0, 1.0, gap, false, 0.0, false, false, false); }
-
-Run chosen(Run a, Run b, bool second) {
-  return Run(second ? b.start : a.start, second ? b.end : a.end, second ? b.near : a.near, second ? b.far : a.far,
-             second ? b.gap : a.gap, second ? b.is_round : a.is_round, second ? b.deepest : a.deepest,
-             second ? b.is_open : a.is_open, second ? b.is_before : a.is_before, second ? b.knows : a.knows);
-}
 
 /// The blocked directions: from `far` to `near`, by the receiver's own surface or all that is endless, and the sectors
 /// of runs.
@@ -172,13 +159,12 @@ mat2x3 blocked_arcs(Side side, Blocked blocked, float shift) {
   return own + arcs_of(side, others);
 }
 
-/// How thick a run is, in scene units: with `auto` by its width. Its outer samples are a pixel nearer together than its
-/// edges, and parts of the gaps beside it are its own. z: depth of its last sample. gap: steps from that to the next
-/// sample; 0: there is none.
-float thickness_of(Receiver r, Reach reach, Run run, float z, float gap) {
+/// How thick a run is, in scene units: with `auto` per_width times as wide. Its outer samples are a pixel nearer
+/// together than its edges, and parts of the gaps beside it are its own. z: depth of its last sample. gap: steps from
+/// that to the next sample; 0: there is none.
+float thickness_of(Receiver r, Reach reach, Run run, float z, float per_width, float gap) {
   if (kThickness != kThicknessWidth) return reach.thickness;
   const float pixel = reach.pixel_size * (r.perspective ? z : 1.0), wider = 1.0 + kGapPart * (run.gap + gap);
-  const float per_width = kSurfaces > 1 && run.knows ? kKnownThicknessPerWidth : kThicknessPerWidth;
   const float width = per_width * (length(run.end - run.start) + wider * pixel);
   return run.is_round ? 0.0 : levelled(width, kWidestRun * reach.radius);
 }
@@ -197,13 +183,13 @@ float slope_behind(Receiver r, Side side, Sample s, vec2 beside, float told) {
   return both(s.above, s.within) ? slope : 1.0;
 }
 
-/// 6. The sectors that a run blocks whose front lies within the sphere.
-uint sectors_of(Receiver r, Reach reach, Run run, float thickness, float shift) {
+/// 6. The sectors that a run blocks whose front lies within the sphere. is_open: it has samples without a known back.
+uint sectors_of(Receiver r, Reach reach, Run run, bool is_open, float thickness, float shift) {
   // What is as deep as wide is not clipped to the sphere: no difference in the error, and it takes a tenth off the
   // time.
   const float back = slope_of(kThickness == kThicknessWidth ? run.start + thickness * away_from_eye(r, run.start)
                                                             : back_of(r, run.start, thickness, reach.radius));
-  const float far = kSurfaces == 1 || run.is_open ? lesser(back, run.far) : run.far;
+  const float far = is_open ? lesser(back, run.far) : run.far;
   return run.near >= run.far ? sectors_below(run.near, shift) & ~sectors_below(far, shift) : 0u;
 }
 
@@ -218,8 +204,8 @@ struct Before {
 float within_of(Run run, float thickness) {
   return thickness - sqrt(lesser(dot(run.start, run.start), dot(run.end, run.end)));
 }
-void take_before(inout Before before, Run run, float thickness, float within, bool ends) {
-  const bool taken = both(both(ends, run.is_before), within > before.within);
+void take_before(inout Before before, Run run, bool is_before, float thickness, float within) {
+  const bool taken = both(is_before, within > before.within);
   before.start = taken ? run.start : before.start;
   before.end = taken ? run.end : before.end;
   before.thickness = taken ? thickness : before.thickness;
@@ -243,13 +229,6 @@ vec2 slopes_of(Sample s, bool crosses, float crossing) {
   const bool blocks = both(s.above, s.within);
   return vec2(greater(blocks ? s.slope : -1.0, crosses ? crossing : -1.0),
               lesser(blocks ? s.slope : 1.0, crosses ? crossing : 1.0));
-}
-
-/// The same since the sample before, which the surface is connected to or not. Where it crosses the sphere between
-/// both, it blocks half way to the one beyond.
-vec2 slopes_since(Sample s, bool connected, bool last_above, bool last_within, float last_slope) {
-  const bool crosses = kHard ? both(both(s.above, last_above), both(connected, s.within != last_within)) : false;
-  return slopes_of(s, crosses, mix(s.slope, last_slope, 0.5));
 }
 
 /// The blocked directions that a search has found.
@@ -354,32 +333,28 @@ void complete_endless_beyond(inout Found found, Receiver r, Side side, Reach rea
 void complete_runs_beyond(inout Found found, Receiver r, Side side, Reach reach, Draw draw, Sample border, float gap) {
   Sample last = border;
   const vec2 at_border = slopes_of(border, false, 0.0);
-  Run run = run_from(border.place, 0.0);
-  run.near = at_border.x;
-  run.far = at_border.y;
-  run.is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
-  run.is_open = true;
+  Run run = Run(border.place, border.place, at_border.x, at_border.y, 0.0, false, 0.0);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
+  bool is_before = kHard && border.above && is_before_sphere(r, reach, border.place);
   int k = 0;
   do {
     const Sample s = sample_beyond(r, side, reach, border.offset + gap * (float(k) + draw.jitter));
     const bool joins = both(both(k < kStepsBeyond, both(s.above, last.above)),
                             same_surface(r, reach, s.z, last.z, s.offset - last.offset));
     if (kHard && !joins) {
-      const float thickness = thickness_of(r, reach, run, last.z, gap);
-      found.completed.sectors |= sectors_of(r, reach, run, thickness, draw.shift);
-      take_before(before, run, thickness, within_of(run, thickness), true);
+      const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
+      found.completed.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
+      take_before(before, run, is_before, thickness, within_of(run, thickness));
     }
-    run = chosen(run, run_from(s.place, gap), !joins);
-    run.end = s.place;
-    run.gap = gap;
-    run.is_open = true;
-    const vec2 slopes = slopes_since(s, joins, last.above, last.within, last.slope);
+    is_before = joins ? is_before : false;
+    run = Run(joins ? run.start : s.place, s.place, joins ? run.near : -1.0, joins ? run.far : 1.0, gap, false, 0.0);
+    const vec2 slopes = slopes_of(s, kHard && both(joins, s.within != last.within), mix(s.slope, last.slope, 0.5));
     run.near = max(run.near, slopes.x);
     run.far = min(run.far, slopes.y);
-    run.is_before = kHard && s.above && is_before_sphere(r, reach, s.place) ? true : run.is_before;
+    is_before = kHard && s.above && is_before_sphere(r, reach, s.place) ? true : is_before;
     if (!kHard) {
-      found.blocked.sectors |= sectors_of(r, reach, run, thickness_of(r, reach, run, s.z, gap), draw.shift);
+      const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, gap);
+      found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
       found.completed_sum += add_faded(found, side, reach, draw, s.place);
     }
     last = s;
@@ -408,7 +383,7 @@ struct Solids {
 /// back, and hidden ones as far as the sphere.
 void add_layers(inout Found found, inout Solids last, Receiver r, Side side, Reach reach, Draw draw, Surfaces here,
                 float gap) {
-  [[unroll]] for (int i = 0; i < kSurfaces; i++) {
+  for (int i = 0; i < kSurfaces; i++) {
     const Sample s = here.at[i];
     const bool joins = both(same_surface(r, reach, s.z, last.z[i], gap), last.slopes[i].x >= last.slopes[i].y);
     const vec2 solid = here.has_back[i] ? here.solid[i] : vec2(-1, 1);
@@ -432,8 +407,8 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
   Sample last = receiver_sample(r);
   ivec2 last_pixel = r.pixel;
   Solids solids;
-  [[unroll]] for (int i = 0; i < kSurfaces; i++) solids.z[i] = kNoLastSurface;
-  [[unroll]] for (int i = 0; i < kSurfaces; i++) solids.slopes[i] = vec2(-1, 1);
+  for (int i = 0; i < kSurfaces; i++) solids.z[i] = kNoLastSurface;
+  for (int i = 0; i < kSurfaces; i++) solids.slopes[i] = vec2(-1, 1);
   for (int k = 0; k < count; k++) {
     const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter);
     Sample s;
@@ -441,7 +416,7 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
     if (kSurfaces == 1) {
       s = sample_at(r, side, reach, offset);
     } else {
-      const Surfaces here = surfaces_at(r, side, reach, offset, round(side.direction_px * offset), plane);
+      const Surfaces here = surfaces_at(r, side, reach, offset, plane);
       add_layers(found, solids, r, side, reach, draw, here, offset - last.offset);
       s = here.at[0];
       has_back = here.has_back[0];
@@ -469,156 +444,68 @@ void search_endless(inout Found found, Receiver r, Side side, Reach reach, Draw 
   }
 }
 
-/// A surface of the last sample, and the run that it belongs to.
-struct Slot {
-  float z;  // kNoLastSurface: there is none
-  float slope;
-  bool above, within;
-  bool own;  // the receiver's surface
-  Run run;
-};
-
-/// The slot from which a surface goes on; one of them where it begins.
-Slot slot_before(Slot slots[kMostSurfaces], int from) {
-  Slot slot = slots[0];
-  [[unroll]] for (int j = 1; j < kSurfaces; j++) {
-    const bool is_it = from == j;
-    const Slot other = slots[j];
-    slot = Slot(is_it ? other.z : slot.z, is_it ? other.slope : slot.slope, is_it ? other.above : slot.above,
-                is_it ? other.within : slot.within, is_it ? other.own : slot.own, chosen(slot.run, other.run, is_it));
-  }
-  return slot;
-}
-
-/// What the run of a slot blocks if it ends at its last sample.
-struct End {
-  uint sectors;
-  float thickness, within;  // before the sphere: see Before
-};
-
-End end_of(Receiver r, Reach reach, Slot slot, float gap, float shift) {
-  const float thickness = thickness_of(r, reach, slot.run, slot.z, gap), deep = max(thickness, slot.run.deepest);
-  return End(sectors_of(r, reach, slot.run, thickness, shift), deep, within_of(slot.run, deep));
-}
-
-void end_run(inout Found found, inout Before before, Run run, End end, bool ends) {
-  found.blocked.sectors |= ends ? end.sectors : 0u;
-  take_before(before, run, end.thickness, end.within, ends);
-}
-
-/// Which surfaces of the last sample those of the next one go on from.
-struct Links {
-  int from[kMostSurfaces];
-  bool connected;  // both first surfaces are one, by the first of the pixel in the middle
-};
-
-Links links_to(Receiver r, Side side, Reach reach, Surfaces here, ivec2 pixel, Slot slots[kMostSurfaces], float last_z,
-               ivec2 last_pixel, float gap, int plane) {
-  const ivec2 middle = last_pixel + pixel >> 1;
-  float z[kMostSurfaces], middle_z[kMostSurfaces];
-  [[unroll]] for (int j = 0; j < kSurfaces; j++) z[j] = slots[j].z;
-  // The receiver itself need be no occluder.
-  [[unroll]] for (int i = 0; i < kSurfaces; i++) {
-    middle_z[i] = middle == last_pixel ? z[i] : depth_at(r, side, reach, middle, i, plane);
-  }
-  return Links(links_of(r, reach, here, middle_z, z, gap),
-               is_through(r, reach, here.at[0].z, middle_z[0], last_z, gap));
-}
-
-/// Whether the surface of a slot goes on above the tangent plane.
-bool goes_on_above(Surfaces here, int from[kMostSurfaces], int j) {
-  bool goes_on = false;
-  [[unroll]] for (int i = 0; i < kSurfaces; i++) goes_on = both(from[i] == j, here.at[i].above) ? true : goes_on;
-  return goes_on;
-}
-
-/// How much deeper than its front a sample's solid is, as its pixel tells: by the rounded outline behind which its run
-/// begins, or by what is seen of it.
-float told_behind(inout Run run, Receiver r, Reach reach, Sample s, uint word, uint outline, bool begins) {
-  const float mirrored = depth_told(r, reach, s, unpack_mirrored(word >> outline));
-  run.is_round = begins ? mirrored >= 0.0 : run.is_round;
-  return both(run.is_round, mirrored >= 0.0) ? mirrored : greater(depth_told(r, reach, s, unpack_depth(word)), 0.0);
-}
-
-/// Takes the i-th surface of a sample into the slot that it goes on from. connected: it goes on from any.
-void take_sample(inout Found found, inout Slot slot, Receiver r, Side side, Reach reach, Surfaces here, int i,
-                 vec2 beside, bool connected, float gap) {
-  const Sample s = here.at[i];
-  const vec2 open = slopes_since(s, connected, slot.above, slot.within, slot.slope);
-  const bool begins = both(connected, s.above) ? false : true, has_back = here.has_back[i];
-  const bool own = begins ? !s.above : slot.own, counts = both(here.exists[i], !own);
-  found.blocked.near = greater(both(here.exists[i], own) ? open.x : -1.0, found.blocked.near);
-  Run run = chosen(slot.run, run_from(s.place, gap), begins);
-  run.end = s.place;
-  const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
-  run.knows = knows ? true : run.knows;
-  // Of first surfaces without a known one behind them their pixel tells how far back they are solid.
-  float told = 0.0, end = 1.0;
-  if (kHasBacks && i == 0) {
-    const bool is_told = both(!knows, !has_back);
-    const ivec2 pixel = r.pixel + ivec2(beside);
-    const uint word = is_told ? backs[pixel.y * reach.width + pixel.x] : 0u;
-    const float deeper = told_behind(run, r, reach, s, word, outline_of(side.direction_px), begins);
-    told = is_told ? deeper : 0.0;
-    end = is_told ? slope_behind(r, side, s, beside, told) : 1.0;
-  }
-  const vec2 slopes = has_back ? here.solid[i] : open;
-  run.near = greater(counts ? slopes.x : -1.0, run.near);
-  run.far = lesser(counts ? lesser(slopes.y, end) : 1.0, run.far);
-  const bool is_open = both(counts, !has_back);
-  const bool is_before = kHard ? both(both(is_open, s.above), is_before_sphere(r, reach, s.place)) : false;
-  run.is_open = is_open ? true : run.is_open;
-  run.is_before = is_before ? true : run.is_before;
-  run.deepest = greater(is_before ? told * r.ray_length : 0.0, run.deepest);
-  slot = Slot(here.exists[i] ? s.z : kNoLastSurface, s.slope, s.above, s.within, own, run);
-}
-
-/// 4. to 6. where occluders are as thick as they are wide, or as the user says: the receiver's own surface, and runs,
-/// of which as many go on at a time as a pixel has surfaces.
+/// 4. to 6. where occluders are as thick as they are wide, or as the user says: the receiver's own surface, and runs.
 void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
-  const int plane = params.view.size.x * params.view.size.y;
+  bool own = true;
   Sample last = receiver_sample(r);
   ivec2 last_pixel = r.pixel;
-  Slot slots[kMostSurfaces];
-  [[unroll]] for (int i = 0; i < kSurfaces; i++) {
-    slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, true, true, true, run_from(vec2(0), 0.0));
-  }
+  Run run = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0, false, 0.0);
   Interruptions interrupted = Interruptions(0, 0u, 0u);
   Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
+  bool is_before = false;  // the run has samples before the sphere
+  const uint outline = outline_of(side.direction_px);
   int k = 0;
   if (count > 0) {
     do {
       const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
-      End ends[kMostSurfaces];
-      [[unroll]] for (int j = 0; j < kSurfaces; j++) ends[j] = end_of(r, reach, slots[j], gap, draw.shift);
+      const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, gap);
+      const uint sectors = kHard ? sectors_of(r, reach, run, true, thickness, draw.shift) : 0u;
+      const float deep = max(thickness, run.deepest);
+      const float within = within_of(run, deep);
       const vec2 beside = round(side.direction_px * offset);
-      const ivec2 pixel = r.pixel + ivec2(beside);
-      const Surfaces here = surfaces_at(r, side, reach, offset, beside, plane);
-      const Links links = links_to(r, side, reach, here, pixel, slots, last.z, last_pixel, gap, plane);
-      const Sample s = here.at[0];
-      const float rises = slopes_since(s, links.connected, last.above, last.within, last.slope).x;
-      follow(found, r, side, reach, s, last, beside, links.connected, rises);
-      const bool goes_on = s.z > last.z ? links.from[0] >= 0 : is_taken(links.from, 0);
-      if (kBehindOthers) take_down(interrupted, k, s, last, links.connected, goes_on, reach);
-      // Runs end that no surface continues, and those of surfaces that sink below the tangent plane.
+      const ivec2 here = r.pixel + ivec2(beside);
+      const ivec2 middle = last_pixel + here >> 1;
+      const float z = occluder_depth[here.y * reach.width + here.x];
+      // The receiver itself need be no occluder.
+      const float middle_z = middle == last_pixel ? last.z : occluder_depth[middle.y * reach.width + middle.x];
+      const uint word = kHasBacks ? backs[here.y * reach.width + here.x] : 0u;
+      const Sample s = sample_of(r, side, reach, offset, beside, z);
+      last_pixel = here;
+      const bool connected = is_through(r, reach, s.z, middle_z, last.z, gap);
+      // A run that crosses the sphere between two samples blocks half way to the one beyond.
+      const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
+      const vec2 slopes = slopes_of(s, crosses, mix(s.slope, last.slope, 0.5));
+      follow(found, r, side, reach, s, last, beside, connected, slopes.x);
+      if (kBehindOthers) take_down(interrupted, k, s, last, connected, connected, reach);
+      const bool ends = both(connected, s.above) ? false : true;
       if (kHard) {
-        [[unroll]] for (int j = 0; j < kSurfaces; j++) {
-          end_run(found, before, slots[j].run, ends[j], !goes_on_above(here, links.from, j));
-        }
+        found.blocked.sectors |= ends ? sectors : 0u;
+        take_before(before, run, both(ends, is_before), deep, within);
       }
-      Slot now[kMostSurfaces];
-      int i = 0;
-      do {
-        now[i] = slot_before(slots, links.from[i]);
-        take_sample(found, now[i], r, side, reach, here, i, beside, links.from[i] >= 0, gap);
-        if (!kHard && here.exists[i]) {
-          found.blocked.sectors |= end_of(r, reach, now[i], 0.0, draw.shift).sectors;
-          add_faded(found, side, reach, draw, here.at[i].place);
-        }
-      } while (++i < kSurfaces);
-      slots = now;
+      own = ends ? !s.above : own;
+      run.start = ends ? s.place : run.start;
+      run.end = s.place;
+      run.near = greater(own ? -1.0 : slopes.x, ends ? -1.0 : run.near);
+      float told = 0.0, far = slopes.y;
+      if (kHasBacks) {
+        const float mirrored = depth_told(r, reach, s, unpack_mirrored(word >> outline));
+        run.is_round = ends ? mirrored >= 0.0 : run.is_round;
+        told =
+            both(run.is_round, mirrored >= 0.0) ? mirrored : greater(depth_told(r, reach, s, unpack_depth(word)), 0.0);
+        far = lesser(far, slope_behind(r, side, s, beside, told));
+      }
+      run.far = lesser(own ? 1.0 : far, ends ? 1.0 : run.far);
+      run.gap = ends ? gap : run.gap;
+      found.blocked.near = greater(own ? slopes.x : -1.0, found.blocked.near);
+      const bool here_before = both(both(s.above, !own), is_before_sphere(r, reach, s.place));
+      is_before = here_before ? true : both(is_before, !ends);
+      run.deepest = greater(here_before ? told * r.ray_length : 0.0, ends ? 0.0 : run.deepest);
+      if (!kHard) {
+        const float thickness = thickness_of(r, reach, run, s.z, kThicknessPerWidth, 0.0);
+        found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
+        add_faded(found, side, reach, draw, s.place);
+      }
       last = s;
-      last_pixel = pixel;
       if (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
         complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
         interrupted = Interruptions(k + 1, 0u, 0u);
@@ -626,11 +513,182 @@ void search_runs(inout Found found, Receiver r, Side side, Reach reach, Draw dra
     } while (++k < count);
   }
   if (kHard) {
-    [[unroll]] for (int j = 0; j < kSurfaces; j++) {
-      end_run(found, before, slots[j].run, end_of(r, reach, slots[j], 0.0, draw.shift), true);
-    }
+    const float thickness = thickness_of(r, reach, run, last.z, kThicknessPerWidth, 0.0);
+    found.blocked.sectors |= sectors_of(r, reach, run, true, thickness, draw.shift);
+    const float deep = max(thickness, run.deepest);
+    take_before(before, run, is_before, deep, within_of(run, deep));
     found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   }
+  if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
+}
+
+/// The same where it is known what lies behind the run within reach: its width stands in for what is hidden, too.
+const float kKnownThicknessPerWidth = 0.6;
+
+// Of a surface of the last sample and of its run, as bits.
+const uint kSlotAbove = 1u, kSlotWithin = 2u;
+const uint kSlotOwn = 4u;   // the receiver's surface
+const uint kSlotOpen = 8u;  // samples of the run that block have no known back
+const uint kSlotKnows = 16u;
+const uint kSlotBefore = 32u;  // samples of the run without a known back are before the sphere
+
+/// A surface of the last sample, and the run that it belongs to.
+struct Slot {
+  float z;  // kNoLastSurface: there is none
+  float slope;
+  uint bits;
+  Run run;
+};
+
+Slot chosen(Slot a, Slot b, bool second) {
+  Slot s;
+  s.z = second ? b.z : a.z;
+  s.slope = second ? b.slope : a.slope;
+  s.bits = second ? b.bits : a.bits;
+  s.run.start = second ? b.run.start : a.run.start;
+  s.run.end = second ? b.run.end : a.run.end;
+  s.run.near = second ? b.run.near : a.run.near;
+  s.run.far = second ? b.run.far : a.run.far;
+  s.run.gap = second ? b.run.gap : a.run.gap;
+  s.run.is_round = second ? b.run.is_round : a.run.is_round;
+  s.run.deepest = second ? b.run.deepest : a.run.deepest;
+  return s;
+}
+
+float thickness_of(Receiver r, Reach reach, Slot slot, float gap) {
+  const float per_width = (slot.bits & kSlotKnows) != 0u ? kKnownThicknessPerWidth : kThicknessPerWidth;
+  return thickness_of(r, reach, slot.run, slot.z, per_width, gap);
+}
+
+/// What the runs of slots block if they end at their last samples.
+struct Ends {
+  uint sectors[kMostSurfaces];
+  float thickness[kMostSurfaces], within[kMostSurfaces];  // of those before the sphere
+};
+
+Ends ends_of(Receiver r, Reach reach, Slot slots[kMostSurfaces], float gap, float shift) {
+  Ends ends;
+  for (int j = 0; j < kSurfaces; j++) {
+    const bool is_open = (slots[j].bits & kSlotOpen) != 0u;
+    ends.thickness[j] = thickness_of(r, reach, slots[j], gap);
+    ends.sectors[j] = sectors_of(r, reach, slots[j].run, is_open, ends.thickness[j], shift);
+    ends.thickness[j] = max(ends.thickness[j], slots[j].run.deepest);
+    ends.within[j] = within_of(slots[j].run, ends.thickness[j]);
+  }
+  return ends;
+}
+
+/// Ends the runs of those slots whose bits are set; most of the time it is none or one.
+void end_runs(inout Found found, inout Before before, Slot slots[kMostSurfaces], Ends ends, uint ending) {
+  for (int j = 0; j < kSurfaces; j++) {
+    const bool is_ending = (ending >> j & 1u) != 0u;
+    found.blocked.sectors |= is_ending ? ends.sectors[j] : 0u;
+    take_before(before, slots[j].run, both(is_ending, (slots[j].bits & kSlotBefore) != 0u), ends.thickness[j],
+                ends.within[j]);
+  }
+}
+
+/// search_runs() for pixels of several surfaces: as many runs at a time.
+void search_layers(inout Found found, Receiver r, Side side, Reach reach, Draw draw, int count) {
+  const int plane = params.view.size.x * params.view.size.y;
+  Sample last = receiver_sample(r);
+  ivec2 last_pixel = r.pixel;
+  const uint outline = outline_of(side.direction_px);
+  const Run nothing = Run(vec2(0), vec2(0), -1.0, 1.0, 0.0, false, 0.0);
+  Slot slots[kMostSurfaces];
+  for (int i = 0; i < kSurfaces; i++)
+    slots[i] = Slot(i == 0 ? r.z : kNoLastSurface, 0.0, kSlotAbove | kSlotWithin | kSlotOwn, nothing);
+  Interruptions interrupted = Interruptions(0, 0u, 0u);
+  Before before = Before(vec2(0), vec2(0), 0.0, -reach.radius);
+  int k = 0;
+  if (count > 0) {
+    do {
+      const float offset = step_offset(k, int(kSteps), count, side.reach, draw.jitter), gap = offset - last.offset;
+      const Ends ends = ends_of(r, reach, slots, gap, draw.shift);
+      const Surfaces here = surfaces_at(r, side, reach, offset, plane);
+      float last_z[kMostSurfaces];
+      for (int j = 0; j < kSurfaces; j++) last_z[j] = slots[j].z;
+      const ivec2 pixel = pixel_at(r, side, offset);
+      const ivec2 middle = last_pixel + pixel >> 1;
+      float middle_z[kMostSurfaces];
+      for (int i = 0; i < kSurfaces; i++)
+        middle_z[i] = middle == last_pixel ? last_z[i] : depth_at(r, side, reach, middle, i, plane);
+      last_pixel = pixel;
+      const int from[kMostSurfaces] = links_of(r, reach, here, middle_z, last_z, gap);
+      const bool connected = is_through(r, reach, here.at[0].z, middle_z[0], last.z, gap);
+      if (kCurved) {
+        const Sample s = here.at[0];
+        const bool crosses = kHard ? both(both(s.above, last.above), both(connected, s.within != last.within)) : false;
+        follow(found, r, side, reach, s, last, vec2(pixel - r.pixel), connected,
+               slopes_of(s, crosses, mix(s.slope, last.slope, 0.5)).x);
+      }
+      if (kBehindOthers) {
+        const bool goes_on = here.at[0].z > last.z ? from[0] >= 0 : is_taken(from, 0);
+        take_down(interrupted, k, here.at[0], last, connected, goes_on, reach);
+      }
+      // Runs end that no surface continues, and those of surfaces that sink below the tangent plane.
+      uint ending = 0u;
+      for (int j = 0; j < kSurfaces && kHard; j++) {
+        bool goes_on = false;
+        for (int i = 0; i < kSurfaces; i++) goes_on = both(from[i] == j, here.at[i].above) ? true : goes_on;
+        ending |= goes_on ? 0u : 1u << j;
+      }
+      end_runs(found, before, slots, ends, ending);
+      Slot now[kMostSurfaces];
+      for (int i = 0; i < kSurfaces; i++) {
+        const Sample s = here.at[i];
+        Slot slot = slots[0];
+        for (int j = 1; j < kSurfaces; j++) slot = chosen(slot, slots[j], from[i] == j);
+        const bool connected = from[i] >= 0, was_above = (slot.bits & kSlotAbove) != 0u;
+        const bool was_within = (slot.bits & kSlotWithin) != 0u;
+        const bool crosses = kHard ? both(both(s.above, was_above), both(connected, s.within != was_within)) : false;
+        const vec2 open = slopes_of(s, crosses, mix(s.slope, slot.slope, 0.5));
+        const vec2 slopes = here.has_back[i] ? here.solid[i] : open;
+        const bool begins = both(connected, s.above) ? false : true;
+        slot.run.start = begins ? s.place : slot.run.start;
+        slot.run.near = begins ? -1.0 : slot.run.near;
+        slot.run.far = begins ? 1.0 : slot.run.far;
+        slot.run.gap = begins ? gap : slot.run.gap;
+        slot.run.end = s.place;
+        const bool own = begins ? !s.above : (slot.bits & kSlotOwn) != 0u;
+        const bool counts = both(here.exists[i], !own);
+        const bool knows = i + 1 < kSurfaces ? here.exists[min(i + 1, kMostSurfaces - 1)] : false;
+        // Of first surfaces without a known one behind them their pixel tells how far back they are solid.
+        const bool is_told = kHasBacks && i == 0 && !knows && !here.has_back[i];
+        const uint word = is_told ? backs[pixel.y * reach.width + pixel.x] : 0u;
+        const float mirrored = is_told ? depth_told(r, reach, s, unpack_mirrored(word >> outline)) : -1.0;
+        slot.run.is_round = begins ? mirrored >= 0.0 : slot.run.is_round;
+        const float seen = is_told ? greater(depth_told(r, reach, s, unpack_depth(word)), 0.0) : 0.0;
+        const float told = both(slot.run.is_round, mirrored >= 0.0) ? mirrored : seen;
+        const float behind = is_told ? slope_behind(r, side, s, vec2(pixel - r.pixel), told) : 1.0;
+        found.blocked.near = max(found.blocked.near, both(here.exists[i], own) ? open.x : -1.0);
+        slot.run.near = max(slot.run.near, counts ? slopes.x : -1.0);
+        slot.run.far = min(slot.run.far, counts ? min(slopes.y, behind) : 1.0);
+        const bool is_open = both(counts, !here.has_back[i]);
+        const bool is_before = kHard ? both(both(is_open, s.above), is_before_sphere(r, reach, s.place)) : false;
+        slot.run.deepest = max(is_before ? told * r.ray_length : 0.0, begins ? 0.0 : slot.run.deepest);
+        slot.bits = (begins ? 0u : slot.bits & (kSlotOpen | kSlotKnows | kSlotBefore)) | (s.above ? kSlotAbove : 0u) |
+                    (s.within ? kSlotWithin : 0u) | (own ? kSlotOwn : 0u) | (knows ? kSlotKnows : 0u) |
+                    (is_open ? kSlotOpen : 0u) | (is_before ? kSlotBefore : 0u);
+        slot.z = here.exists[i] ? s.z : kNoLastSurface;
+        slot.slope = s.slope;
+        now[i] = slot;
+        if (!kHard && here.exists[i]) {
+          const float thickness = thickness_of(r, reach, slot, 0.0);
+          found.blocked.sectors |= sectors_of(r, reach, slot.run, (slot.bits & kSlotOpen) != 0u, thickness, draw.shift);
+          add_faded(found, side, reach, draw, s.place);
+        }
+      }
+      slots = now;
+      last = here.at[0];
+      if (kBehindOthers && int(kSteps) > kWordBits && (k + 1 & kWordBits - 1) == 0) {
+        complete_behind(found, r, side, reach, draw, count, interrupted, k + 1);
+        interrupted = Interruptions(k + 1, 0u, 0u);
+      }
+    } while (++k < count);
+  }
+  if (kHard) end_runs(found, before, slots, ends_of(r, reach, slots, 0.0, draw.shift), (1u << kSurfaces) - 1u);
+  if (kHard) found.blocked.sectors |= sectors_of(r, reach, before, draw.shift);
   if (kBehindOthers) complete_behind(found, r, side, reach, draw, count, interrupted, count);
 }
 
@@ -642,6 +700,8 @@ mat2x3 search(Receiver r, Side side, Reach reach, Draw draw, out vec2 curved) {
   Found found = Found(nothing, nothing, mat2x3(0), mat2x3(0), 0.0, own_surface());
   if (kThickness == kThicknessEndless)
     search_endless(found, r, side, reach, draw, count);
+  else if (kSurfaces > 1)
+    search_layers(found, r, side, reach, draw, count);
   else
     search_runs(found, r, side, reach, draw, count);
   if (kBeyondBorder && side.reach < side.whole_reach) complete_beyond(found, r, side, reach, draw);

@@ -24,28 +24,22 @@ struct Surfaces {
   vec2 solid[kMostSurfaces];     // of those the slope_of() its front and of its back; (-1, 1): it does not block
 };
 
-/// The i-th surface of a pixel; below 0: it closes the solid of the one before it. plane: of `hidden`, in pixels.
-float surface_at(int index, int i, int plane) {
-  return kSurfaces == 1 || i == 0 ? occluder_depth[index] : hidden[index + (i - 1) * plane];
-}
-
-/// The surfaces at a pixel of a side. Of hidden ones only those near the sphere count: others say nothing.
-Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, vec2 beside, int plane) {
+/// The surfaces at a pixel of a side. Of hidden ones only those near the sphere count: others say nothing. plane: of
+/// `hidden`, in pixels.
+Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, int plane) {
+  const vec2 beside = round(side.direction_px * offset);
   const ivec2 hit = r.pixel + ivec2(beside);
   const int index = hit.y * reach.width + hit.x;
   Surfaces found;
   bool closes[kMostSurfaces];
-  [[unroll]] for (int i = 0; i < kSurfaces; i++) {
-    const float z = surface_at(index, i, plane);
+  for (int i = 0; i < kSurfaces; i++) {
+    const float z = i == 0 ? occluder_depth[index] : hidden[index + (i - 1) * plane];
     const Sample s = sample_of(r, side, reach, offset, beside, abs(z));
     const bool is_near = s.distance_sq < reach.front_sq;
     found.at[i] = s;
     found.exists[i] = i == 0 ? true : both(s.z < kSkyDepth, is_near);
     closes[i] = z < 0.0;
   }
-  found.has_back[0] = false;
-  found.solid[0] = vec2(-1, 1);
-  if (kSurfaces == 1) return found;
   for (int i = 0; i < kSurfaces; i++) {
     const Sample s = found.at[i];
     const bool is_solid = i + 1 < kSurfaces ? closes[min(i + 1, kMostSurfaces - 1)] : false;
@@ -60,8 +54,8 @@ Surfaces surfaces_at(Receiver r, Side side, Reach reach, float offset, vec2 besi
 /// The depth of the i-th surface of a pixel of a side; of a hidden one only near the sphere, as in surfaces_at().
 float depth_at(Receiver r, Side side, Reach reach, ivec2 pixel, int i, int plane) {
   const int index = pixel.y * reach.width + pixel.x;
-  const float z = abs(surface_at(index, i, plane));
-  if (kSurfaces == 1 || i == 0) return z;
+  if (i == 0) return occluder_depth[index];
+  const float z = abs(hidden[index + (i - 1) * plane]);
   const vec2 place = place_of(r, side, vec2(pixel - r.pixel), z, r.perspective ? z : 1.0);
   return dot(place, place) < reach.front_sq ? z : kNoSurface;
 }
@@ -71,8 +65,6 @@ float depth_at(Receiver r, Side side, Reach reach, ivec2 pixel, int i, int plane
 int[kMostSurfaces] links_of(Receiver r, Reach reach, Surfaces found, float middle_z[kMostSurfaces],
                             float last_z[kMostSurfaces], float gap) {
   int from[kMostSurfaces];
-  from[0] = is_through(r, reach, found.at[0].z, middle_z[0], last_z[0], gap) ? 0 : -1;
-  if (kSurfaces == 1) return from;
   float left[kMostSurfaces];
   for (int j = 0; j < kSurfaces; j++) left[j] = last_z[j];
   for (int i = 0; i < kSurfaces; i++) {
@@ -96,7 +88,7 @@ int[kMostSurfaces] links_of(Receiver r, Reach reach, Surfaces found, float middl
 /// Whether any surface goes on from the j-th of the last sample.
 bool is_taken(int from[kMostSurfaces], int j) {
   bool taken = false;
-  [[unroll]] for (int i = 0; i < kSurfaces; i++) taken = from[i] == j ? true : taken;
+  for (int i = 0; i < kSurfaces; i++) taken = from[i] == j ? true : taken;
   return taken;
 }
 
