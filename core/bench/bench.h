@@ -24,7 +24,7 @@ struct SuiteFrame {
   std::string input, camera;       // files, below the data folder
   double radius = 0;               // scene units, of the truth, > 0
   std::vector<std::string> truth;  // one ray-traced AO image, or two with independent noise
-  std::string reference = {};      // a kept CPU reference, see bench.h; empty: it is computed
+  std::string reference = {};      // a kept CPU reference, see read_kept_reference(); empty: it is computed
 
   /// All that are read for it.
   std::vector<std::string> files() const {
@@ -50,7 +50,7 @@ struct Suite {
 /// Reads a suite:
 ///
 ///   title = "..."                     repeats = 5                  reference-slices = 16
-///   [[frame]]      as core/base/frame_list.h has it, with camera, radius and truth; maybe cpu-reference: see bench.h
+///   [[frame]]      as core/base/frame_list.h has it, with camera, radius and truth; maybe cpu-reference: see read_kept_reference()
 ///   [[candidate]]  name = "draft"     preset = "draft"  power = 1.2             # any long option of alcove run
 ///   [[sweep]]      slices = [1, 2, 4] steps = [4, 8]    preset = "draft"        # a candidate for every combination
 ///

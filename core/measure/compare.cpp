@@ -433,7 +433,7 @@ std::optional<Planes> planes_or_failure(CompareReport& report, const CompareSett
   try {
     if (const auto sentence = missing.find(number_of(report, here)); sentence != missing.end())
       fail(ErrorKind::input, "{}", sentence->second);
-    if (here.reference.empty())
+    if (report.is_list && here.reference.empty())
       fail(ErrorKind::input, "{}: frame {} has neither \"reference\" nor \"truth\"", report.reference, here.name);
     return read_planes_of(here);
   } catch (const Error& error) {

@@ -1,5 +1,4 @@
-// The estimates of the frames around one frame, which is their mean; and the upload buffers of estimates. The frames of
-// a shot that use each other.
+// The mean of the estimates around a frame, their form in upload buffers, and the store of frames that a shot shares.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 

@@ -18,7 +18,8 @@ namespace alcove {
 /// Counts over all windows of one frame. A pixel of several windows counts in each of them.
 class FrameTally {
  public:
-  /// `taker`: if this frame is estimated for another one, the tally of the other one, in which the windows count too.
+  /// `taker`: the tally of the frame that this one is estimated for. Windows count there, too. Null: the frame is
+  /// computed for itself.
   explicit FrameTally(FrameReport& report, FrameTally* taker = nullptr) : report_(report), taker_(taker) {}
 
   /// A window is about to be computed.

@@ -41,7 +41,7 @@ FrameInputs rehearsed_inputs(gpu::Recorder& rehearsal, const FrameMemory& memory
   inputs.changes =
       &rehearsal.buffer("changes", sizeof(uint) * blocks(window.width) * blocks(window.height), gpu::Use::upload);
   if (!memory.looks_at_others) return inputs;
-  // Planes of others are counted with them: see shot_memory.
+  // Planes of others are counted with the others.
   OtherView other;
   other.view.size = {1, 1};
   other.depth = other.normal = other.moving = &rehearsal.buffer("other", sizeof(float), gpu::Use::upload);

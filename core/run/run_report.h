@@ -47,7 +47,7 @@ struct FrameReport {
   std::uint64_t rows_read = 0;  // decoded rows of the input, each as often as it was decoded
   // frames of the shot whose surfaces it uses; none without --around
   std::optional<std::vector<int>> frames_around;
-  // left-out pixels of others: a pixel moves, or no other frame confirms it
+  // pixels of other frames that are left out: those that move, and those that no other frame confirms
   std::uint64_t moved = 0, unconfirmed = 0;
   int parts = 1;  // of the frame; pixels that they share count in each
   /// Numbers of tiles of 8 x 8 pixels.
@@ -60,8 +60,8 @@ struct FrameReport {
   double error_squares = 0, error_pixels = 0;
   std::optional<TakenVisibility> occlusion;  // of a frame with an estimate, where --stats asks for it
   std::optional<HiddenCounts> hidden;        // of a frame with known hidden surfaces
-  // If pixels share estimates: the pixels with an estimate of their own, by the widest lattice of each pixel, of
-  // spacing 16, 8, 4, 2 and 1. Of several radii, for the largest.
+  // The number of pixels with an estimate of their own, by the widest lattice that a pixel lies on (spacing 16, 8, 4,
+  // 2, 1). None if pixels share no estimates. Of several radii, for the largest.
   std::optional<std::array<std::uint64_t, kLattices>> estimates;
   std::string search;  // along slices, a word of --search; empty: the estimator has no such choice
   // Depth samples, averaged over all pixels: the actual samples if pixels share estimates, else the samples that the

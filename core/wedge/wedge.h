@@ -25,10 +25,10 @@ struct WedgeLook {
 bool shows_lights(const Settings& settings);
 
 /// Computes looks of the same frames, and fills in their time, notes and errors. Each frame is read once, in one way
-/// for all looks. Looks that differ only in their shaping share one estimate. Writes a page and a sheet, unless its
-/// path is "". If radii and other settings differ, a row of the sheet has all radii. The pictures leave out a look that
-/// fails. If all looks fail, the error of the first one is thrown. Fails with ErrorKind::output if a file cannot be
-/// written.
+/// for all looks. Looks that differ only in their shaping share one estimate. Writes the page and the sheet; each is
+/// left out if its path is "". If looks differ in radius and in something else, each row of the sheet has one look at
+/// all radii. The pictures leave out a look that fails. If all looks fail, the error of the first one is thrown. Fails
+/// with ErrorKind::output if a file cannot be written.
 void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const std::string& sheet);
 
 /// The text of --dry-run: frames, looks, memory and cost. Computes and writes nothing. Fails as make_wedge() does on

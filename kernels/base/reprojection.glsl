@@ -9,8 +9,8 @@ float finite_depth(float z) { return min(z, 1e18); }
 
 float error_at(vec3 error, float z) { return error.x + z * (error.y + z * error.z); }
 
-/// Two surfaces at planar depth z are two if they are farther apart than this, scene units. given: that by the user;
-/// below 0: none.
+/// Two surfaces at planar depth z are two if they are farther apart than this, scene units. `given`: the user's
+/// separation; below 0 there is none.
 float separation_at(View view, vec3 depth_precision, float given, float z) {
   return given >= 0.0 ? given : kPrecisions * error_at(depth_precision, z) + pixel_width(view, z);
 }

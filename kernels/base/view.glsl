@@ -63,8 +63,9 @@ const float kRunSlope = 8.0;
 /// one bends less, and a normal map leans less.
 const float kMostBend = 0.55;
 
-/// The normal says nothing of where a surface goes on if it is seen more nearly edge on than this: the sine of the
-/// angle between the surface and the eye's ray. A normal that leaned away from the eye has been bent to 0.001.
+/// A plane seen more nearly edge on than this says nothing of where its surface goes on: the dot product of the unit
+/// normal and the way to the eye, which pieces.glsl takes as 1 long, all others as 1 long along the optical axis. A
+/// normal that leaned away from the eye has been bent to 0.001.
 const float kLeastFacingToGoOn = 0.02;
 
 /// Places less than this part of the depth apart are one.

@@ -600,7 +600,8 @@ struct OwnSlot {
   float rest;           // scene units: how thick that is
 };
 
-/// Comes to a vertex of a slot: the receiver's `own` one, or another. is_parted: the own surface is not sure to go on.
+/// The walk at a vertex of one slot. `is_in_own`: the slot is the receiver's. `is_parted`: the own surface is not sure
+/// to go on there.
 Walk walk_of_slot(inout OwnSlot own, Context c, Stop stop, vec2 place, bool is_in_own, bool begins, bool is_parted) {
   own.is_own = is_in_own && begins ? false : own.is_own;
   Walk walk = Walk(vec2(0), is_in_own && own.starts, is_in_own && own.is_own, false, 0.0, 0.0);

@@ -263,7 +263,7 @@ struct Looked {
   float change;
   bool before;   // clear of the tangent plane, and before the ray
   uint word;     // how far back its pixel tells that it is solid
-  uint outline;  // where in that the outline towards the receiver is
+  uint outline;  // the bit of `word` at which the outline towards the receiver is packed
 };
 
 /// 4. Takes a surface into its run, which goes on `from` the last pixel's or begins. Gives whether the ray is within

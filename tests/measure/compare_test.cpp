@@ -735,6 +735,7 @@ TEST_F(Compare, frames_of_a_list_have_names_and_limits_of_their_own_and_no_flick
   }
   write_bytes(list, "[[frame]]\nname = 'hall'\ninput = 'x'\n");
   expect_error(3, {results, list}, {"frame hall has neither \"reference\" nor \"truth\""});
+  expect_error(3, {folder / "none.exr", ""}, {"none.exr"});
 }
 
 TEST_F(CompareSequence, the_report_is_one_page_with_pictures) {

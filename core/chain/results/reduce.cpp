@@ -12,7 +12,7 @@
 namespace alcove {
 namespace {
 
-/// Depths stay as they are.
+/// Whether an AOV is filtered. The depths of first and of hidden surfaces are not.
 bool is_filtered(const AovRow& row) {
   return row.planes != &FrameOutputs::depth && row.planes != &FrameOutputs::hidden;
 }
