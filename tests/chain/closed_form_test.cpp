@@ -411,15 +411,15 @@ Pictures resting_sphere() {
       {Shot::orthographic({0, 0, 9}, {0, 0, 0}, 7, 160, 140)}, 1250);
 }
 
-TEST(ClosedForm, of_walls) { expect_truths(walls(), 2); }
-TEST(ClosedForm, of_low_walls) { expect_truths(low_walls()); }
-TEST(ClosedForm, of_trenches) { expect_truths(trenches(), 2); }
-TEST(ClosedForm, of_corners) { expect_truths(corners(), 2); }
-TEST(ClosedForm, of_ceilings) { expect_truths(ceilings()); }
+TEST(ClosedForm, of_walls) { expect_truths(walls(), 4); }
+TEST(ClosedForm, of_low_walls) { expect_truths(low_walls(), 2); }
+TEST(ClosedForm, of_trenches) { expect_truths(trenches(), 3); }
+TEST(ClosedForm, of_corners) { expect_truths(corners(), 3); }
+TEST(ClosedForm, of_ceilings) { expect_truths(ceilings(), 2); }
 TEST(ClosedForm, of_insides_of_a_sphere) { expect_truths(insides_of_a_sphere()); }
 TEST(ClosedForm, of_bowls) { expect_truths(bowls()); }
 TEST(ClosedForm, of_grooves) { expect_truths(grooves()); }
-TEST(ClosedForm, of_pits) { expect_truths(pits(), 2); }
+TEST(ClosedForm, of_pits) { expect_truths(pits(), 3); }
 TEST(ClosedForm, of_domes) { expect_truths(domes()); }
 TEST(ClosedForm, of_a_resting_sphere) { expect_truths(resting_sphere()); }
 
@@ -430,7 +430,7 @@ TEST(ClosedForm, with_every_falloff) {
     for (const double start : {0.0, 0.4})
       for (const Picture* picture : {&wall[1], &wall[4], &wall[8], &corner[0]}) {
         number++;
-        if (!tried(number + number / 4 + number / 8, 2)) continue;  // the numbers of picture, start and falloff
+        if (!tried(number + number / 4 + number / 8, 4)) continue;  // the numbers of picture, start and falloff
         Search search = fine(1);
         search.settings.falloff = falloff;
         search.settings.falloff_start = start;
