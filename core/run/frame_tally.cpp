@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/results/outputs.h"
 #include "core/frame/pixels/findings.h"
@@ -232,21 +233,20 @@ void FrameTally::note_repairs(const FrameSource& source) {
     if (count > 0) report_.notes.push_back({code, text, source.note_file(plane)});
   };
   note(counts_.repaired_depth, NoteCode::repaired_depth, RawPlane::depth,
-       fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth));
+       counted(counts_.repaired_depth, "pixel") + " had a depth that is NaN or negative, which counts as sky");
   note(counts_.repaired_normals, NoteCode::repaired_normals, RawPlane::normal,
-       fmt::format("{} pixels had no usable normal{}, and got one from depth: give all surfaces normals (--normal), or "
-                   "if these pixels are sky, its depth (--sky)",
-                   counts_.repaired_normals, window_of_normals(source)));
-  note(
-      counts_.turned_normals, NoteCode::turned_normals, RawPlane::normal,
-      fmt::format("the normals of {} pixels faced away from the eye, as on mirrored things and the backs of cards, and "
-                  "were turned round",
-                  counts_.turned_normals));
+       fmt::format("{} had no usable normal{}, and got one from depth: give all surfaces normals (--normal), or if "
+                   "this is sky, its depth (--sky)",
+                   counted(counts_.repaired_normals, "pixel"), window_of_normals(source)));
+  note(counts_.turned_normals, NoteCode::turned_normals, RawPlane::normal,
+       counted(counts_.turned_normals, "pixel") +
+           " had a normal that faced away from the eye, as on mirrored things "
+           "and the backs of cards, and was turned round");
   note(counts_.repaired_material, NoteCode::repaired_material_ao, RawPlane::material_ao,
-       fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material));
-  note(counts_.repaired_beauty, NoteCode::repaired_beauty, RawPlane::beauty,
-       fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
-                   counts_.repaired_beauty));
+       counted(counts_.repaired_material, "pixel") + " had a material AO that is NaN or infinite, which counts as 1");
+  note(
+      counts_.repaired_beauty, NoteCode::repaired_beauty, RawPlane::beauty,
+      counted(counts_.repaired_beauty, "pixel") + " had a beauty that is NaN or infinite, which is 0 in the composite");
   note(has_alpha_ && !has_coverage_ && counts_.sky < report_.pixels, NoteCode::transparent_beauty, RawPlane::beauty,
        "the beauty's alpha is 0 in all pixels, so the composite is the unchanged beauty: give --beauty a picture "
        "without alpha, or with the surfaces' alpha");
