@@ -167,11 +167,14 @@ TEST_F(ShadowComposite, is_refused_where_a_light_or_a_layer_is_not_there) {
     expect_run_refused(code, texts, more);
   };
   refused(2, "kay:key_light", {"--set shadow-layers", lights, "no light \"kay\"", "did you mean key"});
-  refused(3, "key:kay_light", {"--set shadow-layers", "kay_light", frame});
+  refused(3, "key:kay_light",
+          {"--set shadow-layers", "kay_light", frame,
+           "there is ViewLayer.Combined, ViewLayer.DiffCol, ViewLayer.DiffInd, "
+           "ViewLayer.key_light; --set shadow-layers takes a layer"});
   refused(2, "key:Combined", {"--set shadow-layers", "Combined is the whole beauty"});
   refused(2, "key:key_light", {"--set shadow-layers", "--composite"}, false);
   for (const char* text : {"key", ":key_light", "key:", "key:key_light,"}) refused(2, text, {"NAME:LAYER"});
-  refused(2, "key:key_light,key:key_light", {"key_light is there twice"});
+  refused(2, "key:key_light,key:key_light", {"key_light is there twice: name it for one light"});
   expect_run_refused(2, {"--set shadow-layers", "--lights"},
                      {"--composite", composite, "--set", "shadow-layers=key:key_light"});
 }
