@@ -81,6 +81,16 @@ TEST_F(ShadowRun, notes_a_sun_below_the_horizon_and_a_light_that_reaches_nothing
   EXPECT_THAT(said(lamp + "[0, 0, 1000]"), Not(HasSubstr("[dark-light]")));
 }
 
+TEST_F(ShadowRun, notes_a_lamp_that_is_far_beyond_all_surfaces) {
+  const auto said = [&](const std::string& position) {
+    write_lights(R"("kind": "point", "position": )" + position);
+    return done({"--lights", lights}).err;
+  };
+  EXPECT_THAT(said("[0, 0, 90]"), Not(HasSubstr("[far-lamp]")));
+  EXPECT_THAT(said("[0, 0, 600]"), AllOf(HasSubstr("alcove: note: " + lights + ": the lamp \"key\" is "),
+                                         HasSubstr("in the scene's units?"), HasSubstr("[far-lamp]")));
+}
+
 /// A beauty with a layer of the light beside its indirect light.
 class ShadowComposite : public ShadowRun {
  protected:
@@ -158,6 +168,23 @@ TEST_F(ShadowComposite, dims_the_layers_of_its_light_and_ao_what_is_left) {
                   }),
             1e-5);
   EXPECT_THAT(text_in(read_header(composite), "alcove/composite"), HasSubstr("shadows: key:key_light"));
+}
+
+TEST_F(ShadowComposite, below_0_is_a_warning_where_the_beauty_is_not) {
+  for (const std::string c : {"R", "G", "B"}) {
+    file.planes.at("ViewLayer.key_light." + c) = file.planes.at("ViewLayer.Combined." + c);
+    std::ranges::fill(file.planes.at("ViewLayer.DiffInd." + c), 0);
+    std::ranges::fill(file.planes.at("ViewLayer.DiffCol." + c), 8);
+  }
+  file.write(frame);
+  const auto said = [&](const std::string& more) {
+    return done(joined({"--lights", lights, "--composite", composite}, typed("--set " + more))).err;
+  };
+  for (const char* light : {"shadow-layers=key:key_light", "ambient=key_light"})
+    EXPECT_THAT(said(light), Not(HasSubstr("[negative-composite]"))) << light;
+  for (const char* color : {"shadow-layers=key:DiffCol", "ambient=DiffCol"})
+    EXPECT_THAT(said(color), AllOf(HasSubstr("warning: " + frame + ": on "), HasSubstr("[negative-composite]")))
+        << color;
 }
 
 TEST_F(ShadowComposite, is_refused_where_a_light_or_a_layer_is_not_there) {
