@@ -147,8 +147,8 @@ void print_heading(const std::string& result, const std::string& reference, cons
 
 void print_picture(const FrameComparison& c) {
   print_heading(c.result, c.reference, c.channels);
-  fmt::print("  {} pixels compared, {} masked, {} not finite, {} of them in one file only\n", c.count, c.masked,
-             c.excluded, c.holes);
+  fmt::print("  {} compared, {} masked, {} not finite, {} of them in one file only\n", counted(c.count, "pixel"),
+             c.masked, c.excluded, c.holes);
   if (c.common) fmt::print("  the files' windows differ: compared {}, which all have\n", to_string(*c.common));
   const PlaneErrors& e = c.errors;
   fmt::print("  rmse {}   mae {}   bias {}   max {}   p95 {}   p99 {}\n", number(e.rmse), number(e.mae),

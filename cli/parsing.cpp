@@ -16,8 +16,17 @@
 namespace alcove {
 namespace {
 
-/// Behind a message: where the options of the command stand.
-std::string see_help(const std::string& command) { return fmt::format("; see {} --help", command); }
+/// Behind a message: the help that shows each option which the message names; all of it where one of them is none.
+std::string see_help(const Command& command, const std::string& message) {
+  static const std::regex option(R"(--[\w-]+)");
+  const auto is_hidden = [&](const std::smatch& name) {
+    const auto row = std::ranges::find(command.rows, name.str(), &OptionRow::long_name);
+    return row == command.rows.end() || !row->is_common;
+  };
+  const bool names_hidden =
+      std::any_of(std::sregex_iterator(message.begin(), message.end(), option), std::sregex_iterator(), is_hidden);
+  return fmt::format("; see {} --help{}", command.name, names_hidden && has_common_rows(command) ? "-all" : "");
+}
 
 constexpr int kHelpColumn = 34;  // where the sentences begin
 
@@ -84,20 +93,18 @@ const OptionRow* row_of(const Command& command, const std::string& complaint) {
 [[noreturn]] void refuse_extra(const Command& command, const std::string& extra) {
   if (extra.starts_with('-')) {
     const std::string option = extra.substr(0, extra.find('='));
-    fail(ErrorKind::usage, "there is no option {}{}{}", option, suggested_options(command, option),
-         see_help(command.name));
+    fail(ErrorKind::usage, "there is no option {}{}", option, suggested_options(command, option));
   }
   Words places;
   for (const auto& row : command.rows)
     if (!row.name.starts_with('-')) places.push_back(row.name);
-  if (places.empty())
-    fail(ErrorKind::usage, "{}: {} takes options only{}", extra, command.name, see_help(command.name));
+  if (places.empty()) fail(ErrorKind::usage, "{}: {} takes options only", extra, command.name);
   static const std::regex range(R"(\[?\d+-\d+(?:[x:]\d+)?\]?)");
   if (std::regex_match(extra, range) && std::ranges::count(command.rows, "--frames", &OptionRow::long_name) > 0)
-    fail(ErrorKind::usage, "{}: a range of frames belongs to --frames{}", extra, see_help(command.name));
+    fail(ErrorKind::usage, "{}: a range of frames belongs to --frames", extra);
   const std::string pattern = names_input(extra) ? pattern_for(extra) : "";
-  fail(ErrorKind::usage, "{}: {} takes one {}{}{}", extra, command.name, fmt::join(places, " and one "),
-       pattern.empty() ? "" : "; a sequence is one name with a pattern: write " + pattern, see_help(command.name));
+  fail(ErrorKind::usage, "{}: {} takes one {}{}", extra, command.name, fmt::join(places, " and one "),
+       pattern.empty() ? "" : "; a sequence is one name with a pattern: write " + pattern);
 }
 
 /// CLI11's complaint as one sentence in the words of the table.
@@ -110,23 +117,21 @@ const OptionRow* row_of(const Command& command, const std::string& complaint) {
     if (const CLI::Option* set = app.get_option_no_throw("--set"))
       for (const std::string& word : set->results())
         if (word.find('=') == word.npos)
-          fail(ErrorKind::usage, "--set {0} {1}: did you mean --set {0}={1}?{2}", word, rest.front(),
-               see_help(command.name));
+          fail(ErrorKind::usage, "--set {0} {1}: did you mean --set {0}={1}?", word, rest.front());
     refuse_extra(command, rest.front());
   }
   const OptionRow* row = row_of(command, text);
   if (row && dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
     const bool is_repeated = text.find("At Most") != text.npos;
     if (is_repeated) fail(ErrorKind::usage, "{} is given more than once", row->long_name());
-    fail(ErrorKind::usage, "{} needs a value: {}{}", row->long_name(), value_text(*row), see_help(command.name));
+    fail(ErrorKind::usage, "{} needs a value: {}", row->long_name(), value_text(*row));
   }
   if (dynamic_cast<const CLI::RequiredError*>(&error)) {
     const std::string name = text.substr(0, text.find(' '));
     const auto missing = std::ranges::find(command.rows, name, &OptionRow::name);
-    if (missing != command.rows.end())
-      fail(ErrorKind::usage, "{} is missing: {}{}", name, missing->sentence, see_help(command.name));
+    if (missing != command.rows.end()) fail(ErrorKind::usage, "{} is missing: {}", name, missing->sentence);
   }
-  fail(ErrorKind::usage, "{}{}", text, see_help(command.name));
+  fail(ErrorKind::usage, "{}", text);
 }
 
 void print_help(const Command& command, bool shows_all) {
@@ -150,7 +155,7 @@ std::optional<std::vector<TypedOption>> typed_options(const Command& command,
     print_help(command, false);
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
-    complain(command, parser.app, error);
+    with_help(command, [&] { complain(command, parser.app, error); });
   }
   std::vector<TypedOption> typed;
   for (std::size_t i = 0; i < command.rows.size(); i++)
@@ -164,7 +169,7 @@ void with_help(const Command& command, const std::function<void()>& call) {
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::usage || std::string_view(error.what()).find("--help") != std::string_view::npos)
       throw;
-    fail(ErrorKind::usage, "{}{}", error.what(), see_help(command.name));
+    fail(ErrorKind::usage, "{}{}", error.what(), see_help(command, error.what()));
   }
 }
 

@@ -104,8 +104,7 @@ void Progress::note_frame(const FrameReport& frame) {
 
 void Progress::say_further() {
   for (const auto& [code, frames] : further_)
-    if (frames)
-      say(fmt::format("and in {} further frame{}", frames, frames > 1 ? "s" : ""), {code, facts_of(code).meaning});
+    if (frames) say("and in " + counted(std::size_t(frames), "further frame"), {code, facts_of(code).meaning});
 }
 
 std::string Progress::rate_text() const {

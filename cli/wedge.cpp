@@ -267,8 +267,8 @@ std::optional<double> proposed_radius(RunPreview& first, const Words& typed) {
 
 void require_few_pictures(std::size_t looks, std::size_t frames, bool has_page) {
   if (looks * frames <= kMostPictures || (looks == 1 && !has_page)) return;
-  fail(ErrorKind::usage, "there are {} looks of {} frames, and a wedge has at most {} pictures: give {}", looks, frames,
-       kMostPictures, looks == 1 ? "--sheet alone, or --frames" : "fewer values or --frames");
+  fail(ErrorKind::usage, "there are {} of {}, and a wedge has at most {} pictures: give {}", counted(looks, "look"),
+       counted(frames, "frame"), kMostPictures, looks == 1 ? "--sheet alone, or --frames" : "fewer values or --frames");
 }
 
 void require_shown_lights(const std::vector<WedgeLook>& looks) {

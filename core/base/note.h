@@ -68,6 +68,7 @@ enum class NoteCode {
   repaired_material_ao,
   repaired_beauty,
   transparent_beauty,
+  negative_composite,
   no_normals,
   unused_input,
   unread_ranks,
@@ -75,6 +76,7 @@ enum class NoteCode {
   light_passes,
   sun_in_sky,
   dark_light,
+  far_lamp,
   // computing
   device_memory,
   in_parts,

@@ -126,6 +126,10 @@ std::string list_of(std::span<const std::string> names, std::size_t most) {
   return fmt::format("{}{}", fmt::join(names.first(std::min(names.size(), most)), ", "), more);
 }
 
+std::string counted(std::size_t count, std::string_view thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 std::string linked(std::span<const std::string> words, const char* link) {
   if (words.size() < 2) return words.empty() ? "" : words.front();
   const auto all_but_last = words.first(words.size() - 1);

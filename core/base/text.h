@@ -20,6 +20,9 @@ std::vector<std::string> split(const std::string& text);
 /// Gives "a, b, c": at most `most` names, then "and N more"; "nothing" for none.
 std::string list_of(std::span<const std::string> names, std::size_t most = 24);
 
+/// Gives "1 frame", "2 frames".
+std::string counted(std::size_t count, std::string_view thing);
+
 /// Gives "a", "a or b", "a, b or c", with the link between the last two.
 std::string linked(std::span<const std::string> words, const char* link);
 

@@ -395,8 +395,8 @@ std::string other_digits(const std::vector<std::string>& names, const std::strin
       first.try_emplace(number.size(), name);
   if (first.empty() || first.contains(std::size_t(own_digits))) return "";
   const auto& [digits, name] = *first.begin();
-  return fmt::format("its number has {} digit{} in {}: write {}{}{}{}", digits, digits == 1 ? "" : "s", name, folder,
-                     before, frame_token(digits), after);
+  return fmt::format("its number has {} in {}: write {}{}{}{}", counted(digits, "digit"), name, folder, before,
+                     frame_token(digits), after);
 }
 
 /// Names a file that differs from the pattern in its ending, its separators or its letters' case.

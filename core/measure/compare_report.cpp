@@ -147,7 +147,7 @@ Json mean_json(const CompareReport& report) {
 std::pair<std::string, std::string> names_of(const CompareReport& report) {
   const auto file = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
   const std::size_t count = report.frames.size() + report.failed.size();
-  if (report.is_list) return {fmt::format("{} frame{}", count, count == 1 ? "" : "s"), file(report.reference)};
+  if (report.is_list) return {counted(count, "frame"), file(report.reference)};
   if (file(report.result) == file(report.reference)) return {report.result, report.reference};
   return {file(report.result), file(report.reference)};
 }

@@ -179,7 +179,8 @@ class Batch {
         watch_.working);
     report_.at_once = device.lanes().count();
     if (const int messages = device.lanes().validation_messages())
-      fail(ErrorKind::device, "--validate: the validation layer reported {} messages", messages);
+      fail(ErrorKind::device, "--validate: the validation layer reported {}",
+           counted(std::size_t(messages), "message"));
   }
 
   /// Fills the frame's cell of the contact sheet.

@@ -369,6 +369,7 @@ class FrameRun {
     }
     if (reuses) last_.keep(outputs);
     tally_.add_outputs(outputs, window, is_same);
+    tally_.add_composite(source, window, inputs, outputs, written_of(source));
     throw_if_stopped();
     return outputs;
   }
@@ -397,6 +398,7 @@ class FrameRun {
         FrameOutputs shared = outputs;
         if (run_.looks.size() > 1) shared.shadow = nullptr;
         tally_.add_outputs(shared, computed, false);
+        tally_.add_composite(source, computed, inputs, shared, written_of(source));
         finish_tally(source);
       }
       run_.take_look(i, source, computed, outputs, time);

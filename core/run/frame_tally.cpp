@@ -10,12 +10,23 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/results/outputs.h"
 #include "core/frame/pixels/findings.h"
+#include "core/frame/samples.h"
 #include "kernels/hidden/hidden.h"
 
 namespace alcove {
+
+namespace {
+
+constexpr std::size_t kSampled = 4096;  // pixels of a beauty and its composite
+constexpr float kNoise = 0.5F;          // of the beauty: a layer may have noise that the beauty is without
+constexpr double kMostNegative = 0.01;  // share of the pixels, below which single ones are noise
+constexpr double kFarLamp = 20;         // farthest depths: lamps that light what is seen are nearer
+
+}  // namespace
 
 void FrameTally::begin(const Window& computed) {
   report_.pixels_at_once = std::max<std::uint64_t>(report_.pixels_at_once, computed.pixels());
@@ -167,6 +178,18 @@ void FrameTally::add_work(const FrameOutputs& outputs, bool is_same) {
   if (outputs.is_quick) report_.estimates->back() += sites.listed;
 }
 
+void FrameTally::add_composite(const FrameSource& source, const Window& computed, const FrameInputs& inputs,
+                               const FrameOutputs& outputs, const Window& written) {
+  if (!outputs.composite || source.reading.supersampling > 1) return;
+  const auto beauty = inputs[RawPlane::beauty]->as<const float>(), composite = outputs.composite->as<const float>();
+  const auto depth = inputs[RawPlane::depth]->as<const float>();
+  for_each_sampled(inputs.view, depth, computed, written, kSampled, [&](const SampledPixel& pixel) {
+    bool& is_negative = is_negative_[pixel.number];
+    for (std::size_t i = pixel.at; i < 3 * computed.pixels(); i += computed.pixels())
+      is_negative = is_negative || (beauty[i] > 0 && composite[i] < -kNoise * beauty[i]);
+  });
+}
+
 /// The search along slices that made the estimate, which the settings may only ask for; empty: there is none.
 static std::string search_of(const EstimatorSettings& settings, bool is_quick) {
   if (!searches_slices(settings)) return "";
@@ -197,7 +220,36 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
     if (!settings.output.stats.empty() && !report_.occlusion) report_.occlusion.emplace();
   }
   note_repairs(source);
-  if (settings.output.read_lights) note_dark_lights(source, *settings.output.read_lights);
+  note_negative_composite(source);
+  if (!settings.output.read_lights) return;
+  note_dark_lights(source, *settings.output.read_lights);
+  note_far_lamps(source, *settings.output.read_lights);
+}
+
+void FrameTally::note_negative_composite(const FrameSource& source) {
+  const auto negative = std::ranges::count(is_negative_, true, [](const auto& pixel) { return pixel.second; });
+  const double share = double(negative) / double(std::max<std::size_t>(1, is_negative_.size()));
+  if (share > kMostNegative)
+    report_.notes.push_back(
+        {NoteCode::negative_composite,
+         fmt::format(
+             "on {:.2g} % of the pixels the composite is far below 0, and the beauty is not: a layer that AO or "
+             "shadows dim is no part of its light, such as a colour (--set ambient, --set shadow-layers)",
+             100 * share),
+         source.note_file(RawPlane::beauty)});
+}
+
+void FrameTally::note_far_lamps(const FrameSource& source, const LightsFile& lights) {
+  const double farthest = sample_.farthest();
+  if (farthest == 0) return;
+  for (const Light& light : lights.in_view(source.reading.camera, report_.frame))
+    if (light.is_lamp && length(light.at) > kFarLamp * farthest)
+      report_.notes.push_back(
+          {NoteCode::far_lamp,
+           fmt::format("the lamp \"{}\" is {:.0f} times as far away as the farthest surface: is its "
+                       "\"position\" in the scene's units? (--lights)",
+                       light.name, length(light.at) / farthest),
+           lights.path});
 }
 
 void FrameTally::note_dark_lights(const FrameSource& source, const LightsFile& lights) {
@@ -232,21 +284,20 @@ void FrameTally::note_repairs(const FrameSource& source) {
     if (count > 0) report_.notes.push_back({code, text, source.note_file(plane)});
   };
   note(counts_.repaired_depth, NoteCode::repaired_depth, RawPlane::depth,
-       fmt::format("{} pixels had a depth that is NaN or negative; they count as sky", counts_.repaired_depth));
+       counted(counts_.repaired_depth, "pixel") + " had a depth that is NaN or negative, which counts as sky");
   note(counts_.repaired_normals, NoteCode::repaired_normals, RawPlane::normal,
-       fmt::format("{} pixels had no usable normal{}, and got one from depth: give all surfaces normals (--normal), or "
-                   "if these pixels are sky, its depth (--sky)",
-                   counts_.repaired_normals, window_of_normals(source)));
-  note(
-      counts_.turned_normals, NoteCode::turned_normals, RawPlane::normal,
-      fmt::format("the normals of {} pixels faced away from the eye, as on mirrored things and the backs of cards, and "
-                  "were turned round",
-                  counts_.turned_normals));
+       fmt::format("{} had no usable normal{}, and got one from depth: give all surfaces normals (--normal), or if "
+                   "this is sky, its depth (--sky)",
+                   counted(counts_.repaired_normals, "pixel"), window_of_normals(source)));
+  note(counts_.turned_normals, NoteCode::turned_normals, RawPlane::normal,
+       counted(counts_.turned_normals, "pixel") +
+           " had a normal that faced away from the eye, as on mirrored things "
+           "and the backs of cards, and was turned round");
   note(counts_.repaired_material, NoteCode::repaired_material_ao, RawPlane::material_ao,
-       fmt::format("{} pixels of the material AO were NaN or infinite; they count as 1", counts_.repaired_material));
-  note(counts_.repaired_beauty, NoteCode::repaired_beauty, RawPlane::beauty,
-       fmt::format("{} pixels of the beauty were NaN or infinite; they are 0 in the composite",
-                   counts_.repaired_beauty));
+       counted(counts_.repaired_material, "pixel") + " had a material AO that is NaN or infinite, which counts as 1");
+  note(
+      counts_.repaired_beauty, NoteCode::repaired_beauty, RawPlane::beauty,
+      counted(counts_.repaired_beauty, "pixel") + " had a beauty that is NaN or infinite, which is 0 in the composite");
   note(has_alpha_ && !has_coverage_ && counts_.sky < report_.pixels, NoteCode::transparent_beauty, RawPlane::beauty,
        "the beauty's alpha is 0 in all pixels, so the composite is the unchanged beauty: give --beauty a picture "
        "without alpha, or with the surfaces' alpha");

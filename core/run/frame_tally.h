@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 
 #include "core/chain/chain.h"
@@ -33,6 +34,9 @@ class FrameTally {
   void add_passes(std::span<const gpu::PassTime> passes);
   /// is_same: all results were kept from the frame before.
   void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
+  /// Compares the composite of that window, where there is one, with its beauty, in a sample of the written pixels.
+  void add_composite(const FrameSource& source, const Window& computed, const FrameInputs& inputs,
+                     const FrameOutputs& outputs, const Window& written);
 
   /// The notes on the frame before it is computed.
   static Notes notes_on(const FrameSource& source, const InputSettings& settings);
@@ -51,6 +55,8 @@ class FrameTally {
   double estimates_of(const EstimatorSettings& settings) const;
   void note_repairs(const FrameSource& source);
   void note_dark_lights(const FrameSource& source, const LightsFile& lights);
+  void note_far_lamps(const FrameSource& source, const LightsFile& lights);
+  void note_negative_composite(const FrameSource& source);
   void add(const gpu::PassTime& pass, gpu::PassTime& sum);
 
   FrameReport& report_;
@@ -58,6 +64,8 @@ class FrameTally {
   FrameCounts counts_{};
   std::vector<std::uint64_t> lit_;  // pixels that a light reaches, and sky; by the light
   DepthSample sample_;
+  // Whether the composite is far below 0 and the beauty is not, by the number of a sampled pixel.
+  std::map<std::size_t, bool> is_negative_;
   BehindSample behind_;
   std::uint64_t rows_of_others_ = 0;
   std::size_t before_ = 0;  // passes that prepared others

@@ -183,10 +183,10 @@ void FramePlan::find_inputs(const std::vector<int>& own) {
     std::ranges::copy_if(chunk, std::back_inserter(absent),
                          [&](int frame) { return !exists(pattern.name.path(frame)); });
     if (absent.empty()) continue;
-    complaint +=
-        fmt::format("{}{}: {} of {} frames are missing: {} ({}{})", complaint.empty() ? "" : "; ", pattern.option(),
-                    absent.size(), chunk.size(), frames_text(absent), pattern.name.path(absent.front()),
-                    absent.size() == chunk.size() ? why_no_frames(pattern.name) : "");
+    complaint += fmt::format("{}{}: {} of {} {} missing: {} ({}{})", complaint.empty() ? "" : "; ", pattern.option(),
+                             absent.size(), counted(chunk.size(), "frame"), absent.size() == 1 ? "is" : "are",
+                             frames_text(absent), pattern.name.path(absent.front()),
+                             absent.size() == chunk.size() ? why_no_frames(pattern.name) : "");
   }
   if (!complaint.empty() && settings_.frames.missing == Missing::error)
     fail(ErrorKind::input, "{}; --set missing=skip leaves them out, --frames chooses frames", complaint);

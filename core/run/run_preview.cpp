@@ -363,7 +363,7 @@ std::string needs_text(FrameSource& source, const Settings& settings, const Wind
 
 /// "28 reads for 10 frames, 2.8 for each".
 std::string per_frame(std::size_t count, const char* what, std::size_t frames) {
-  return fmt::format("{} {} for {} frame{}, {:.2g} for each", count, what, frames, frames == 1 ? "" : "s",
+  return fmt::format("{} for {}, {:.2g} for each", counted(count, what), counted(frames, "frame"),
                      double(count) / double(frames));
 }
 
@@ -432,19 +432,20 @@ std::string plan_text(RunPreview& look, bool is_wedge) {
   const bool computes = !wanted.empty();
   const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared,
                                   const std::string& cost) {
-    line(name, fmt::format("up to {} of the {} frames of the shot: {} MiB of {} for each at once, beside what it takes "
-                           "itself{}",
-                           count, plan.shot().size(), shared >> 20, kind, computes ? "; " + cost : ""));
+    line(name,
+         fmt::format("up to {} of the {} of the shot: {} MiB of {} for each at once, beside what it takes "
+                     "itself{}",
+                     count, counted(plan.shot().size(), "frame"), shared >> 20, kind, computes ? "; " + cost : ""));
   };
   const SharedCounts counts = shared_counts(plan, wanted);
   if (around_of(first.input) > 0)
     line_of_shared("around", most_others(plan, source, first.input), "prepared frames",
                    bytes_of_shot(plan, source, first.input, 1),
-                   per_frame(std::max(wanted.size(), counts.estimated) + counts.prepared, "reads", wanted.size()));
+                   per_frame(std::max(wanted.size(), counts.estimated) + counts.prepared, "read", wanted.size()));
   if (first.input.accumulate > 0)
     line_of_shared("accumulate", std::min(plan.shot().size(), std::size_t(plan.turns())), "estimates",
                    bytes_of_estimates(plan, source, first, wanted, 1),
-                   per_frame(counts.estimated, "estimates", wanted.size()));
+                   per_frame(counts.estimated, "estimate", wanted.size()));
   if (wanted.size() < plan.frames().size())
     line("kept", fmt::format("{}: whole, by an earlier run", plan.frames().size() - wanted.size()));
   for (const auto& note : resumed) line(level_of(note), line_of(note, ""));

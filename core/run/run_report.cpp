@@ -104,7 +104,7 @@ std::string frame_json(const FrameReport& frame) { return json_text(json_of(fram
 std::string notes_json(const Notes& notes) { return json_text(json_of(notes)); }
 
 std::string summary_of(const RunReport& report) {
-  std::string text = fmt::format("{} frames done", report.done);
+  std::string text = counted(std::size_t(report.done), "frame") + " done";
   if (report.kept) text += fmt::format(", {} kept", report.kept);
   if (!report.missing.empty())
     text += fmt::format(", {} missing ({})", report.missing.size(), frames_text(report.missing));

@@ -273,7 +273,7 @@ std::string wedge_text(const std::vector<WedgeLook>& looks) {
   const bool takes_from_others = input.accumulate > 0 || takes_others(input);
   std::string text = plan_text(first, true);
   text += fmt::format(
-      "{:<14}{} of each frame, by {} estimate{}{}\n", "looks", looks.size(), estimates, estimates == 1 ? "" : "s",
+      "{:<14}{} of each frame, by {}{}\n", "looks", looks.size(), counted(std::size_t(estimates), "estimate"),
       takes_from_others && estimates > 1 ? ", each with its own pass over the neighbouring frames" : "");
   for (const auto& look : looks) text += fmt::format("{:<14}{}\n", "", printable(look.name));
   return text;

@@ -18,6 +18,12 @@ TEST(Text, lower_case_changes_ascii_letters_only) {
   EXPECT_EQ(lower_case("\xc3\x9c"), "\xc3\x9c") << "bytes of UTF-8 stay";
 }
 
+TEST(Text, one_thing_is_counted_without_an_s) {
+  EXPECT_EQ(counted(0, "frame"), "0 frames");
+  EXPECT_EQ(counted(1, "frame"), "1 frame");
+  EXPECT_EQ(counted(21, "frame"), "21 frames");
+}
+
 TEST(Text, printable_leaves_no_control_and_nothing_that_turns_the_direction_of_writing) {
   for (char32_t c = 0; c < 0x2100; c++) {
     std::string text;

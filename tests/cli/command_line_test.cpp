@@ -138,6 +138,19 @@ TEST_F(CommandLine, complaints_are_sentences_of_ours_and_name_the_nearest_words)
   for (const auto& [arguments, sentence] : rows) expect_usage_error(typed(arguments), {sentence});
 }
 
+TEST_F(CommandLine, hints_name_the_help_that_shows_the_option) {
+  const std::pair<const char*, const char*> rows[] = {
+      {"run --radius -1", "; see alcove run --help\n"},
+      {"run --slices", "; see alcove run --help-all\n"},
+      {"run --slices 65", "; see alcove run --help-all\n"},
+      {"run --slcies 6", "; see alcove run --help-all\n"},
+      {"inspect a.exr b.exr", "; see alcove inspect --help\n"},
+      {"inspect --slices x", "; see alcove inspect --help-all\n"},
+      {"compare a.exr b.exr --max-rmse -1", "; see alcove compare --help\n"},
+  };
+  for (const auto& [arguments, hint] : rows) expect_usage_error(typed(arguments), {hint});
+}
+
 TEST_F(CommandLine, numbers_out_of_range_name_option_and_range) {
   const std::pair<const char*, std::vector<std::string>> cases[] = {
       {"radius", {"0", "-1", "nan", "inf", "wide", "1e400", "", "1,", "1 2", "2e18", "-inf"}},

@@ -173,7 +173,7 @@ TEST_F(Faults, resume_redoes_what_is_missing_stale_or_broken_or_has_another_inpu
   other.write(input(2));
   for (const int frame : {2, 5})
     fs::last_write_time(input(frame), fs::last_write_time(output(1)) - std::chrono::hours(1));
-  EXPECT_THAT(run({"--resume"}).err, HasSubstr("1 frames done, 7 kept"));
+  EXPECT_THAT(run({"--resume"}).err, HasSubstr("1 frame done, 7 kept"));
   EXPECT_NE(read_bytes(output(2)), whole.at("ao.0002.exr"));
   EXPECT_THAT(run({"--resume", "--radius", "2"}).err, HasSubstr("8 frames done"));
   EXPECT_THAT(run({"--resume", "--radius", "2"}).err, HasSubstr("8 kept"));
@@ -186,7 +186,7 @@ TEST_F(Faults, resume_looks_at_every_output) {
   done(more);
   EXPECT_THAT(run(more).err, HasSubstr("2 kept"));
   cut_short(out + "/p.0002.png");
-  EXPECT_THAT(run(more).err, HasSubstr("1 frames done, 1 kept"));
+  EXPECT_THAT(run(more).err, HasSubstr("1 frame done, 1 kept"));
   const std::string picture = read_bytes(out + "/p.0001.png");
   done({"--radius", "0.5"});  // which leaves the pictures as they are
   EXPECT_THAT(run(other).err, HasSubstr("2 frames done, in")) << "pictures of another radius";

@@ -94,7 +94,7 @@ TEST_F(Notes, that_are_warnings_stand_in_the_header) {
   FrameFile repaired = frame_with_repairs(3);
   add_beauty(repaired);
   repaired.write(frame);
-  done({"--composite", composite});
+  done({"--composite", composite, "--set", "ambient=beauty"});
   for (const std::string& path : {ao, composite})
     EXPECT_EQ(notes_in(path), "repaired-normals: pixels had no usable normal");
   FrameFile made = frame_without_normals();

@@ -81,6 +81,16 @@ TEST_F(ShadowRun, notes_a_sun_below_the_horizon_and_a_light_that_reaches_nothing
   EXPECT_THAT(said(lamp + "[0, 0, 1000]"), Not(HasSubstr("[dark-light]")));
 }
 
+TEST_F(ShadowRun, notes_a_lamp_that_is_far_beyond_all_surfaces) {
+  const auto said = [&](const std::string& position) {
+    write_lights(R"("kind": "point", "position": )" + position);
+    return done({"--lights", lights}).err;
+  };
+  EXPECT_THAT(said("[0, 0, 90]"), Not(HasSubstr("[far-lamp]")));
+  EXPECT_THAT(said("[0, 0, 600]"), AllOf(HasSubstr("alcove: note: " + lights + ": the lamp \"key\" is "),
+                                         HasSubstr("in the scene's units?"), HasSubstr("[far-lamp]")));
+}
+
 /// A beauty with a layer of the light beside its indirect light.
 class ShadowComposite : public ShadowRun {
  protected:
@@ -160,6 +170,23 @@ TEST_F(ShadowComposite, dims_the_layers_of_its_light_and_ao_what_is_left) {
   EXPECT_THAT(text_in(read_header(composite), "alcove/composite"), HasSubstr("shadows: key:key_light"));
 }
 
+TEST_F(ShadowComposite, below_0_is_a_warning_where_the_beauty_is_not) {
+  for (const std::string c : {"R", "G", "B"}) {
+    file.planes.at("ViewLayer.key_light." + c) = file.planes.at("ViewLayer.Combined." + c);
+    std::ranges::fill(file.planes.at("ViewLayer.DiffInd." + c), 0);
+    std::ranges::fill(file.planes.at("ViewLayer.DiffCol." + c), 8);
+  }
+  file.write(frame);
+  const auto said = [&](const std::string& more) {
+    return done(joined({"--lights", lights, "--composite", composite}, typed("--set " + more))).err;
+  };
+  for (const char* light : {"shadow-layers=key:key_light", "ambient=key_light"})
+    EXPECT_THAT(said(light), Not(HasSubstr("[negative-composite]"))) << light;
+  for (const char* color : {"shadow-layers=key:DiffCol", "ambient=DiffCol"})
+    EXPECT_THAT(said(color), AllOf(HasSubstr("warning: " + frame + ": on "), HasSubstr("[negative-composite]")))
+        << color;
+}
+
 TEST_F(ShadowComposite, is_refused_where_a_light_or_a_layer_is_not_there) {
   const auto refused = [&](int code, const std::string& layers, const Options& texts, bool wanted = true) {
     Options more{"--lights", lights, "--set", "shadow-layers=" + layers};
@@ -167,11 +194,14 @@ TEST_F(ShadowComposite, is_refused_where_a_light_or_a_layer_is_not_there) {
     expect_run_refused(code, texts, more);
   };
   refused(2, "kay:key_light", {"--set shadow-layers", lights, "no light \"kay\"", "did you mean key"});
-  refused(3, "key:kay_light", {"--set shadow-layers", "kay_light", frame});
+  refused(3, "key:kay_light",
+          {"--set shadow-layers", "kay_light", frame,
+           "there is ViewLayer.Combined, ViewLayer.DiffCol, ViewLayer.DiffInd, "
+           "ViewLayer.key_light; --set shadow-layers takes a layer"});
   refused(2, "key:Combined", {"--set shadow-layers", "Combined is the whole beauty"});
   refused(2, "key:key_light", {"--set shadow-layers", "--composite"}, false);
   for (const char* text : {"key", ":key_light", "key:", "key:key_light,"}) refused(2, text, {"NAME:LAYER"});
-  refused(2, "key:key_light,key:key_light", {"key_light is there twice"});
+  refused(2, "key:key_light,key:key_light", {"key_light is there twice: name it for one light"});
   expect_run_refused(2, {"--set shadow-layers", "--lights"},
                      {"--composite", composite, "--set", "shadow-layers=key:key_light"});
 }

@@ -103,7 +103,7 @@ TEST_F(Windows, normals_may_be_cut_to_the_surfaces) {
   EXPECT_THAT(cut.err, Not(HasSubstr("usable normal"))) << "the sky needs none";
   const Finished more = with_normals_of({0, kSkyRows + 4, kDisplay.width, kDisplay.height - kSkyRows - 4});
   EXPECT_THAT(more.err, AllOf(HasSubstr("256 pixels had no usable normal"), HasSubstr("other.exr"),
-                              HasSubstr("(--normal), or if these pixels are sky, its depth (--sky)")));
+                              HasSubstr("(--normal), or if this is sky, its depth (--sky)")));
 }
 
 TEST_F(Windows, materials_without_pixels_are_open_and_mattes_without_pixels_take_nothing) {

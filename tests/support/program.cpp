@@ -168,7 +168,9 @@ Options joined(Options options, const Options& more) {
 
 void expect_refused(const Finished& finished, int code, const Options& texts) {
   EXPECT_EQ(finished.code, code) << finished;
-  const auto is_summary = [](const std::string& line) { return line.find(" frames done, ") != line.npos; };
+  const auto is_summary = [](const std::string& line) {
+    return line.find(" frames done, ") != line.npos || line.find(" frame done, ") != line.npos;
+  };
   std::vector<std::string> lines = lines_of(finished.err);
   std::erase_if(lines, is_summary);
   EXPECT_EQ(lines.size(), 1) << finished;

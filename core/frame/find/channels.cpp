@@ -452,10 +452,12 @@ std::vector<ChannelRef> find_chosen(const ExrFile& file, const std::vector<Named
     if (auto found = find_in_layer(file, channels, names, lower_case(chosen), sets_of(names)); !found.empty())
       return found;
   if (wanted.size() != count && !(names.may_have_alpha && wanted.size() == count + 1) &&
-      !(names.may_be_two && wanted.size() == 2))
+      !(names.may_be_two && wanted.size() == 2)) {
+    const auto layers = takes(channels, names);
     fail(ErrorKind::input, "{}: no layer {}{} for {}{}; there is {}; {} takes a layer{}", file.path(), chosen, within,
-         names.channel_option, suggestion(chosen, takes(channels, names)), list_of(full_names(channels)),
+         names.channel_option, suggestion(chosen, layers), list_of(names.is_listed ? layers : full_names(channels)),
          names.channel_option, names.is_listed ? "" : fmt::format(" or {} channel names with commas", count));
+  }
   std::vector<const NamedChannel*> found;
   for (const auto& name : wanted) {
     found.push_back(find_named(channels, name));
@@ -599,6 +601,13 @@ std::vector<ChannelRef> ChannelSearch::require(std::size_t file, const AovNames&
     fail(ErrorKind::input,
          "{}: it holds deep data only, which has no single value per pixel: no {} ({}); --deep takes it",
          files_[file].path(), names.what, names.channel_option);
+  for (std::size_t part = 0; part < files_[file].parts().size(); part++) {
+    const auto attributes = files_[file].attribute_texts(int(part));
+    if (const auto input = attributes.find("alcove/input"); input != attributes.end())
+      fail(ErrorKind::input,
+           "{}: no {} channel found: this is a result of Alcove; give the frame that it was computed from, {}",
+           files_[file].path(), names.what, input->second);
+  }
   const bool may_have_file = !own_file && *names.file_option;
   fail(ErrorKind::input, "{}: no {} channel found{}{}; there is {}; name it with {}{}", files_[file].path(), names.what,
        where(file), suggestion(hint, takes(channels_[file], names)), list_of(full_names(channels_[file])),

@@ -143,7 +143,11 @@ void find_shadowed(FrameSource& source, const ChannelSearch& search, std::size_t
     std::size_t at = 0;
     while (at < lights.size() && source.channels[RawPlane::indirect][3 * at] != light.front()) at++;
     if (at == lights.size()) add_light(source, search, light, "", std::nullopt);
-    if (!lights[at].shadow.empty()) fail(ErrorKind::usage, "--set shadow-layers: the layer {} is there twice", layer);
+    if (!lights[at].shadow.empty())
+      fail(ErrorKind::usage,
+           "--set shadow-layers: the layer {} is there twice: name it for one light; lights that share it need a layer "
+           "each, rendered as light groups",
+           layer);
     lights[at].shadow = name;
   }
   if (lights.size() > kMostAmbientLights)

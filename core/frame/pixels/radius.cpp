@@ -80,6 +80,12 @@ double DepthSample::pixel_at(double depth) const {
   return (view_.orthographic ? 1 : depth) * double(view_.tangent_per_pixel.x);
 }
 
+double DepthSample::farthest() const {
+  double farthest = 0;
+  for (const auto& [pixel, depth] : depths_) farthest = std::max(farthest, depth);
+  return farthest;
+}
+
 Notes DepthSample::notes(double smallest_radius, double largest_radius, int width, int height) const {
   Notes notes;
   if (depths_.empty()) return notes;

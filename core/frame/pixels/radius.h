@@ -44,6 +44,9 @@ class DepthSample {
   /// The largest must not be seen wider than the picture's longer side at the median depth.
   Notes notes(double smallest_radius, double largest_radius, int width, int height) const;
 
+  /// The largest depth; 0 where there is none.
+  double farthest() const;
+
  private:
   double pixel_at(double depth) const;
 
