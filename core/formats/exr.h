@@ -147,12 +147,12 @@ struct ExrPlane {
 
 struct ExrOutput {
   Window data;     // of a copy: of the planes' parts, or a part of theirs
-  Window display;  // this and the next are those of the original in a copy
+  Window display;  // ignored in a copy, like the next: the original's stay
   double pixel_aspect = 1;
-  // none, rle, zips, zip, piz, dwaa, dwab; in a copy of the planes' parts, also keep: unchanged, or zip if that loses
-  // bits
+  // none, rle, zips, zip, piz, dwaa, dwab; in a copy: of the parts with planes, and also keep: as it is, or zip if that
+  // loses bits
   std::string compression = "zip";
-  // attributes of the input to carry over; those that describe its channels and storage are left out; a copy has all
+  // attributes of the input to carry over; those that describe its channels and storage are left out; ignored in a copy
   std::shared_ptr<const ExrAttributes> attributes;
   // added as strings, in a copy to the first part and to those of the planes
   std::map<std::string, std::string> own_attributes;

@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <deque>
 #include <set>
+#include <stdexcept>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -221,7 +222,7 @@ struct ExrWriter::Impl {
 
   /// Whether ZipWriter writes the only part. It does not write integer channels, which OpenEXR refuses.
   bool is_for_zip(const Imf::Header& header) const {
-    if (!original) return output.compression.starts_with("zip") && is_zip_rows(header);
+    if (!original) return output.compression.starts_with("zip");
     const auto is_integer = [&](const ExrPlane& plane) {
       return header.channels()[plane.channel.c_str()].type == Imf::UINT;
     };
@@ -232,6 +233,8 @@ struct ExrWriter::Impl {
 
   void begin() {
     const std::vector<Imf::Header> of_parts = headers();
+    if (is_for_zip(of_parts[0]) && !is_zip_rows(of_parts[0]))
+      throw std::length_error("16 rows of all channels take more than 2 GiB; give fewer channels (--aov) or --roi");
     if (is_for_zip(of_parts[0]))
       zip = std::make_unique<ZipWriter>(stream, of_parts[0]);
     else if (original)
@@ -317,7 +320,7 @@ struct ExrWriter::Impl {
     lines.reset();
   }
 
-  /// Copies the chunks of the file that has ended behind new headers.
+  /// Copies the chunks of the finished file into another one, behind new headers.
   void copy_to(FileStream& to) const {
     const std::vector<Imf::Header> of_parts = headers();
     if (!original) {

@@ -178,7 +178,7 @@ class OptionGroup {
   OptionGroup(std::vector<Row>& rows, std::string group, Effect effect, Part part = {}, bool in_library = false)
       : rows_(rows), group_(std::move(group)), effect_(effect), part_(part), in_library_(in_library) {}
 
-  /// The same group for rows that all have this reason: see RowOf::others_idle().
+  /// Gives a copy of the group that adds this reason to each of its rows, as RowOf::others_idle() does.
   OptionGroup others_idle(std::function<std::string(const Options&)> why) const {
     OptionGroup group = *this;
     group.others_idle_ = std::move(why);

@@ -85,7 +85,7 @@ TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
   const char* seed = std::getenv("ALCOVE_TEST_SEED");
   RandomScenes random(seed ? unsigned(std::atoi(seed)) : 61121);
   std::uint64_t kept = 0, same = 0;
-  const int count = long_tests() ? 120 : cases_of(30);
+  const int count = long_tests() ? 120 : cases_of(21);
   Lane lane(device());
   for (int i = 0; i < count && !HasFailure(); i++) {
     lane.last.forget();
@@ -303,7 +303,7 @@ TEST(Density, of_kept_tiles_is_that_of_a_fresh_run) {
     if (is_quarter) settings.resolution = Resolution::quarter;
     HostFrame frame = is_quarter ? hairy_room(640, 480) : hairy_room(250, 190);
     Lane lane(device());
-    for (int i = 0; i < (long_tests() ? 25 : 12) && !HasFailure(); i++, frames++) {
+    for (int i = 0; i < (long_tests() ? 25 : 6) && !HasFailure(); i++, frames++) {
       if (i > 0) change(frame, random);
       frame.frame = i;
       const Outcome next = next_of(lane, frame, settings);

@@ -126,6 +126,13 @@ TEST_F(ZipWriting, a_file_whose_rows_are_too_many_is_refused) {
   EXPECT_THROW(full.write(std::vector<std::span<const float>>(3, std::span(rows).first(20))), Error);
 }
 
+TEST_F(ZipWriting, rows_that_openexr_cannot_count_are_refused_before_any_is_written) {
+  ExrOutput output = file_of({0, 0, 20, 20}, "zip").output();
+  output.data.width = 40'000'000;
+  expect_error(ErrorKind::output, {path, "2 GiB"}, [&] { ExrWriter(path, output); });
+  EXPECT_FALSE(fs::exists(path));
+}
+
 TEST_F(ZipWriting, a_file_whose_rows_are_too_few_is_not_finished) {
   const std::vector<float> rows(20 * 19);
   {

@@ -38,10 +38,9 @@ inline Matrix3 product(const Matrix3& a, const Matrix3& b) {
 }
 /// Below 0 where the map mirrors.
 inline double determinant(const Matrix3& m) { return dot(m[0], cross(m[1], m[2])); }
-/// The scale, squared, of a map that turns, may mirror, and scales all directions alike; none of any other. Matrices
-/// come from single precision, and from tools that round.
+/// The scale, squared, of a map that turns, may mirror, and scales all directions alike; none of any other.
 inline std::optional<double> squared_scale(const Matrix3& m) {
-  constexpr double kTolerance = 1e-3;
+  constexpr double kTolerance = 1e-3;  // since matrices come from single precision, and from tools that round
   const double squared = dot(m[0], m[0]);
   for (std::size_t a = 0; a < 3; a++)
     for (std::size_t b = 0; b < 3; b++)

@@ -124,7 +124,7 @@ std::optional<Pinhole> pinhole_of_orthographic(const Projection& m, const Window
   Pinhole camera;
   camera.orthographic = true;
   take_axes(camera, first_three(m[0]), first_three(m[1]));
-  if (!(camera.fx > 0)) return std::nullopt;  // as where fy is 0, too
+  if (!(camera.fx > 0)) return std::nullopt;  // also where fy is 0, since fx is NaN then
   camera.axes[2] = cross(camera.axes[0], camera.axes[1]);
   camera.cx = 0.5 * display.width;
   camera.cy = 0.5 * display.height;

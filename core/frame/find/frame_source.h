@@ -36,9 +36,9 @@ struct DeepFiles {
 
 /// The channels of a frame that are read.
 ///
-/// Those of a plane are in the order of its components; none: the frame has no such plane, or nobody asked for it. The
-/// indirect diffuse light is to be multiplied by the diffuse colour where that is there, and holds it already where it
-/// is not.
+/// A plane's channels are in the order of its components. A plane without channels is one that the frame lacks, or that
+/// nobody asked for. The indirect diffuse light is to be multiplied by the diffuse colour where that is there, and
+/// holds it already where it is not.
 struct FrameChannels : RawPlaneArray<std::vector<ChannelRef>> {
   std::vector<ChannelRef> positions;  // that may tell the camera; empty: there are none
   std::optional<DeepFiles> deep;
@@ -171,8 +171,9 @@ HostFrame read_host_frame(const InputSettings& settings, int frame);
 // Planes of files with another data window than the depth, or of a smaller picture.
 
 /// Gives the pixels of the depth, in x and in y, per pixel of the picture that is written, as the option says; 1 with
-/// auto. Fails with ErrorKind::input if the depth's window cannot be divided so, or if the beauty, where there is one,
-/// has another window than that; with auto, if its display window is so many times smaller.
+/// auto. Fails with ErrorKind::input if it does not divide the depth's display window. With a beauty, also fails if the
+/// beauty's display window is not that of the divided picture; with a factor of 1, only if it is 2, 3 or 4 times
+/// smaller.
 int supersampling_of(const FrameSource& source, const InputSettings& settings, const ChannelRef* beauty = nullptr);
 
 /// Fails with ErrorKind::input if channels have another data window than the depth, and either share no pixel with it

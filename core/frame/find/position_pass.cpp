@@ -256,7 +256,8 @@ std::string settle_camera(FrameSource& source, const InputSettings& settings, st
   if (by_camera <= limit) return "";
   const auto found = resection_of(points, source.reading.display);
   const auto* seen = std::get_if<Resection>(&found);
-  const std::string &held = file.path(), lens = name_of_lens(source, settings);
+  const std::string& held = file.path();
+  const std::string lens = name_of_lens(source, settings);
   const std::string why = fault_of_positions(points, file, found);
   const auto noted = [&](NoteCode code, const std::string& text) {
     source.notes.push_back({code, text});

@@ -261,7 +261,7 @@ struct BorderLines {
   std::span<const float> depth;
   const Window& window;
   const DepthMap& map;
-  std::size_t side;
+  std::size_t side;  // 0 to 3: upper, lower, left, right
 
   int count() const { return side < 2 ? window.height : window.width; }
   int size() const { return side < 2 ? window.width : window.height; }
