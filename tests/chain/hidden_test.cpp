@@ -119,7 +119,7 @@ TEST(Hidden, a_plate_hides_a_post_that_blocks_the_floor_behind_it) {
 
 TEST(Hidden, what_is_left_out_has_the_bits_of_what_is_computed) {
   RandomScenes scenes(20);
-  for (int i = 0; i < 24; i++) {
+  for (int i = 0; i < (long_tests() ? 24 : 12); i++) {
     HostFrame frame = scenes.next();
     const std::vector<float> first = frame.depth;
     const double radius = scenes.radius();
@@ -155,7 +155,7 @@ HostFrame with_hidden_part(HostFrame frame, int first_x, int last_x, float behin
 TEST(Hidden, tiles_far_from_what_is_hidden_have_the_bits_of_a_search_for_it) {
   RandomScenes scenes(21);
   uint layered = 0, listed = 0;
-  for (int i = 0; i < 24; i++) {
+  for (int i = 0; i < (long_tests() ? 24 : cases_of(18)); i++) {
     HostFrame frame = scenes.next();
     const double radius = scenes.radius();
     const int first = scenes.whole(0, frame.data.width - 1);

@@ -86,9 +86,14 @@ inline bool long_tests() { return std::getenv("ALCOVE_TEST_LONG") != nullptr; }
 /// the sum of the values' numbers along their axes, each value is still met by some of every other axis.
 inline bool tried(int sum_of_numbers, int parts) { return long_tests() || sum_of_numbers % parts == 0; }
 
-/// How many of `count` random cases are tried: where the program runs once more with vectors of another width, which
-/// shows what differs by the width alone, a third of them.
-inline int cases_of(int count) { return long_tests() || !std::getenv("LP_NATIVE_VECTOR_WIDTH") ? count : count / 3; }
+/// Whether the program runs once more with vectors of another width.
+inline bool has_other_width() { return std::getenv("LP_NATIVE_VECTOR_WIDTH") != nullptr; }
+
+/// Whether a case is tried where all are met at one width or another: in the long form at each.
+inline bool tried_at_width(int number) { return tried(number + has_other_width(), 2); }
+
+/// How many of `count` random cases are tried: at another width, which shows what differs by the width alone, a third.
+inline int cases_of(int count) { return long_tests() || !has_other_width() ? count : count / 3; }
 
 // How many threads lavapipe computes with in the tests.
 

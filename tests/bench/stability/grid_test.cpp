@@ -44,7 +44,7 @@ void expect_sound(const Spec& spec, const std::vector<Variant>& variants) {
 
 /// Those of all variants whose turn it is at the number-th frame: one of every `parts`, and in the long form all. After
 /// so many frames each variant has been met, and an axis has several values.
-std::vector<Variant> variants_in_turn(const std::vector<Variant>& all, int number, int parts = 4) {
+std::vector<Variant> variants_in_turn(const std::vector<Variant>& all, int number, int parts = 7) {
   std::vector<Variant> chosen;
   for (std::size_t i = 0; i < all.size(); i++)
     if (tried(number + int(i), parts)) chosen.push_back(all[i]);
