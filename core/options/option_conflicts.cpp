@@ -11,7 +11,7 @@
 #include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/estimate/sites.h"
-#include "core/chain/results/confidence.h"
+#include "core/chain/results/results.h"
 #include "core/frame/find/input_rules.h"
 
 namespace alcove {
