@@ -20,7 +20,6 @@
 #include "core/run/frame_run.h"
 #include "core/run/frame_tally.h"
 #include "core/run/memory.h"
-#include "core/run/pipeline.h"
 #include "core/run/resume.h"
 #include "core/run/run_files.h"
 #include "core/run/run_preview.h"

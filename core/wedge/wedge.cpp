@@ -20,8 +20,8 @@
 #include "core/frame/raw_plane.h"
 #include "core/measure/report.h"
 #include "core/options/options.h"
+#include "core/run/frame_run.h"
 #include "core/run/memory.h"
-#include "core/run/pipeline.h"
 #include "core/run/run_preview.h"
 
 namespace alcove {

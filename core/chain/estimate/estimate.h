@@ -51,8 +51,6 @@ struct TileList {
 
 /// The workgroups of a pass over the listed tiles, at most one for each.
 gpu::Extent list_extent(const TileList& list);
-/// The workgroups of an estimator over the listed sites or tiles.
-gpu::Extent estimate_extent(const TileList& list);
 
 /// The result of an estimator for the sites of a G-buffer.
 struct Estimate {
