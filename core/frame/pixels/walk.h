@@ -1,4 +1,4 @@
-// The walk over the pixels of a frame: rows and columns all over the picture, in parallel; and the numbers of one of them.
+// The walk over the pixels of a frame: rows and columns all over the picture, in parallel; and the numbers of each.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
