@@ -10,7 +10,6 @@
 #include <map>
 #include <sstream>
 
-#include "cli/build_facts.h"
 #include "cli/options.h"
 #include "core/base/text.h"
 #include "core/base/version.h"

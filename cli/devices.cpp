@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "cli/build_facts.h"
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "core/base/system.h"

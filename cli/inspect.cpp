@@ -7,7 +7,7 @@
 #include "cli/options.h"
 #include "core/base/file.h"
 #include "core/formats/sequence.h"
-#include "core/frame/find/environment.h"
+#include "core/frame/find/lights.h"
 #include "core/frame/raw_plane.h"
 #include "core/inspect/inspect.h"
 #include "core/run/run_files.h"

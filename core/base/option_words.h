@@ -43,7 +43,7 @@ enum class Density { uniform, adaptive, edges };
 enum class Resolution { full = 1, half = 2, quarter = 4 };
 enum class Denoise { none, bilateral, box };
 enum class Noise { fixed, animated };  // the pattern of sample noise: the same in all frames, or one per frame
-// filter by which a renderer makes a pixel from samples around its centre; see core/chain/results/reduce.h
+// filter by which a renderer makes a pixel from samples around its centre; see core/chain/results/results.cpp
 enum class PixelFilterKind { box, gaussian, blackman_harris };
 enum class AoChannels { mono, rgb };
 enum class OutputType { half_float, single_float };

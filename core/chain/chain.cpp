@@ -4,13 +4,10 @@
 
 #include <vector>
 
-#include "core/chain/estimate/shadow.h"
 #include "core/chain/filters/filters.h"
 #include "core/chain/hidden/hidden.h"
-#include "core/chain/results/confidence.h"
 #include "core/chain/results/debug.h"
-#include "core/chain/results/reduce.h"
-#include "core/chain/results/shading.h"
+#include "core/chain/results/results.h"
 #include "core/chain/time/accumulate.h"
 
 namespace alcove {

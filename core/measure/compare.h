@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/base/compare_limits.h"
 #include "core/base/error.h"
+#include "core/base/frame_list.h"
 #include "core/base/image.h"
 #include "core/base/note.h"
 #include "core/measure/metrics.h"

@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "core/options/option_conflicts.h"
 #include "core/options/options.h"
 
 namespace alcove {

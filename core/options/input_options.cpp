@@ -12,7 +12,6 @@
 #include "core/frame/camera/camera.h"
 #include "core/frame/find/input_rules.h"
 #include "core/frame/raw_plane.h"
-#include "core/options/option_conflicts.h"
 #include "core/options/options.h"
 
 namespace alcove {

@@ -1,7 +1,5 @@
-// Each looks at the settings that count, and says what of them is in the way.
+// Why a setting has no effect: each looks at the settings that count, and says what of them is in the way.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/options/option_conflicts.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +9,9 @@
 #include "core/base/text.h"
 #include "core/chain/estimate/estimate.h"
 #include "core/chain/estimate/sites.h"
-#include "core/chain/results/confidence.h"
+#include "core/chain/results/results.h"
 #include "core/frame/find/input_rules.h"
+#include "core/options/options.h"
 
 namespace alcove {
 namespace {

@@ -10,7 +10,6 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
-#include "core/options/option_conflicts.h"
 
 namespace alcove {
 namespace {

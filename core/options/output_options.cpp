@@ -7,7 +7,6 @@
 #include "core/base/text.h"
 #include "core/chain/results/debug.h"
 #include "core/chain/results/outputs.h"
-#include "core/options/option_conflicts.h"
 #include "core/options/options.h"
 
 namespace alcove {

@@ -1,11 +1,12 @@
-// One frame of a run: read, computed and written, whole or in tiles. And lanes: each computes one frame after the
-// other.
+// One frame of a run: read, computed and written, whole or in tiles. And many, on lanes: each computes one frame after
+// the other.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "core/chain/reuse.h"
@@ -123,5 +124,19 @@ EstimatedFrame estimate_frame(Lane& lane, const RunContext& run, const MemoryBud
 /// Reads, computes and writes one frame on a lane, within the budget. Never throws: the report has the error.
 FrameReport run_frame(Lanes& lanes, const RunContext& run, const MemoryBudget& budget, int frame,
                       const PartWatch& watch);
+
+// Frames in flight: while one is computed, others are read and written.
+
+/// Takes the report of a frame. If the call blocks, as on a stopped terminal, the frames go on.
+using TakeReport = std::function<void(FrameReport&&)>;
+/// Called about once a second with the progress of the frames in flight; may be empty.
+using TakeProgress = std::function<void(std::span<const FrameProgress>)>;
+
+/// Runs the frames on the lanes, in any order, until a failure ends the run. Calls both functions on this thread, and
+/// the first one in the order of the frames. If the device has no memory for a frame, the number of lanes is halved. If
+/// there is only one lane, the window that is computed at once is halved. The frame is then computed again, with a
+/// note. Later frames keep these limits.
+void run_pipeline(Lanes& lanes, const RunContext& run, const MemoryBudget& budget, std::span<const int> frames,
+                  const TakeReport& take_report, const TakeProgress& take_progress);
 
 }  // namespace alcove

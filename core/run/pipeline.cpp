@@ -1,7 +1,5 @@
 // A frame's steps follow each other on one thread, and frames run beside each other.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/run/pipeline.h"
-
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -10,6 +8,8 @@
 #include <optional>
 #include <thread>
 #include <vector>
+
+#include "core/run/frame_run.h"
 
 namespace alcove {
 namespace {

@@ -13,14 +13,15 @@
 #include "core/base/file.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
+#include "core/chain/compute.h"
 #include "core/chain/estimate/estimate.h"
-#include "core/chain/warm_up.h"
+#include "core/chain/results/outputs.h"
 #include "core/formats/sheet.h"
 #include "core/frame/raw_plane.h"
 #include "core/measure/report.h"
 #include "core/options/options.h"
+#include "core/run/frame_run.h"
 #include "core/run/memory.h"
-#include "core/run/pipeline.h"
 #include "core/run/run_preview.h"
 
 namespace alcove {

@@ -4,8 +4,7 @@
 //
 // In: planar depth, view normals; how far back each pixel is solid.
 // Out: visibility, 1 = open; where they are asked for, the moments of the blocked directions (see moments.glsl), what
-// the receiver's own surface blocks inside and outside (own_surface.glsl), and the visibility that completed surfaces
-// took.
+// the receiver's own surface blocks inside and outside (pieces.glsl), and the visibility that completed surfaces took.
 //
 // Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016. Lines are those of the listing
 // of its algorithm in the edition of 2019 (Technical Memo ATVI-TR-19-01). The steps have their numbers at the code:
@@ -104,7 +103,6 @@ const float kSameSurface = 1.44;
 
 #include "kernels/estimate/pieces.glsl"
 #include "kernels/estimate/surfaces.glsl"
-#include "kernels/estimate/own_surface.glsl"
 
 // 5. and 6. Runs, and what they block.
 

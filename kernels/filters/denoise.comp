@@ -19,7 +19,7 @@
 #include "kernels/base/normal.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = 0) const int kRadius = 3;    // pixels to each side, 1 to kDenoiseMostRadius
+layout(constant_id = 0) const int kRadius = 3;    // pixels to each side, 1 to 8
 layout(constant_id = 1) const uint kByDepth = 0;  // 1: weighs by depth_sigma, not by planes and normals
 layout(constant_id = 2) const int kPlanes = 1;    // how many planes; they share their weights
 layout(scalar, push_constant) uniform Push { DenoiseParams params; };

@@ -10,8 +10,7 @@ struct CombineParams {
   uint count;  // planes
 };
 
-ALCOVE_CONSTANT int kDenoiseMostRadius = 8;  // px
-ALCOVE_CONSTANT int kDenoiseRun = 12;        // px along the axis that one invocation computes
+ALCOVE_CONSTANT int kDenoiseRun = 12;  // px along the axis that one invocation computes
 
 struct DenoiseParams {
   View view;

@@ -26,7 +26,7 @@
 #include "kernels/base/blocks.glsl"
 
 layout(local_size_x = kGroupX, local_size_y = kGroupY) in;
-layout(constant_id = 0) const int kRadius = 8;   // pixels to each side, 1 to kDenoiseMostRadius
+layout(constant_id = 0) const int kRadius = 8;   // pixels to each side, 1 to 8
 layout(constant_id = 1) const uint kMode = 0;    // bits of kInterpolate*
 layout(constant_id = 2) const int kPlanes = 1;   // how many planes; they share their weights
 layout(constant_id = 3) const int kMoments = 0;  // those of them that are moments: the first ones

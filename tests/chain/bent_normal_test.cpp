@@ -1,6 +1,6 @@
 // Bent normals: closed forms, the CPU reference, and what the filters make of them.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/results/shading.h"
+#include "core/chain/results/results.h"
 #include "tests/support/chain.h"
 #include "tests/support/reference_planes.h"
 #include "tests/support/scenes.h"

@@ -1,6 +1,6 @@
 // What is made of the visibility: shaping, multi-bounce, specular occlusion; each against its definition.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/results/shading.h"
+#include "core/chain/results/results.h"
 #include "kernels/geometry/geometry.h"
 #include "tests/support/chain.h"
 

@@ -1,6 +1,5 @@
 // The nine coefficients: closed forms, the CPU reference, turned cameras, and what is to be their sum.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/results/shading.h"
 #include "tests/support/chain.h"
 #include "tests/support/reference_planes.h"
 #include "tests/support/scenes.h"

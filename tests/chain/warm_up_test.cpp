@@ -1,7 +1,7 @@
 // What is made before the first frame is what frames need.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/warm_up.h"
-
+#include "core/chain/compute.h"
+#include "core/chain/results/outputs.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
 #include "tests/support/scenes.h"

@@ -1,12 +1,11 @@
 // Lines of pixels: what each count finds on lines that are drawn for it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/pixels/lines.h"
+#include "core/frame/pixels/walk.h"
 
 #include <cmath>
 #include <functional>
 #include <random>
 
-#include "core/frame/pixels/walk.h"
 #include "tests/support/program.h"
 
 namespace alcove::lines_test {

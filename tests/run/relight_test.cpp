@@ -3,7 +3,7 @@
 #include <regex>
 
 #include "core/formats/exr.h"
-#include "core/frame/find/environment.h"
+#include "core/frame/find/lights.h"
 #include "tests/support/command_line.h"
 #include "tests/support/scenes.h"
 

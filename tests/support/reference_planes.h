@@ -33,7 +33,7 @@ using Transfer = std::array<double, kTransferPlanes>;
 Transfer harmonics(Vec3 w);
 
 /// Gives two planes: the parts, in [0, 1], of the hemispheres below and above each pixel's tangent plane that the
-/// receiver's own surface blocks; 0 on sky and at other pixels than `pixels`. See own_surface.glsl.
+/// receiver's own surface blocks; 0 on sky and at other pixels than `pixels`. See pieces.glsl.
 std::vector<float> reference_curvature(const HostFrame& frame, const ReferenceSettings& settings);
 
 }  // namespace alcove::test

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <vector>
 
-#include "core/frame/find/environment.h"
 #include "core/frame/find/lights.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"

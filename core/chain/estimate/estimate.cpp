@@ -94,6 +94,12 @@ double samples_of_a_radius(const EstimatorSettings& settings) {
   return settings.estimator == Estimator::crytek ? settings.samples : 2 * settings.slices * settings.steps;
 }
 
+/// The workgroups of an estimator over the listed sites or tiles.
+gpu::Extent estimate_extent(const TileList& list) {
+  if (!list.sites) return list_extent(list);
+  return listed_extent(*list.site_counts, groups_of(int(list.sites->bytes() / sizeof(uint)), kGroupX * kGroupY));
+}
+
 }  // namespace
 
 bool depends_on_depth(const EstimatorSettings& settings) { return settings.radius_auto || settings.radius_in_medians; }
@@ -136,11 +142,6 @@ bool completes_anywhere(const EstimatorSettings& settings) {
 double samples_of(const EstimatorSettings& settings, double estimates) {
   if (searches_exactly(settings)) return 0;
   return samples_of_a_radius(settings) * double(1 + settings.further_radii.size()) * estimates;
-}
-
-gpu::Extent estimate_extent(const TileList& list) {
-  if (!list.sites) return list_extent(list);
-  return listed_extent(*list.site_counts, groups_of(int(list.sites->bytes() / sizeof(uint)), kGroupX * kGroupY));
 }
 
 gpu::Extent list_extent(const TileList& list) {

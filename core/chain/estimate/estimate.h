@@ -1,4 +1,4 @@
-// The estimators, and the passes that list the tiles they have something to do for.
+// The estimators, the passes that list the tiles they have something to do for, and the shadows of lights.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -51,8 +51,6 @@ struct TileList {
 
 /// The workgroups of a pass over the listed tiles, at most one for each.
 gpu::Extent list_extent(const TileList& list);
-/// The workgroups of an estimator over the listed sites or tiles.
-gpu::Extent estimate_extent(const TileList& list);
 
 /// The result of an estimator for the sites of a G-buffer.
 struct Estimate {
@@ -166,5 +164,12 @@ Estimate quick_horizon(gpu::Recorder& gpu, const GBuffer& gbuffer, const Sites& 
 /// Sums for each tile of 8 x 8 pixels the visibility that completed surfaces block, and that all block, for the largest
 /// radius, at the sites of the widest lattice: see completion.comp. Null without estimate.completed.
 gpu::Buffer* completion(gpu::Recorder& gpu, const GBuffer& gbuffer, const Estimate& estimate, const Sites& sites);
+
+/// Gives for each light of the frame a plane of the part of it that each pixel sees, 1 = lit; 0 where the surface faces
+/// away, 1 for sky. Surfaces block by the rules of the settings for samples, whatever their search. `told`: as
+/// Estimate::told, of this G-buffer; null: it is found here. with_confidence: as many planes more, of the confidence in
+/// each, see shadow.comp.
+gpu::Buffer& shadow(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                    const EstimatorSettings& settings, const gpu::Buffer* told, bool with_confidence);
 
 }  // namespace alcove

@@ -1,7 +1,5 @@
 // Host side of shadow.comp.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/estimate/shadow.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,8 +7,9 @@
 #include <vector>
 
 #include "core/chain/base/planes.h"
+#include "core/chain/estimate/estimate.h"
 #include "core/chain/filters/filters.h"
-#include "core/chain/results/confidence.h"
+#include "core/chain/results/results.h"
 
 namespace alcove {
 namespace {

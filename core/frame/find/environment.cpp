@@ -1,7 +1,5 @@
 // Projects a lat-long picture onto nine harmonics, and tells what they miss of it.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/find/environment.h"
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/formats/picture.h"
+#include "core/frame/find/lights.h"
 
 namespace alcove {
 namespace {

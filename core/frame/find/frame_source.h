@@ -13,8 +13,8 @@
 #include "core/base/settings.h"
 #include "core/formats/exr.h"
 #include "core/frame/find/channels.h"
-#include "core/frame/find/environment.h"
 #include "core/frame/find/input_rules.h"
+#include "core/frame/find/lights.h"
 #include "core/frame/raw_plane.h"
 #include "core/frame/reading.h"
 

@@ -1,6 +1,6 @@
 // Counts along rows and columns.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/frame/pixels/lines.h"
+#include "core/frame/pixels/walk.h"
 
 #include <algorithm>
 #include <array>

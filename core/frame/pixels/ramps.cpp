@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/frame/pixels/lines.h"
+#include "core/frame/pixels/walk.h"
 #include "core/frame/samples.h"
 
 namespace alcove {

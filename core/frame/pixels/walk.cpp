@@ -10,7 +10,6 @@
 
 #include "core/base/ranks.h"
 #include "core/base/system.h"
-#include "core/frame/pixels/lines.h"
 #include "core/frame/pixels/statistics.h"
 #include "core/frame/samples.h"
 #include "kernels/geometry/geometry.h"

@@ -1,4 +1,5 @@
-// The passes after the visibility: shaping, colour, reflections, composites, planes for files.
+// The passes after the visibility: shaping, colour, reflections, confidence, a smaller picture, composites, planes for
+// files.
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
@@ -43,6 +44,23 @@ gpu::Buffer& specular_occlusion(gpu::Recorder& gpu, const GBuffer& gbuffer, cons
 
 /// Visibility for each of red, green and blue.
 gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer& ao, const FrameInputs& frame);
+
+/// The thickness of the thinnest occluders that bracket a visibility, in radii.
+inline constexpr double kThin = 0.02;
+
+/// The settings of the two estimates, by slices and steps at full resolution, that bracket the AO of any estimator.
+EstimatorSettings bracket_of(const EstimatorSettings& settings);
+
+/// Makes a plane in [0, 1], for the largest radius and any estimator: see confidence.comp.
+gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                        const EstimatorSettings& settings);
+
+/// The number of pixels beyond a part of a frame that count for it; 0 with the factor 1.
+int reduce_reach(const PixelFilter& filter, int factor);
+
+/// Filters amounts and directions, as renderers filter their samples, if the frame is larger than its picture: all
+/// pixels of a block then have the picture's value. Depths stay.
+FrameOutputs reduce(gpu::Recorder& gpu, const FrameInputs& frame, const PixelFilter& filter, const FrameOutputs& out);
 
 /// The beauty's planes, for the host; null if the frame has no beauty. `ao` has one plane, or three with multi-bounce.
 /// It dims the lights of frame.ambient; without any, the whole beauty. `shadow` has a plane for each of frame.lights,

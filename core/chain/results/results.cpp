@@ -1,13 +1,62 @@
-// Host side of the kernels that make something of the visibility.
+// Host side of the kernels of kernels/results/ but debug.comp.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/chain/results/shading.h"
+#include "core/chain/results/results.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
 
 #include "core/chain/base/planes.h"
+#include "core/chain/estimate/estimate.h"
+#include "core/chain/filters/filters.h"
 #include "kernels/results/results.h"
 
 namespace alcove {
+namespace {
+
+/// Whether an AOV is filtered. The depths of first and of hidden surfaces are not.
+bool is_filtered(const AovRow& row) {
+  return row.planes != &FrameOutputs::depth && row.planes != &FrameOutputs::hidden;
+}
+
+/// At a distance from the middle, in widths of the filter: at most 1/2.
+double weight_at(PixelFilterKind kind, double distance) {
+  switch (kind) {
+    case PixelFilterKind::box: return 1;
+    case PixelFilterKind::gaussian: return std::exp(-8 * distance * distance);
+    case PixelFilterKind::blackman_harris: {
+      const double angle = 2 * std::numbers::pi * (distance + 0.5);
+      return 0.35875 - 0.48829 * std::cos(angle) + 0.14128 * std::cos(2 * angle) - 0.01168 * std::cos(3 * angle);
+    }
+  }
+  return 0;
+}
+
+/// The distance of a pixel from its block's middle, in widths of the filter. `pixel` counts along the block's row.
+double distance_of(int pixel, double width, int factor) { return ((pixel + 0.5) / factor - 0.5) / width; }
+
+/// The weights, along an axis, of a block's `factor` pixels and of as many pixels to its left as to its right, from the
+/// left on. They need not add up to 1.
+struct FilterWeights {
+  int first = 0;  // px from the block's first pixel, at most 0
+  std::vector<float> weights;
+};
+
+/// `filter`: its width in pixels of the smaller picture. Box: all the same; Gaussian: exp(-2 (2 x / width)^2), as
+/// RenderMan and Arnold have it; Blackman-Harris: the window of four terms (Harris, On the Use of Windows for Harmonic
+/// Analysis with the Discrete Fourier Transform, 1978), as Cycles has it. A pixel counts by its centre.
+FilterWeights filter_weights(const PixelFilter& filter, int factor) {
+  const double width = filter.width.value_or(usual_width(filter.kind));
+  FilterWeights result;
+  while (std::abs(distance_of(result.first - 1, width, factor)) <= 0.5) result.first--;
+  for (int pixel = result.first; pixel < factor - result.first; pixel++)
+    result.weights.push_back(float(weight_at(filter.kind, distance_of(pixel, width, factor))));
+  return result;
+}
+
+}  // namespace
 
 gpu::Buffer& shape(gpu::Recorder& gpu, const GBuffer& gbuffer, gpu::Buffer& planes, const EstimatorSettings& settings,
                    const gpu::Buffer* material_ao, const Matte& matte, const std::string& prefix) {
@@ -123,6 +172,88 @@ gpu::Buffer& multi_bounce(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu:
   gpu.dispatch("multi_bounce", MultiBounceParams{gbuffer.view.size, albedo ? 1u : 0u, float(frame.albedo_value)},
                {{"Ao", ao}, {"Albedo", gpu::Optional(albedo)}, {"Result", result}}, extent_of(gbuffer.view));
   return result;
+}
+
+EstimatorSettings bracket_of(const EstimatorSettings& settings) {
+  EstimatorSettings bracket = settings;
+  bracket.estimator = Estimator::gtao;
+  bracket.search = SliceSearch::steps;
+  bracket.tolerance = 0;
+  bracket.resolution = Resolution::full;
+  return bracket;
+}
+
+gpu::Buffer& confidence(gpu::Recorder& gpu, const GBuffer& gbuffer, const FrameInputs& frame,
+                        const EstimatorSettings& settings) {
+  const EstimatorSettings bracket = bracket_of(settings);
+  const double radius = radii_of(settings).back();
+  const Sampling sampling = sampling_of(bracket, frame.frame);
+  Skipping skipping = skipping_of(bracket, frame, gbuffer.grid);
+  const Denoiser denoiser = denoiser_of(bracket);
+  const Sites chosen = sites(gpu, gbuffer, site_rule_of(bracket), "bracket ");
+  skipping.bounds = bounds(gpu, gbuffer, skipping);
+  const GBuffer least = occluders(gpu, gbuffer, frame), most = occluders(gpu, gbuffer, frame, Unknown::blocked);
+  const auto visibility = [&](const GBuffer& counted, float thickness, Completion complete,
+                              const std::string& prefix) -> const gpu::Buffer& {
+    Reach reach = reach_of(bracket, radius);
+    reach.thickness = thickness;
+    reach.complete = complete;
+    Estimate out{&gpu.buffer(prefix + "ao", plane_bytes(gbuffer.view))};
+    out.listed = classify(gpu, gbuffer, skipping, reach, chosen, out, prefix);
+    list_sites(gpu, gbuffer, chosen, out.listed, prefix);
+    horizon(gpu, counted, reach, sampling, out);
+    return smooth(gpu, gbuffer, *out.ao, chosen, denoiser, prefix);
+  };
+  const gpu::Buffer& thin = visibility(least, float(kThin * radius), Completion::none, "thin ");
+  // Endless occluders block all that anything behind them does, but nothing beyond the border.
+  const Completion beyond = completes_anywhere(settings) ? Completion::border : Completion::none;
+  const gpu::Buffer& solid = visibility(most, std::numeric_limits<float>::infinity(), beyond, "solid ");
+  // What is nearer than the sphere is no occluder, but may hide surfaces within it.
+  const gpu::Buffer& completed =
+      completes_anywhere(settings) ? visibility(least, float(kThin * radius), bracket.complete, "completed ") : thin;
+  gpu::Buffer& result = gpu.buffer("confidence", plane_bytes(gbuffer.view));
+  gpu.dispatch("confidence", ConfidenceParams{gbuffer.view, float(radius), gbuffer.depth_precision},
+               {{"Depth", gbuffer.depth},
+                {"Normal", gbuffer.normal},
+                {"Thin", thin},
+                {"Solid", solid},
+                {"Completed", completed},
+                {"Result", result}},
+               extent_of(gbuffer.view));
+  return result;
+}
+
+int reduce_reach(const PixelFilter& filter, int factor) {
+  return factor == 1 ? 0 : factor - filter_weights(filter, factor).first;
+}
+
+FrameOutputs reduce(gpu::Recorder& gpu, const FrameInputs& frame, const PixelFilter& filter, const FrameOutputs& out) {
+  const int factor = frame.supersampling;
+  if (factor == 1) return out;
+  const FilterWeights along = filter_weights(filter, factor);
+  gpu::Buffer& weights = gpu.buffer("filter weights", along.weights.size() * sizeof(float), gpu::Use::upload);
+  std::ranges::copy(along.weights, weights.as<float>().begin());
+  const auto within = [&](int place) { return (place % factor + factor) % factor; };
+  ReduceParams params{};
+  params.size = frame.view.size;
+  params.offset = {within(frame.noise_origin.x), within(frame.noise_origin.y)};
+  params.factor = factor;
+  params.first = along.first;
+  params.count = int(along.weights.size());
+  FrameOutputs reduced = out;
+  const auto filter_planes = [&](gpu::Buffer* FrameOutputs::*planes, const std::string& name) {
+    if (!(out.*planes)) return;
+    gpu::Buffer& result = gpu.buffer("reduced " + name, (out.*planes)->bytes());
+    params.planes = planes_in(result, frame.view);
+    gpu.dispatch("reduce", params, {{"Planes", out.*planes}, {"Weights", weights}, {"Result", result}},
+                 {groups_of(params.size.x + params.offset.x, uint(factor)),
+                  groups_of(params.size.y + params.offset.y, uint(factor))});
+    reduced.*planes = &result;
+  };
+  for (const auto& row : kAovs)
+    if (is_filtered(row)) filter_planes(row.planes, row.name);
+  filter_planes(&FrameOutputs::color_ao, "color ao");
+  return reduced;
 }
 
 gpu::Buffer* composite(gpu::Recorder& gpu, const GBuffer& gbuffer, const gpu::Buffer* ao, const gpu::Buffer* shadow,
