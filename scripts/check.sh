@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Checks beside the tests: the address, undefined-behaviour and thread sanitizers, clang-tidy, some seconds of fuzzing for each target; and the coverage of the tests.
 #   scripts/check.sh              all parts but windows
-#   scripts/check.sh PART...      only these parts: addresses (with undefined behaviour, of readers of files), runs (the same of refusals, the bits of frames and the
-#                                 library), threads (of sequences), tidy, fuzzing; windows (installs packages.txt's [build] and [windows])
+#   scripts/check.sh PART...      only these parts: addresses (with undefined behaviour, of readers of files), runs (the same of what frames hold, refusals, the
+#                                 bits of frames, and the library), threads (of sequences), tidy, fuzzing; windows (installs packages.txt's [build] and [windows])
 #   scripts/check.sh all          all sources and all tests
 #   scripts/check.sh coverage     only this: lines and branches of core/ and cli/ that the tests reach
 # Builds are in build-fuzz/ (fuzzing, and the address sanitizer with clang), build-asan/ (without it), build-tsan/, build-tidy/ and build-coverage/. ALCOVE_STRICT=ON
@@ -13,9 +13,8 @@ cd "$(dirname "$0")/.."
 
 readers=(core/formats/{exr_check,exr_zip,sample_loops,image_io,open_image,png,row_reader,sequence}.cpp core/frame/{camera/header_camera,camera/camera,find/matte}.cpp core/base/{file,text}.cpp)
 tests=(base/{text,new_file,memory_limit}_test
-       formats/{file,file_names,open_image,bad_input,capture_formats,color,hostile,sequence,zip,zip_writer}_test
-       frame/{camera,chan,resection,header_camera,frame_source,parts,inputs,sources}_test)
-runs=(frame/readings_test run/{refusals,same_bits,shadow_run}_test api/{library,library_refusals}_test)
+       formats/{file,file_names,open_image,bad_input,capture_formats,color,hostile,sequence,zip,zip_writer}_test)
+runs=(frame/{camera,chan,resection,header_camera,frame_source,parts,inputs,readings,sources}_test run/{refusals,same_bits,shadow_run}_test api/{library,library_refusals}_test)
 threaded=(run/{batch,faults}_test formats/{zip,zip_writer}_test)
 for file in "${readers[@]}" $(printf 'tests/%s.cpp ' "${tests[@]}" "${runs[@]}" "${threaded[@]}"); do
   [ -f "$file" ] || { echo "$0: there is no $file" >&2; exit 2; }

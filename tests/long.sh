@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What takes too long to run with each change: every test in its long form and with lavapipe's own threads, random frames of all axes at once, sanitizers on whole runs, and fuzzing
+# What takes too long to run with each change: every test in its long form and with lavapipe's own threads, random frames of all axes at once, sanitizers on whole runs, clang-tidy, and fuzzing
 # from where the last run ended. docs/testing.md says what each adds. Half an hour or more; continuous integration does not call it.
 #   tests/long.sh [--device NAME]        on another Vulkan device
 #   ALCOVE_STABILITY_DRAWS=2000          random frames; 500 without it
@@ -53,8 +53,8 @@ for preset in draft standard production reference source/forfun-{crytek,hbao}; d
   cmp build/kernels.exr build-plain/kernels.exr
 done
 
-step "the address sanitizer on whole runs, and the thread sanitizer"
-scripts/check.sh runs threads
+step "the address sanitizer on whole runs, the thread sanitizer, and clang-tidy"
+scripts/check.sh runs threads tidy
 
 seconds=${ALCOVE_FUZZ_SECONDS:-300}
 if [ "$seconds" != 0 ]; then

@@ -286,7 +286,9 @@ std::vector<EstimatorSettings> kinds(double radius) {
 TEST(Curvature, leaves_every_bit_of_the_rest_and_is_found_by_every_search) {
   const Rendering room = furnished_room(96, 64);
   const Planes many = planes_of(room.frame, sampled(Estimator::gtao, 0.6, 32, 32), kAll);
+  int number = 0;
   for (const EstimatorSettings& settings : kinds(0.6)) {
+    if (!tried(number++, 2)) continue;
     const char* const others = searches_slices(settings) ? "ao,bent-normal,transfer" : "ao,specular-occlusion";
     const Planes alone = planes_of(room.frame, settings, others);
     const Planes all = planes_of(room.frame, settings, std::string(others) + "," + kAll);

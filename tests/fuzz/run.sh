@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the fuzz targets with clang into build-fuzz/ and runs each, two at a time; what a target finds stays in build-fuzz/found and fails the run.
-#   tests/fuzz/run.sh [TARGET...]             a fixed number of inputs each, about 20 seconds, from tests/fuzz/seeds and a fixed random seed alone: one
+#   tests/fuzz/run.sh [TARGET...]             a fixed number of inputs each, about 10 seconds, from tests/fuzz/seeds and a fixed random seed alone: one
 #                                             revision gives one result. No TARGET: all
 #   tests/fuzz/run.sh --seconds N [TARGET...] so long each; each run goes on from the inputs of the last
 # A finding is mended, and its input, made small with `TARGET_fuzz -minimize_crash=1`, joins tests/fuzz/seeds as found-*, where every test run replays it.
@@ -23,18 +23,18 @@ cmake -S . -B build-fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_UNITY_BUI
 cmake --build build-fuzz --target "${targets[@]/%/_fuzz}" >build-fuzz/build.log || { cat build-fuzz/build.log; exit 1; }
 mkdir -p build-fuzz/found
 
-# Inputs that a target tries in about 20 seconds on one core.
+# Inputs that a target tries in about 10 seconds on one core.
 runs_of() {
   case $1 in
-    exr) echo 9000 ;;
-    deep) echo 2000 ;;
-    dds | npy) echo 400000 ;;
-    camera) echo 80000 ;;
-    frames) echo 10000 ;;
-    toml) echo 80000 ;;
-    preset) echo 1500 ;;
-    inspect) echo 2500 ;;
-    zip) echo 9000 ;;
+    exr) echo 4500 ;;
+    deep) echo 1000 ;;
+    dds | npy) echo 200000 ;;
+    camera) echo 40000 ;;
+    frames) echo 5000 ;;
+    toml) echo 40000 ;;
+    preset) echo 800 ;;
+    inspect) echo 1200 ;;
+    zip) echo 4500 ;;
   esac
 }
 

@@ -75,7 +75,9 @@ TEST_F(Occluders, a_choice_that_ignores_everything_leaves_all_open) {
 }
 
 TEST_F(Occluders, what_is_ignored_is_as_if_it_were_not_there_where_it_is_known_what_is_behind) {
+  int number = 0;
   for (const std::string search : kSearches) {
+    if (!tried(number++, 2)) continue;
     SCOPED_TRACE(search);
     const bool takes_hidden = search != "--estimator hbao" && search != "--estimator crytek";
     const Plane with = ao_of(search), without = ao_of(empty, search);
