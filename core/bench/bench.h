@@ -50,7 +50,8 @@ struct Suite {
 /// Reads a suite:
 ///
 ///   title = "..."                     repeats = 5                  reference-slices = 16
-///   [[frame]]      as core/base/frame_list.h has it, with camera, radius and truth; maybe cpu-reference: see read_kept_reference()
+///   [[frame]]      as core/base/frame_list.h has it, with camera, radius and truth; maybe cpu-reference, a file of
+///                  read_kept_reference()
 ///   [[candidate]]  name = "draft"     preset = "draft"  power = 1.2             # any long option of alcove run
 ///   [[sweep]]      slices = [1, 2, 4] steps = [4, 8]    preset = "draft"        # a candidate for every combination
 ///

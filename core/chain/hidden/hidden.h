@@ -41,9 +41,10 @@ void surfels(gpu::Recorder& gpu, const OtherView& view, std::span<const OtherVie
 /// Adds to `flags`, one uint per pixel of the view, the findings of a witness.
 void still(gpu::Recorder& gpu, const OtherView& view, const OtherView& witness, const gpu::Buffer& flags);
 
-/// Adds the hidden surfaces of other views to the G-buffer: planes of keys (key_of() of view.glsl), nearer first, each behind the
-/// one before by more than the separation. The order of the views changes no bit. The nearest of these surfaces fill
-/// the margin. Returns the same G-buffer without other views, or if no surface is to be kept and there is no margin.
+/// Adds the hidden surfaces of other views to the G-buffer: planes of keys (key_of() of view.glsl), nearer first, each
+/// behind the one before by more than the separation. The order of the views changes no bit. The nearest of these
+/// surfaces fill the margin. Returns the same G-buffer without other views, or if no surface is to be kept and there is
+/// no margin.
 GBuffer warp(gpu::Recorder& gpu, const GBuffer& prepared, const FrameInputs& frame, const Layering& layering);
 
 }  // namespace alcove
