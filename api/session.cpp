@@ -547,7 +547,8 @@ void Session::compute(const Settings& settings, const Reading& reading, const Ho
   const int messages = device_->validation_messages();
   gpu_->run();
   if (settings.device.validate && device_->validation_messages() > messages)
-    fail(ErrorKind::device, "the validation layer has {} messages", device_->validation_messages() - messages);
+    fail(ErrorKind::device, "the validation layer has {}",
+         counted(std::size_t(device_->validation_messages() - messages), "message"));
   radius_ = settings.estimator.radius;
   note_results(outputs, settings, reading.data.width, reading.data.height);
 }

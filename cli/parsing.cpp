@@ -16,11 +16,11 @@
 namespace alcove {
 namespace {
 
-/// Behind a message: the help that shows each option which the message names; all of it where one of them is none.
+/// The hint behind a message: --help, or --help-all where --help lacks an option that the message names.
 std::string see_help(const Command& command, const std::string& message) {
-  static const std::regex option(R"(--[\w-]+)");
+  static const std::regex option(R"((?:^|[\s(])(--?[a-zA-Z][\w-]*))");
   const auto is_hidden = [&](const std::smatch& name) {
-    const auto row = std::ranges::find(command.rows, name.str(), &OptionRow::long_name);
+    const auto row = std::ranges::find(command.rows, name.str(1), &OptionRow::long_name);
     return row == command.rows.end() || !row->is_common;
   };
   const bool names_hidden =

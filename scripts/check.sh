@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Checks beside the tests: the address, undefined-behaviour and thread sanitizers, clang-tidy, some seconds of fuzzing for each target; and the coverage of the tests.
-#   scripts/check.sh              all parts but windows
-#   scripts/check.sh PART...      only these parts: addresses (with undefined behaviour, of readers of files), runs (the same of what frames hold, refusals, the
-#                                 bits of frames, and the library), threads (of sequences), tidy, fuzzing; windows (installs packages.txt's [build] and [windows])
+#   scripts/check.sh              all parts but windows and coverage
+#   scripts/check.sh PART...      only these parts: addresses (the address and undefined-behaviour sanitizers on tests of files and formats), runs (the same on tests
+#                                 of frames, refusals, same bits and the library), threads (the thread sanitizer on sequences), tidy, fuzzing; windows (installs
+#                                 packages.txt's [build] and [windows])
 #   scripts/check.sh all          all sources and all tests
 #   scripts/check.sh coverage     only this: lines and branches of core/ and cli/ that the tests reach
 # Builds are in build-fuzz/ (fuzzing, and the address sanitizer with clang), build-asan/ (without it), build-tsan/, build-tidy/ and build-coverage/. ALCOVE_STRICT=ON

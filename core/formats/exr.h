@@ -149,8 +149,8 @@ struct ExrOutput {
   Window data;     // of a copy: of the planes' parts, or a part of theirs
   Window display;  // ignored in a copy, like the next: the original's stay
   double pixel_aspect = 1;
-  // none, rle, zips, zip, piz, dwaa, dwab; in a copy: of the parts with planes, and also keep: as it is, or zip if that
-  // loses bits
+  // none, rle, zips, zip, piz, dwaa, dwab; in a copy it holds for parts with planes, and may be keep: unchanged, or zip
+  // where that would lose bits
   std::string compression = "zip";
   // attributes of the input to carry over; those that describe its channels and storage are left out; ignored in a copy
   std::shared_ptr<const ExrAttributes> attributes;

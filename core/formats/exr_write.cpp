@@ -234,7 +234,7 @@ struct ExrWriter::Impl {
   void begin() {
     const std::vector<Imf::Header> of_parts = headers();
     if (is_for_zip(of_parts[0]) && !is_zip_rows(of_parts[0]))
-      throw std::length_error("16 rows of all channels take more than 2 GiB; give fewer channels (--aov) or --roi");
+      throw std::length_error("a chunk of rows takes more than 2 GiB; give fewer channels (--aov) or --roi");
     if (is_for_zip(of_parts[0]))
       zip = std::make_unique<ZipWriter>(stream, of_parts[0]);
     else if (original)

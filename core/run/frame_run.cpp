@@ -352,8 +352,9 @@ class FrameRun {
     return milliseconds_of(gpu_.passes());
   }
 
-  /// Reads and computes a window. reuses: what is as in the frame before is not computed again.
-  FrameOutputs compute(FrameSource& source, const Window& window, bool reuses) {
+  /// Reads and computes a window, of which `part` is kept. reuses: what is as in the frame before is not computed
+  /// again.
+  FrameOutputs compute(FrameSource& source, const Window& window, const Window& part, bool reuses) {
     FrameInputs inputs = load(source, window);
     const Stopwatch comparing;
     reuses = reuses && last_.is_worth_comparing(inputs);
@@ -369,7 +370,7 @@ class FrameRun {
     }
     if (reuses) last_.keep(outputs);
     tally_.add_outputs(outputs, window, is_same);
-    tally_.add_composite(source, window, inputs, outputs, written_of(source));
+    tally_.add_composite(source, window, part, inputs, outputs, written_of(source));
     throw_if_stopped();
     return outputs;
   }
@@ -398,7 +399,6 @@ class FrameRun {
         FrameOutputs shared = outputs;
         if (run_.looks.size() > 1) shared.shadow = nullptr;
         tally_.add_outputs(shared, computed, false);
-        tally_.add_composite(source, computed, inputs, shared, written_of(source));
         finish_tally(source);
       }
       run_.take_look(i, source, computed, outputs, time);
@@ -410,7 +410,7 @@ class FrameRun {
     const EstimatorSettings& estimator = settings_.estimator;
     const bool reuses =
         run_.plan.frames().size() > 1 && !estimator.no_skip && estimator.noise == Noise::fixed && !run_.takes_means;
-    const FrameOutputs outputs = compute(source, computed, reuses);
+    const FrameOutputs outputs = compute(source, computed, written_of(source), reuses);
     finish_tally(source);
     const Stopwatch writing;
     const Provenance by = provenance();
@@ -499,7 +499,7 @@ class FrameRun {
     const Window whole{first.x, first.y, last.x + last.width - first.x, first.height};
     std::vector<std::vector<float>> planes;
     for (const auto& [computed, tile] : row) {
-      const FrameOutputs outputs = compute(source, computed, false);
+      const FrameOutputs outputs = compute(source, computed, tile, false);
       const auto results = result_planes(outputs, computed, settings_.output);
       planes.resize(results.size());
       for (std::size_t i = 0; i < results.size(); i++) put_in(results[i], computed, tile, whole, planes[i]);

@@ -22,9 +22,9 @@ namespace alcove {
 namespace {
 
 constexpr std::size_t kSampled = 4096;  // pixels of a beauty and its composite
-constexpr float kNoise = 0.5F;          // of the beauty: a layer may have noise that the beauty is without
-constexpr double kMostNegative = 0.01;  // share of the pixels, below which single ones are noise
-constexpr double kFarLamp = 20;         // farthest depths: lamps that light what is seen are nearer
+constexpr float kNoise = 0.5F;          // of the beauty; noise of a layer takes less
+constexpr double kMostNegative = 0.01;  // share of the sampled pixels; fewer are noise
+constexpr double kFarLamp = 20;         // times the farthest depth; lamps that light what is seen are nearer
 
 }  // namespace
 
@@ -178,15 +178,19 @@ void FrameTally::add_work(const FrameOutputs& outputs, bool is_same) {
   if (outputs.is_quick) report_.estimates->back() += sites.listed;
 }
 
-void FrameTally::add_composite(const FrameSource& source, const Window& computed, const FrameInputs& inputs,
-                               const FrameOutputs& outputs, const Window& written) {
-  if (!outputs.composite || source.reading.supersampling > 1) return;
+void FrameTally::add_composite(const FrameSource& source, const Window& computed, const Window& part,
+                               const FrameInputs& inputs, const FrameOutputs& outputs, const Window& written) {
+  if (!outputs.composite || source.reading.supersampling > 1) return;  // the picture has other pixels then
   const auto beauty = inputs[RawPlane::beauty]->as<const float>(), composite = outputs.composite->as<const float>();
   const auto depth = inputs[RawPlane::depth]->as<const float>();
   for_each_sampled(inputs.view, depth, computed, written, kSampled, [&](const SampledPixel& pixel) {
-    bool& is_negative = is_negative_[pixel.number];
+    const int x = computed.x + int(pixel.at) % computed.width, y = computed.y + int(pixel.at) / computed.width;
+    if (x < part.x || y < part.y || x >= part.x + part.width || y >= part.y + part.height) return;
+    bool is_negative = false;
     for (std::size_t i = pixel.at; i < 3 * computed.pixels(); i += computed.pixels())
       is_negative = is_negative || (beauty[i] > 0 && composite[i] < -kNoise * beauty[i]);
+    composed_++;
+    negative_ += is_negative;
   });
 }
 
@@ -227,21 +231,20 @@ void FrameTally::finish(const FrameSource& source, const Settings& settings) {
 }
 
 void FrameTally::note_negative_composite(const FrameSource& source) {
-  const auto negative = std::ranges::count(is_negative_, true, [](const auto& pixel) { return pixel.second; });
-  const double share = double(negative) / double(std::max<std::size_t>(1, is_negative_.size()));
+  const double share = double(negative_) / double(std::max<std::size_t>(1, composed_));
   if (share > kMostNegative)
     report_.notes.push_back(
         {NoteCode::negative_composite,
          fmt::format(
-             "on {:.2g} % of the pixels the composite is far below 0, and the beauty is not: a layer that AO or "
-             "shadows dim is no part of its light, such as a colour (--set ambient, --set shadow-layers)",
+             "on {:.0f} % of the pixels the composite is far below 0, and the beauty is not: AO or shadows dim a layer "
+             "that is not part of its light, such as a colour (--set ambient, --set shadow-layers)",
              100 * share),
          source.note_file(RawPlane::beauty)});
 }
 
 void FrameTally::note_far_lamps(const FrameSource& source, const LightsFile& lights) {
   const double farthest = sample_.farthest();
-  if (farthest == 0) return;
+  if (farthest == 0 || source.region) return;  // of a region, the frame's farthest surface is not known
   for (const Light& light : lights.in_view(source.reading.camera, report_.frame))
     if (light.is_lamp && length(light.at) > kFarLamp * farthest)
       report_.notes.push_back(

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <span>
 
 #include "core/chain/chain.h"
@@ -34,8 +33,9 @@ class FrameTally {
   void add_passes(std::span<const gpu::PassTime> passes);
   /// is_same: all results were kept from the frame before.
   void add_outputs(const FrameOutputs& outputs, const Window& computed, bool is_same);
-  /// Compares the composite of that window, where there is one, with its beauty, in a sample of the written pixels.
-  void add_composite(const FrameSource& source, const Window& computed, const FrameInputs& inputs,
+  /// Compares the composite of `part` of that window, if there is one, with its beauty, in a sample of the written
+  /// pixels.
+  void add_composite(const FrameSource& source, const Window& computed, const Window& part, const FrameInputs& inputs,
                      const FrameOutputs& outputs, const Window& written);
 
   /// The notes on the frame before it is computed.
@@ -64,8 +64,7 @@ class FrameTally {
   FrameCounts counts_{};
   std::vector<std::uint64_t> lit_;  // pixels that a light reaches, and sky; by the light
   DepthSample sample_;
-  // Whether the composite is far below 0 and the beauty is not, by the number of a sampled pixel.
-  std::map<std::size_t, bool> is_negative_;
+  std::size_t composed_ = 0, negative_ = 0;  // sampled pixels of the composite, and those far below 0
   BehindSample behind_;
   std::uint64_t rows_of_others_ = 0;
   std::size_t before_ = 0;  // passes that prepared others

@@ -64,8 +64,8 @@ const float kRunSlope = 8.0;
 const float kMostBend = 0.55;
 
 /// A plane seen more nearly edge on than this says nothing of where its surface goes on: the dot product of the unit
-/// normal and the way to the eye, which pieces.glsl takes as 1 long, all others as 1 long along the optical axis. A
-/// normal that leaned away from the eye has been bent to 0.001.
+/// normal and the vector to the eye. pieces.glsl takes that vector 1 long; others take it with depth 1. A normal that
+/// leaned away from the eye has been bent to 0.001.
 const float kLeastFacingToGoOn = 0.02;
 
 /// Places less than this part of the depth apart are one.

@@ -188,7 +188,7 @@ TEST(BentNormals, are_those_of_the_cpu_reference) {
   const Rendering room = furnished_room(120, 90);
   for (const ThicknessKind thickness : {ThicknessKind::infinite, ThicknessKind::constant, ThicknessKind::automatic})
     for (const bool is_other : {false, true}) {  // another falloff, or of an exact search another completion
-      if (!tried(int(thickness) + is_other, 2)) continue;
+      if (!tried(int(thickness) + !is_other, 2)) continue;
       EstimatorSettings settings = sampled(Estimator::gtao, 0.6, 24, 16), search = exact(0.6, 24);
       settings.thickness = search.thickness = thickness;
       settings.thickness_length = search.thickness_length = 0.15;

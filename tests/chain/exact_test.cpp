@@ -438,7 +438,7 @@ TEST_F(CommandLine, an_exact_search_of_a_region_is_that_part_of_the_whole) {
   write_bytes(camera, wall_camera(display).dump());
   int number = 0;
   for (const std::string more :
-       {"--preset reference", "--search exact --slices 2", "--tolerance 0.05", "--search exact --resolution half"}) {
+       {"--preset reference", "--search exact --slices 2", "--search exact --resolution half", "--tolerance 0.05"}) {
     if (!tried(number++, 2)) continue;
     const Options arguments = typed("--radius 0.1 --aov ao,bent-normal,transfer,specular-occlusion " + more);
     EXPECT_LT(std::ranges::min(expect_region_of_whole(arguments, region).plane("Y")), 0.8);

@@ -275,11 +275,11 @@ TEST_F(Inspect, a_frame_without_depth_is_described_with_what_is_missing) {
 TEST_F(Inspect, a_result_names_the_frame_that_it_was_computed_from) {
   done();
   const std::string said =
-      ao +
-      ": no depth channel found: this is a result of Alcove; give the frame that it was computed from, "
-      "wall.0042.exr\n";
+      ao + ": no depth channel found: this is a result of Alcove, which was computed from wall.0042.exr\n";
   EXPECT_THAT(run_program({"inspect", ao}).out, HasSubstr("missing: " + said));
   test::expect_refused(run_program({"run", ao, "-o", folder / "b.exr", "--fov", "60", "--radius", "1"}), 3, {said});
+  test::expect_refused(
+      run_program({"run", frame, "--depth", ao, "-o", folder / "b.exr", "--fov", "60", "--radius", "1"}), 3, {said});
 }
 
 TEST_F(Inspect, what_run_would_refuse_is_part_of_the_answer) {

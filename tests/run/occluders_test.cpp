@@ -17,11 +17,11 @@ constexpr float kBoard = 4.6F;                     // its distance: the wall is 
 const char* const kSearches[] = {"",
                                  "--estimator bitmask",
                                  "--estimator hbao",
-                                 "--estimator crytek",
                                  "--preset production",
+                                 "--estimator crytek",
                                  "--thickness infinite",
-                                 "--resolution half",
                                  "--search exact",
+                                 "--resolution half",
                                  "--tolerance 0.05"};
 
 /// The floor and the wall, and a board that stands on the floor before the wall.

@@ -1,8 +1,8 @@
 // SwiftShader, which Debian has in chromium-common, computes what lavapipe does, and the same to the bit in other ways.
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// It computes slowly, so that frames are small. Its time to read a loop doubles with each branch that lies in it: it
-// takes minutes for estimates that pixels share, so --set stride=1 is without them.
+// It computes slowly, so that frames are small. Its time to compile a loop doubles with each branch in it. Shared
+// estimates would take minutes, so --set stride=1 leaves them out.
 #include "core/base/text.h"
 #include "tests/support/test.h"
 #include "tests/support/walked_shot.h"

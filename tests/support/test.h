@@ -89,8 +89,11 @@ inline bool tried(int sum_of_numbers, int parts) { return long_tests() || sum_of
 /// Whether the program runs once more with vectors of another width.
 inline bool has_other_width() { return std::getenv("LP_NATIVE_VECTOR_WIDTH") != nullptr; }
 
-/// Whether a case is tried where all are met at one width or another: in the long form at each.
-inline bool tried_at_width(int number) { return tried(number + has_other_width(), 2); }
+/// Shares cases out: even ones at lavapipe's own width, odd ones at the other; in the long form, and on another device,
+/// all.
+inline bool tried_at_width(int number) {
+  return std::getenv("ALCOVE_TEST_DEVICE") != nullptr || tried(number + has_other_width(), 2);
+}
 
 /// How many of `count` random cases are tried: at another width, which shows what differs by the width alone, a third.
 inline int cases_of(int count) { return long_tests() || !has_other_width() ? count : count / 3; }

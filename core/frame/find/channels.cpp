@@ -571,8 +571,20 @@ std::size_t ChannelSearch::open(const std::string& path, const char* option) {
   return files_.size() - 1;
 }
 
+/// The frame that a result of Alcove was computed from; empty: the file is none.
+static std::string input_of_result(const ExrFile& file) {
+  for (std::size_t part = 0; part < file.parts().size(); part++) {
+    const auto attributes = file.attribute_texts(int(part));
+    if (const auto input = attributes.find("alcove/input"); input != attributes.end()) return input->second;
+  }
+  return "";
+}
+
 std::vector<ChannelRef> ChannelSearch::find(std::size_t file, const AovNames& names, const std::string& chosen,
                                             bool own_file) const {
+  // Its Y is AO.
+  if (names.channel_option == std::string_view(kDepthNames.channel_option) && !input_of_result(files_[file]).empty())
+    own_file = false;
   const bool is_all_of_layer = !settings_.layer.empty() && channels_[file].size() == 1;
   return chosen.empty() ? find_usual(files_[file], channels_[file], names, own_file || is_all_of_layer)
                         : find_chosen(files_[file], channels_[file], names, chosen, where(file));
@@ -601,13 +613,9 @@ std::vector<ChannelRef> ChannelSearch::require(std::size_t file, const AovNames&
     fail(ErrorKind::input,
          "{}: it holds deep data only, which has no single value per pixel: no {} ({}); --deep takes it",
          files_[file].path(), names.what, names.channel_option);
-  for (std::size_t part = 0; part < files_[file].parts().size(); part++) {
-    const auto attributes = files_[file].attribute_texts(int(part));
-    if (const auto input = attributes.find("alcove/input"); input != attributes.end())
-      fail(ErrorKind::input,
-           "{}: no {} channel found: this is a result of Alcove; give the frame that it was computed from, {}",
-           files_[file].path(), names.what, input->second);
-  }
+  if (const std::string input = input_of_result(files_[file]); !input.empty())
+    fail(ErrorKind::input, "{}: no {} channel found: this is a result of Alcove, which was computed from {}",
+         files_[file].path(), names.what, input);
   const bool may_have_file = !own_file && *names.file_option;
   fail(ErrorKind::input, "{}: no {} channel found{}{}; there is {}; name it with {}{}", files_[file].path(), names.what,
        where(file), suggestion(hint, takes(channels_[file], names)), list_of(full_names(channels_[file])),

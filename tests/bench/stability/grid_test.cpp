@@ -42,8 +42,8 @@ void expect_sound(const Spec& spec, const std::vector<Variant>& variants) {
   }
 }
 
-/// Those of all variants whose turn it is at the number-th frame: one of every `parts`, and in the long form all. After
-/// so many frames each variant has been met, and an axis has several values.
+/// Those of all variants whose turn it is at the number-th frame: one of every `parts`, and in the long form all. Over
+/// the frames of a test each variant is met several times.
 std::vector<Variant> variants_in_turn(const std::vector<Variant>& all, int number, int parts = 7) {
   std::vector<Variant> chosen;
   for (std::size_t i = 0; i < all.size(); i++)
