@@ -271,12 +271,15 @@ void RunPreview::take_lights(Notes& notes) {
     if (std::ranges::find(names, name) == names.end())
       fail(ErrorKind::usage, "--set shadow-layers={}:{}: {} has no light \"{}\"{}", name, layer, lights->path, name,
            suggestion(name, names));
+  const bool is_turned = settings_.estimator.sun_elevation && *settings_.estimator.sun_elevation < 0;
   for (const auto& name : lights->below_horizon(plan().frames()))
-    notes.push_back({NoteCode::dark_light,
-                     fmt::format("the sun \"{}\" is below the horizon: \"direction\" is the way to it, and \"up\" the "
-                                 "world's, {} (--lights)",
+    notes.push_back(
+        {NoteCode::dark_light,
+         is_turned ? fmt::format("the sun \"{}\" is below the horizon, by --set sun-elevation", name)
+                   : fmt::format("the sun \"{}\" is below the horizon: \"direction\" is the way to it, and \"up\" "
+                                 "the world's, {} (--lights)",
                                  name, lights->is_y_up ? "y" : "z"),
-                     lights->path});
+         lights->path});
   plan_->set_lights(lights);
   require_distinct_channels(plan().settings());
 }
@@ -353,7 +356,8 @@ std::string needs_text(FrameSource& source, const Settings& settings, const Wind
     return "";  // the frame fails by itself, and others of a sequence may not
   }
   const bool is_enough = needs.least <= limits.budget.bytes;
-  if (!is_enough && !is_sequence) limits.refuse(fmt::format("{}: there is no room for it", source.depth_path()), needs);
+  if (!is_enough && !is_sequence)
+    limits.refuse(fmt::format("{}: there is no room for it: give a smaller --radius", source.depth_path()), needs);
   const std::string at_once = limits.option_for(needs.at_once) + " computes a frame at once";
   std::string text = at_once + ", and nothing less is enough";
   if (limits.option_for(needs.least) != limits.option_for(needs.at_once))

@@ -143,6 +143,7 @@ void find_shadowed(FrameSource& source, const ChannelSearch& search, std::size_t
     std::size_t at = 0;
     while (at < lights.size() && source.channels[RawPlane::indirect][3 * at] != light.front()) at++;
     if (at == lights.size()) add_light(source, search, light, "", std::nullopt);
+    if (lights[at].shadow == name) fail(ErrorKind::usage, "--set shadow-layers: {}:{} is there twice", name, layer);
     if (!lights[at].shadow.empty())
       fail(ErrorKind::usage,
            "--set shadow-layers: the layer {} is there twice: name it for one light; lights that share it need a layer "
