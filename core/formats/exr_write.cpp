@@ -25,7 +25,6 @@
 #include <algorithm>
 #include <deque>
 #include <set>
-#include <stdexcept>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -233,8 +232,6 @@ struct ExrWriter::Impl {
 
   void begin() {
     const std::vector<Imf::Header> of_parts = headers();
-    if (is_for_zip(of_parts[0]) && !is_zip_rows(of_parts[0]))
-      throw std::length_error("a chunk of rows takes more than 2 GiB; give fewer channels (--aov) or --roi");
     if (is_for_zip(of_parts[0]))
       zip = std::make_unique<ZipWriter>(stream, of_parts[0]);
     else if (original)

@@ -249,6 +249,8 @@ void write_word(Imf::OStream& stream, std::int32_t word) {
 
 ZipWriter::ZipWriter(Imf::OStream& stream, const Imf::Header& header) : stream_(stream), header_(of_lines(header)) {
   header_.sanityCheck();
+  if (!is_zip_rows(header_))
+    throw std::length_error("a chunk of rows takes more than 2 GiB; give fewer channels (--aov) or --roi");
   const Window data = window_of(header_.dataWindow());
   width_ = std::size_t(data.width);
   height_ = std::size_t(data.height);

@@ -102,7 +102,7 @@ class ZipWriter : private Imf::GenericOutputFile {
     bool is_float;  // the channel itself may be of half floats
   };
 
-  /// Begins the file. is_zip_rows() must hold for the header.
+  /// Begins the file, of ZIP rows. Fails if a chunk takes more bytes than is_zip_rows() allows.
   ZipWriter(Imf::OStream& stream, const Imf::Header& header);
 
   const Imf::Header& header() const { return header_; }

@@ -271,8 +271,8 @@ void RunPreview::take_lights(Notes& notes) {
     if (std::ranges::find(names, name) == names.end())
       fail(ErrorKind::usage, "--set shadow-layers={}:{}: {} has no light \"{}\"{}", name, layer, lights->path, name,
            suggestion(name, names));
-  const bool is_turned = settings_.estimator.sun_elevation && *settings_.estimator.sun_elevation < 0;
-  for (const auto& name : lights->below_horizon(plan().frames()))
+  for (const auto& name : lights->below_horizon(plan().frames())) {
+    const bool is_turned = lights->elevation && name == lights->lights[lights->sun].name;
     notes.push_back(
         {NoteCode::dark_light,
          is_turned ? fmt::format("the sun \"{}\" is below the horizon, by --set sun-elevation", name)
@@ -280,6 +280,7 @@ void RunPreview::take_lights(Notes& notes) {
                                  "the world's, {} (--lights)",
                                  name, lights->is_y_up ? "y" : "z"),
          lights->path});
+  }
   plan_->set_lights(lights);
   require_distinct_channels(plan().settings());
 }

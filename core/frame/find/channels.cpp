@@ -583,7 +583,8 @@ static std::string input_of_result(const ExrFile& file) {
 std::vector<ChannelRef> ChannelSearch::find(std::size_t file, const AovNames& names, const std::string& chosen,
                                             bool own_file) const {
   // Its Y is AO.
-  if (names.channel_option == std::string_view(kDepthNames.channel_option) && !input_of_result(files_[file]).empty())
+  if (own_file && names.channel_option == std::string_view(kDepthNames.channel_option) &&
+      !input_of_result(files_[file]).empty())
     own_file = false;
   const bool is_all_of_layer = !settings_.layer.empty() && channels_[file].size() == 1;
   return chosen.empty() ? find_usual(files_[file], channels_[file], names, own_file || is_all_of_layer)
