@@ -347,7 +347,7 @@ std::string range_in(const std::string& name) {
 
 std::string foreign_token_in(const std::string& name) {
   static const std::regex view(R"(%[vV]|<[Vv][Ii][Ee][Ww]>|\{view\}|\$\{?VIEW\}?)"),
-      other(R"(%\d*[A-Za-z]|%\(\w+\)\d*[a-z]?|<\w+>|\$?\{\w*(:\w+)?\}|\$[A-Za-z_]\w*)");
+      other(R"(%\d*[A-Za-z]|%\d+(?=\W|$)|%\(\w+\)\d*[a-z]?|<\w+>|\$?\{\w*(:\w+)?\}|\$[A-Za-z_]\w*)");
   std::smatch found;
   if (std::regex_search(name, found, view))
     return fmt::format(
@@ -399,11 +399,14 @@ std::string other_digits(const std::vector<std::string>& names, const std::strin
                      frame_token(digits), after);
 }
 
-/// Names a file that differs from the pattern in its ending, its separators or its letters' case.
-std::string nearly_named(const std::vector<std::string>& names, const std::string& folder, const std::string& wanted) {
-  const auto near = std::ranges::find_if(
-      names, [&](const std::string& name) { return core_of(name) == core_of(wanted) && frame_number_in(name).number; });
-  return near == names.end() ? "" : fmt::format("there is {}{}", folder, *near);
+/// Names a file that differs from the pattern in its ending, its separators or its letters' case; or else in few letters.
+std::string nearly_named(std::vector<std::string> names, const std::string& folder, const std::string& wanted) {
+  std::erase_if(names, [](const std::string& name) { return !frame_number_in(name).number; });
+  std::vector<std::string> cores;
+  std::ranges::transform(names, std::back_inserter(cores), core_of);
+  const auto nearest = nearest_names(core_of(wanted), cores, 1);
+  if (nearest.empty()) return "";
+  return fmt::format("there is {}{}", folder, names[std::size_t(std::ranges::find(cores, nearest[0]) - cores.begin())]);
 }
 
 }  // namespace

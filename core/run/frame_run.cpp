@@ -483,14 +483,11 @@ class FrameRun {
                     MemoryNeeds{bytes, bytes});
   }
 
-  /// Pictures show a frame on a scale of its own, which no tile knows.
   void refuse_pictures(const FrameSource& source, WindowLimits limits, const Window& computed) const {
-    if (!run_.take_look && settings_.output.preview.empty() && settings_.output.debug.empty()) return;
-    const char* const whose = run_.take_look                     ? "a wedge needs it whole: choose a region with --roi"
-                              : settings_.output.preview.empty() ? "--set debug needs it whole: leave it out"
-                                                                 : "--preview needs it whole: leave it out";
+    const std::string reason = why_whole(settings_.output, bool(run_.take_look));
+    if (reason.empty()) return;
     if (!source.region && !planes_) limits.kept = 0;  // all of it is read into its buffers
-    limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {}", report_.input, whose), computed);
+    limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {}", report_.input, reason), computed);
   }
 
   /// The planes of the results over one row of tiles.

@@ -426,11 +426,14 @@ std::string plan_text(RunPreview& look, bool is_wedge) {
   const std::uint64_t memory = of_frames.bytes;
   line("size", to_string(written_picture(source)));
   const WindowLimits limits{frame, of_frames};
-  if (is_wedge && bytes > memory)
-    limits.refuse(fmt::format("{}: a wedge needs a frame whole: give a part by --roi", source.depth_path()),
-                  source.reading.data);
+  const std::string reason = why_whole(first.output, is_wedge);
+  if (!reason.empty() && bytes > memory && (is_wedge || !plan.is_sequence()))
+    limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {}", source.depth_path(), reason),
+                  memory_needs(source, first, limits));
   const std::string at_once =
-      bytes <= memory ? at_once_text(host, plan, source, first, wanted) : tiles_text(source, first, limits);
+      bytes <= memory     ? at_once_text(host, plan, source, first, wanted)
+      : reason.empty() ? tiles_text(source, first, limits)
+                         : "too few, and " + reason;
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
   const std::string needs = is_wedge ? "" : needs_text(source, first, limits, plan.is_sequence());
   if (!needs.empty()) line("--memory", needs);

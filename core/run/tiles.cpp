@@ -314,6 +314,12 @@ void require_numbered_lines(const FrameSource& source, const EstimatorSettings& 
          source.depth_path(), reach, farthest);
 }
 
+std::string why_whole(const OutputSettings& settings, bool is_wedge) {
+  if (is_wedge) return "a wedge needs it whole: choose a region with --roi";
+  if (!settings.preview.empty()) return "--preview needs it whole: leave it out";
+  return settings.debug.empty() ? "" : "--set debug needs it whole: leave it out";
+}
+
 std::string MemoryNeeds::cost() const {
   return fmt::format("in {} parts, about {} times as long", parts,
                      factor < 10 ? fmt::format("{:.2g}", factor) : fmt::format("{:.0f}", factor));
@@ -326,6 +332,7 @@ MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, 
   const Window row{whole.x, whole.y, whole.width, std::min(whole.height, kLeastRows)};
   MemoryNeeds needs;
   needs.at_once = bytes_at_once(source, surroundings, limits);
+  if (limits.memory.beside > 0) return {needs.at_once, needs.at_once};  // its pictures show it whole
   WindowLimits smallest = limits;
   smallest.kept = raw_bytes_of(source);
   needs.least =

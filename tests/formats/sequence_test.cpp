@@ -127,6 +127,7 @@ TEST_F(OnDisk, none_is_an_error_that_says_what_is_wrong_with_the_pattern) {
            {"a.####.exr", "3 digits in a.001.exr: write " + (folder / "a.###.exr")},
            {"b.%04d.exr", "1 digit in b.7.exr"},
            {"shot_c_####.exr", "there is " + (folder / "shot_C.1001.exr")},
+           {"shto_c_####.exr", "there is " + (folder / "shot_C.1001.exr")},
            {"a.####.exr 1-2", (folder / "a.####.exr") + " with --frames 1-2"},
            {"a.####.exr [1-20x2]", "--frames 1-20x2"},
            {"a.1001-1005#.exr", (folder / "a.####.exr") + " with --frames 1001-1005"},
@@ -147,7 +148,8 @@ TEST(ForeignPattern, is_known_in_a_name_without_a_place_for_the_number) {
   for (const auto& [name, words] : {std::pair("a.[1001-1005].exr", "write a.####.exr with --frames 1001-1005"),
                                     std::pair("a.{101..105}.exr", "write a.###.exr with --frames 101-105"),
                                     std::pair("a.1001-1005.exr", "write a.####.exr with --frames 1001-1005"),
-                                    std::pair("a.%04i.exr", "%04i is not"), std::pair("a.%4d.exr", "%4d is not"),
+                                    std::pair("a.%04i.exr", "%04i is not"), std::pair("a.%04.exr", "%04 is not"),
+                                    std::pair("a.%4d.exr", "%4d is not"),
                                     std::pair("a.{frame:04d}.exr", "{frame:04d} is not"),
                                     std::pair("a.<UDIM>.exr", "<UDIM> is not"), std::pair("a_%V.exr", "%V is not")})
     EXPECT_THAT(foreign_pattern_in(name), HasSubstr(words));

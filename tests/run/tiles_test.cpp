@@ -324,6 +324,15 @@ TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough
   const Finished refused = planned({"--memory", fmt::format("{}M", least - 1)});
   test::expect_refused(refused, 2, {shot});
   EXPECT_EQ(memory_named_in(refused.err), least) << refused;
+  const auto with_preview = [&](std::uint64_t megabytes) {
+    return Options{"--preview", folder / "p.png", "--memory", fmt::format("{}M", megabytes)};
+  };
+  const std::uint64_t whole = memory_named_in(planned(with_preview(least)).err);
+  ASSERT_GT(whole, least);
+  EXPECT_THAT(planned(with_preview(whole)).out, HasSubstr("nothing less is enough"));
+  EXPECT_EQ(run_with(0, joined({"--radius", "0.06"}, with_preview(whole))).done, 1);
+  EXPECT_EQ(memory_named_in(expect_refused_with(0, joined({"--radius", "0.06"}, with_preview(whole - 1)), {"--preview"})),
+            whole);
 }
 
 TEST_F(Tiles, that_cannot_be_are_refused) {

@@ -96,7 +96,7 @@ Notes DepthSample::notes(double smallest_radius, double largest_radius, int widt
   if (smallest_radius < kLeastPrecisions * precision)
     notes.push_back(
         {NoteCode::radius_below_precision,
-         fmt::format("radius {:.3g} is {:.2g} times the depth's precision of {:.2g} at the median depth {:.3g}{}: "
+         fmt::format("radius {:.6g} is {:.2g} times the depth's precision of {:.2g} at the median depth {:.3g}{}: "
                      "occluders are lost in its rounding; give a larger --radius{}",
                      smallest_radius, smallest_radius / precision, precision, z,
                      precision > kFullPrecision * z ? "" : ", to which renderers compute it (floats step by less)",
@@ -108,13 +108,13 @@ Notes DepthSample::notes(double smallest_radius, double largest_radius, int widt
     notes.push_back(
         {NoteCode::radius_below_pixel,
          fmt::format(
-             "radius {:.3g} is less than a pixel over {:.0f} % of the surfaces, where nothing can block: give a "
+             "radius {:.6g} is less than a pixel over {:.0f} % of the surfaces, where nothing can block: give a "
              "larger --radius",
              smallest_radius, 100 * below)});
 
   if (largest_radius > pixel_at(z) * std::max(width, height))
     notes.push_back({NoteCode::radius_beyond_picture,
-                     fmt::format("radius {:.3g} is {:.3g} pixels at the median depth {:.3g}, and the picture is {}x{}: "
+                     fmt::format("radius {:.6g} is {:.0f} pixels at the median depth {:.3g}, and the picture is {}x{}: "
                                  "most of its reach lies outside the picture; give a smaller --radius",
                                  largest_radius, largest_radius / pixel_at(z), z, width, height)});
   return notes;
