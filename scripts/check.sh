@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Checks beside the tests: the address, undefined-behaviour and thread sanitizers, clang-tidy, some seconds of fuzzing for each target; and the coverage of the tests.
 #   scripts/check.sh              all parts but windows and coverage
-#   scripts/check.sh PART...      only these parts: addresses (the address and undefined-behaviour sanitizers on tests of files and formats), runs (the same on tests
-#                                 of frames, refusals, same bits and the library), threads (the thread sanitizer on sequences), tidy, fuzzing; windows (installs
-#                                 packages.txt's [build] and [windows])
+#   scripts/check.sh PART...      only these parts: addresses (the address and undefined-behaviour sanitizers on tests of files, formats, frames, refusals, same
+#                                 bits and the library), threads (the thread sanitizer on sequences), tidy, fuzzing; windows (installs packages.txt's [build]
+#                                 and [windows])
 #   scripts/check.sh all          all sources and all tests
 #   scripts/check.sh coverage     only this: lines and branches of core/ and cli/ that the tests reach
 # Builds are in build-fuzz/ (fuzzing, and the address sanitizer with clang), build-asan/ (without it), build-tsan/, build-tidy/ and build-coverage/. ALCOVE_STRICT=ON
@@ -14,23 +14,23 @@ cd "$(dirname "$0")/.."
 
 readers=(core/formats/{exr_check,exr_zip,sample_loops,image_io,open_image,png,row_reader,sequence}.cpp core/frame/{camera/header_camera,camera/camera,find/matte}.cpp core/base/{file,text}.cpp)
 tests=(base/{text,new_file,memory_limit}_test
-       formats/{file,file_names,open_image,bad_input,capture_formats,color,hostile,sequence,zip,zip_writer}_test)
-runs=(frame/{camera,chan,resection,header_camera,frame_source,parts,inputs,readings,sources}_test run/{refusals,same_bits,shadow_run}_test api/{library,library_refusals}_test)
+       formats/{file,file_names,open_image,bad_input,capture_formats,color,hostile,sequence,zip,zip_writer}_test
+       frame/{camera,chan,resection,header_camera,frame_source,parts,inputs,readings,sources}_test
+       run/{refusals,same_bits,shadow_run}_test api/{library,library_refusals}_test)
 threaded=(run/{batch,faults}_test formats/{zip,zip_writer}_test)
-for file in "${readers[@]}" $(printf 'tests/%s.cpp ' "${tests[@]}" "${runs[@]}" "${threaded[@]}"); do
+for file in "${readers[@]}" $(printf 'tests/%s.cpp ' "${tests[@]}" "${threaded[@]}"); do
   [ -f "$file" ] || { echo "$0: there is no $file" >&2; exit 2; }
 done
-parts=${*:-addresses runs threads tidy fuzzing}
+parts=${*:-addresses threads tidy fuzzing}
 if [ "$parts" = all ]; then
   parts="addresses threads tidy fuzzing"
   mapfile -t readers < <(git ls-files 'core/*.cpp' 'cli/*.cpp')
   tests=()
 fi
 for part in $parts; do
-  [[ " addresses runs threads tidy windows fuzzing coverage " = *" $part "* ]] || { echo "$0: there is no part $part" >&2; exit 2; }
+  [[ " addresses threads tidy windows fuzzing coverage " = *" $part "* ]] || { echo "$0: there is no part $part" >&2; exit 2; }
 done
 does() { [[ " $parts " = *" $1 "* ]]; }
-if does runs && does addresses; then tests+=("${runs[@]}"); elif does runs; then tests=("${runs[@]}"); fi
 
 names_of() {  # a regular expression for the names of tests ROOM/NAME
   local names
@@ -82,11 +82,11 @@ sanitized=build-asan arguments=(-DALCOVE_SANITIZE=address,undefined)
 fuzz_targets=(tests/fuzz/*_fuzz.cpp)
 fuzz_targets=("${fuzz_targets[@]##*/}")
 fuzz_targets=("${fuzz_targets[@]%.cpp}")
-if { does addresses || does runs || does fuzzing; } && has_clang fuzzing; then
+if { does addresses || does fuzzing; } && has_clang fuzzing; then
   sanitized=build-fuzz arguments=(-DCMAKE_CXX_COMPILER=clang++ -DALCOVE_FUZZ=ON)
 fi
 
-if does addresses || does runs; then
+if does addresses; then
   step "address and undefined behaviour"
   # Leaks are not checked: lavapipe and OpenEXR leak too, and their libraries are unloaded by then, so leaks cannot be told apart. A test watches memory over many frames.
   export ASAN_OPTIONS=detect_leaks=0:detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1

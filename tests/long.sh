@@ -53,8 +53,8 @@ for preset in draft standard production reference source/forfun-{crytek,hbao}; d
   cmp build/kernels.exr build-plain/kernels.exr
 done
 
-step "the address sanitizer on whole runs, the thread sanitizer, and clang-tidy"
-scripts/check.sh runs threads tidy
+step "the address sanitizer on files, frames, runs and the library, the thread sanitizer, and clang-tidy"
+scripts/check.sh addresses threads tidy
 
 seconds=${ALCOVE_FUZZ_SECONDS:-300}
 if [ "$seconds" != 0 ]; then

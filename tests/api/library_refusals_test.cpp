@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "core/options/options.h"
-#include "tests/support/library.h"
+#include "tests/api/library.h"
 
 namespace alcove::library_refusals_test {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/base/half.h"
 #include "core/base/version.h"
 #include "core/frame/pixels/ramps.h"
-#include "tests/support/library.h"
+#include "tests/api/library.h"
 #include "tests/support/scenes.h"
 
 namespace alcove::library_test {

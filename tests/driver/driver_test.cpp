@@ -8,7 +8,7 @@
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
-#include "tests/support/fake_driver.h"
+#include "tests/driver/fake_driver.h"
 
 namespace alcove::driver_test {
 namespace {

@@ -28,7 +28,7 @@ runs_of() {
   case $1 in
     exr) echo 4500 ;;
     deep) echo 1000 ;;
-    dds | npy) echo 200000 ;;
+    picture) echo 300000 ;;
     camera) echo 40000 ;;
     frames) echo 5000 ;;
     toml) echo 40000 ;;

@@ -1,6 +1,6 @@
 // The functions of Vulkan that are told or shown something else.
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/support/fake_driver.h"
+#include "tests/driver/fake_driver.h"
 
 #include <dlfcn.h>
 #include <vulkan/vulkan.h>
