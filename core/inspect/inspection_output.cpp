@@ -189,7 +189,7 @@ void add(TextLines& lines, const SequenceDepth& depth) {
 }
 
 void add(TextLines& lines, const InspectedSequence& sequence, bool is_orthographic) {
-  lines.add("sequence: {} frames, {}; shown is frame {}", sequence.frames.size(), frames_text(sequence.frames),
+  lines.add("sequence: {}, {}; shown is frame {}", counted(sequence.frames.size(), "frame"), frames_text(sequence.frames),
             sequence.shown);
   if (!sequence.absent.empty()) lines.add("  missing frames: {}", frames_text(sequence.absent));
   for (const auto& change : sequence.changes)
