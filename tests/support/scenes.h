@@ -220,6 +220,10 @@ inline DepthRange between_planes(double far, bool reversed, DeviceRange device =
   return range;
 }
 
+/// The frame in upload buffers, with a matte that takes these pixels: sampled searches leave out tiles without any, and
+/// the rest has the bits that it has without a matte.
+FrameInputs with_matte(const HostFrame& frame, const std::vector<std::size_t>& pixels);
+
 // Scenes by chance, for what must hold in any.
 
 constexpr Estimator kEstimators[] = {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek};
@@ -285,7 +289,9 @@ std::vector<Vec3> first_band(std::span<const float> transfer);
 /// The AOV: unit vectors in view space.
 std::vector<Vec3> bent_normals(const HostFrame& frame, const EstimatorSettings& settings);
 
-/// The mean open directions in view space, as the estimator leaves what is blocked.
-std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& settings);
+/// The mean open directions in view space, as the estimator leaves what is blocked. `pixels`: where they are needed;
+/// empty: all.
+std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& settings,
+                           const std::vector<std::size_t>& pixels = {});
 
 }  // namespace alcove::test
