@@ -77,7 +77,7 @@ void compare_reference(const Picture& picture, const HostFrame& frame, const Est
   EXPECT_LE(sum, picture.reference_mean) << "the CPU reference";
 }
 
-/// Compares the AO of every pixel that has a truth and isn't beside an edge. Only there does a sampled search take time.
+/// Compares the AO of every pixel that has a truth and isn't beside an edge. A sampled search leaves out other tiles.
 void expect_truth(const Picture& picture, const Search& search) {
   SCOPED_TRACE(picture.name + ", " + name_of(search.settings));
   const Rendering rendering = render(picture.scene, picture.shot);

@@ -254,13 +254,13 @@ std::vector<Vec3> bent_normals(const HostFrame& frame, const EstimatorSettings& 
 }
 
 FrameInputs with_matte(const HostFrame& frame, const std::vector<std::size_t>& pixels) {
-  std::vector<float> matte(frame.data.pixels());
-  for (const std::size_t i : pixels) matte[i] = 1;
+  std::vector<float> taken(frame.data.pixels());
+  for (const std::size_t i : pixels) taken[i] = 1;
   HostPlanes planes;
   planes[RawPlane::depth] = frame.depth;
   planes[RawPlane::normal] = frame.normal;
   planes[RawPlane::behind] = frame.behind_depth;
-  planes[RawPlane::matte] = matte;
+  planes[RawPlane::matte] = taken;
   return upload(recorder(), frame, planes, frame.frame);
 }
 

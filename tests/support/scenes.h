@@ -220,10 +220,6 @@ inline DepthRange between_planes(double far, bool reversed, DeviceRange device =
   return range;
 }
 
-/// The frame in upload buffers, with a matte that takes these pixels: sampled searches leave out tiles without any, and
-/// the rest has the bits that it has without a matte.
-FrameInputs with_matte(const HostFrame& frame, const std::vector<std::size_t>& pixels);
-
 // Scenes by chance, for what must hold in any.
 
 constexpr Estimator kEstimators[] = {Estimator::gtao, Estimator::bitmask, Estimator::hbao, Estimator::crytek};
@@ -277,6 +273,12 @@ class RandomScenes {
 
   std::mt19937 random_;
 };
+
+// A frame for which a search takes less time.
+
+/// The frame in upload buffers, with a matte that takes these pixels: sampled searches leave out tiles without any, and
+/// the rest has the bits that it has without a matte.
+FrameInputs with_matte(const HostFrame& frame, const std::vector<std::size_t>& pixels);
 
 // Bent normals of a frame, as the chain writes them and as the estimator leaves them.
 
