@@ -77,7 +77,7 @@ void compare_reference(const Picture& picture, const HostFrame& frame, const Est
   EXPECT_LE(sum, picture.reference_mean) << "the CPU reference";
 }
 
-/// Compares the AO of every pixel that has a truth and isn't beside an edge.
+/// Compares the AO of every pixel that has a truth and isn't beside an edge. A sampled search leaves out other tiles.
 void expect_truth(const Picture& picture, const Search& search) {
   SCOPED_TRACE(picture.name + ", " + name_of(search.settings));
   const Rendering rendering = render(picture.scene, picture.shot);
@@ -87,7 +87,7 @@ void expect_truth(const Picture& picture, const Search& search) {
     if (kLeastPixels * rendering.footprint(int(i % width), int(i / width)) > picture.radius) return kNone;
     return superposed(search.settings, [&](double r) { return picture.truth(hit, r); });
   };
-  const Errors errors = errors_of(rendering, ao_of(rendering.frame, search.settings), truth, search.clear_px);
+  const Errors errors = errors_of(rendering, search.settings, truth, search.clear_px);
   ASSERT_GE(errors.pixels.size(), std::size_t(picture.least_pixels));
   EXPECT_LE(errors.worst, search.worst) << errors.where;
   EXPECT_LE(errors.mean, search.mean) << "bias " << errors.bias << " over " << errors.pixels.size() << " pixels";
@@ -442,10 +442,12 @@ TEST(ClosedForm, with_every_falloff) {
   expect_truth(ceilings()[0], search);
 }
 
+/// Half of the pictures with each change: of each scene one, a wide one and a parallel one.
 TEST(ClosedForm, of_an_exact_search) {
   const Pictures wall = walls(), corner = corners();
-  for (const Picture& picture : {wall[0], wall[3], wall[4], wall[8], corner[0], corner[3], bowls_of(60)[1]})
-    expect_truth(picture, {exact(picture.radius), 0.004, 0.02, 2, false});
+  int number = 0;
+  for (const Picture& picture : {wall[8], wall[3], wall[4], wall[0], corner[0], corner[3], bowls_of(60)[1]})
+    if (tried(number++, 2)) expect_truth(picture, {exact(picture.radius), 0.004, 0.02, 2, false});
   expect_truth(bowls_of(60)[1], {shared_directions(kUnlimited), 0.004, 0.02, 2, false});
 }
 
@@ -458,7 +460,7 @@ TEST(ClosedForm, of_occluders_as_deep_as_wide) {
   }
 }
 
-/// The mean AO of the floor under blades that hang over it.
+/// The mean AO of the floor under blades that hang over it, in every third row of tiles.
 double floor_under_blades(ThicknessKind thickness, double length = 0) {
   Scene scene{{kFloor}};
   for (int i = -6; i <= 6; i++)
@@ -467,12 +469,15 @@ double floor_under_blades(ThicknessKind thickness, double length = 0) {
   EstimatorSettings settings = sampled(Estimator::gtao, 0.6, 8, 64);
   settings.thickness = thickness;
   settings.thickness_length = length;
-  const std::vector<float> ao = ao_of(rendering.frame, settings);
+  std::vector<std::size_t> pixels;
+  for (std::size_t i = 0; i < rendering.hits.size(); i++)
+    if (i / std::size_t(240 * kTile) % 3 == 0 && rendering.hits[i].primitive == 0 &&
+        std::abs(rendering.hits[i].position.x) < 1)
+      pixels.push_back(i);
+  const std::vector<float> ao = ao_at(rendering.frame, settings, pixels);
   double sum = 0;
-  int pixels = 0;
-  for (std::size_t i = 0; i < ao.size(); i++)
-    if (rendering.hits[i].primitive == 0 && std::abs(rendering.hits[i].position.x) < 1) sum += ao[i], pixels++;
-  return sum / pixels;
+  for (const std::size_t i : pixels) sum += ao[i];
+  return sum / double(pixels.size());
 }
 
 TEST(Thickness, thin_blades_block_as_thin_ones) {

@@ -70,8 +70,9 @@ struct Bounds {
   std::size_t pixels;
 };
 
-void expect_mean(const Rendering& rendering, const std::vector<float>& ao, const Truth& truth, const Bounds& bounds) {
-  const Errors errors = errors_of(rendering, ao, truth, 0);
+void expect_mean(const Rendering& rendering, const EstimatorSettings& settings, const Truth& truth,
+                 const Bounds& bounds) {
+  const Errors errors = errors_of(rendering, settings, truth, 0);
   ASSERT_GE(errors.pixels.size(), bounds.pixels);
   EXPECT_LE(std::abs(errors.bias), bounds.mean) << errors.pixels.size() << " pixels";
   EXPECT_LE(errors.worst, bounds.each) << errors.where;
@@ -80,17 +81,16 @@ void expect_mean(const Rendering& rendering, const std::vector<float>& ao, const
 /// The same in several bands of the picture.
 void expect_bands(const std::string& what, const Rendering& rendering, const EstimatorSettings& settings,
                   const std::vector<Band>& bands, const Bounds& bounds) {
-  const std::vector<float> ao = ao_of(rendering.frame, settings);
   for (const Band& band : bands) {
     SCOPED_TRACE(what + ", distance " + std::to_string(band.distance));
-    expect_mean(rendering, ao, band.in_band(), bounds);
+    expect_mean(rendering, settings, band.in_band(), bounds);
   }
 }
 
 /// The mean over the floor's pixels at about that distance from the block, in the middle of the picture.
-double beside_block(const Rendering& rendering, const std::vector<float>& ao, double d, double half_width = 0.025) {
-  const Band band{d, half_width, 0.3, [](const Hit&) { return 0; }};
-  const Errors errors = errors_of(rendering, ao, band.in_band(), 0);
+double beside_block(const Rendering& rendering, const EstimatorSettings& settings, double d) {
+  const Band band{d, 0.025, 0.3, [](const Hit&) { return 0; }};
+  const Errors errors = errors_of(rendering, settings, band.in_band(), 0);
   EXPECT_GE(errors.pixels.size(), 10u);
   return errors.bias;
 }
@@ -103,7 +103,7 @@ TEST(EveryEstimator, is_the_same_to_all_sides) {
       std::vector<double> means;
       for (const double turn : {0.0, 90.0, 180.0, 270.0}) {
         const Rendering rendering = render(block(0.4), leaning(tilt, 3, 120, 120, turn));
-        means.push_back(beside_block(rendering, ao_of(rendering.frame, dense(estimator, 0.6)), 0.2));
+        means.push_back(beside_block(rendering, dense(estimator, 0.6), 0.2));
       }
       EXPECT_LE(std::ranges::max(means) - std::ranges::min(means), 0.01) << int(estimator) << " tilt " << tilt;
       EXPECT_LE(std::ranges::max(means), 0.92) << int(estimator) << " tilt " << tilt;
@@ -112,13 +112,13 @@ TEST(EveryEstimator, is_the_same_to_all_sides) {
 
 TEST(EveryEstimator, reaches_as_far_at_every_resolution) {
   for (const Estimator estimator : kOfTheirOwn) {
+    const EstimatorSettings settings = dense(estimator, 0.5);
     double near[2];
     for (const int fine : {0, 1}) {
       const int width = fine ? 480 : 120;
       const Rendering rendering = render(block(2), leaning(20, 3, width, width / 2));
-      const std::vector<float> ao = ao_of(rendering.frame, dense(estimator, 0.5));
-      near[fine] = beside_block(rendering, ao, 0.25);
-      EXPECT_NEAR(beside_block(rendering, ao, 0.56), 1, 1e-6) << int(estimator) << ", " << width << " px";
+      near[fine] = beside_block(rendering, settings, 0.25);
+      EXPECT_NEAR(beside_block(rendering, settings, 0.56), 1, 1e-6) << int(estimator) << ", " << width << " px";
     }
     EXPECT_NEAR(near[0], near[1], 0.015) << int(estimator);
     EXPECT_LT(near[1], 0.93) << int(estimator);
@@ -275,14 +275,13 @@ TEST(Crytek, beside_an_endless_wall_is_the_volume_before_it) {
                            Shot::perspective({2.2, -0.6, 1.8}, {0.6, 0.2, 0.2}, 100, 320, 240),
                            Shot::orthographic({4, -1, 3}, {0.5, 0, 0.5}, 5, 320, 240)}) {
     const Rendering rendering = render({{kFloor, kWallX}}, shot);
-    const std::vector<float> ao = ao_of(rendering.frame, crytek(1));
     for (const double c : {0.1, 0.3, 0.5, 0.7}) {
       SCOPED_TRACE("c = " + std::to_string(c) + " fx " + std::to_string(shot.camera.fx));
       const auto truth = [&](const Hit& hit) {
         const double d = hit.primitive == 0 ? hit.position.x : hit.position.z;
         return std::abs(d - c) < 0.05 && shot.sees_ball(hit.position, 1) ? 1 - (1 - d) * (1 - d) * (2 + d) / 4 : kNone;
       };
-      expect_mean(rendering, ao, truth, {0.008, 0.12, 100});
+      expect_mean(rendering, crytek(1), truth, {0.008, 0.12, 100});
     }
   }
 }
@@ -304,7 +303,7 @@ TEST(Crytek, clustered_kernel_has_the_lengths_of_its_formula) {
       }
       return 1 - blocked;
     };
-    expect_mean(rendering, ao_of(rendering.frame, settings), truth, {0.004, 0.3, 500});
+    expect_mean(rendering, settings, truth, {0.004, 0.3, 500});
   }
 }
 
@@ -390,7 +389,7 @@ TEST(Crytek, has_a_basis_about_every_normal) {
     const auto truth = [&](const Hit& hit) {
       return shot.sees_ball(hit.position, 0.5) ? 1 - 3 * 0.5 / (8 * 2) : kNone;
     };
-    expect_mean(rendering, ao_of(rendering.frame, dense(Estimator::crytek, 0.5)), truth, {0.01, 0.15, 100});
+    expect_mean(rendering, dense(Estimator::crytek, 0.5), truth, {0.01, 0.15, 100});
   }
 }
 

@@ -147,10 +147,12 @@ void add(Shown& shown, const RenderedPart& part, const HostFrame& frame, const s
 // The error of few directions is one number for a whole tile, and two estimates may agree on it by chance. Measured:
 // (at 0.01 and 0.03) worst tile 1.2 and 1.5 E, 0.6 and 1.0 % of the tiles above E, which said 0.45 and 0.20 of their
 // error or more, steps across borders 0.92 and 1.01 of those within. By each tile's own comparison alone 5.1 and 2.3 E,
-// 6.3 and 8.2 %, 0.006 and 0.022, 1.13 and 1.33.
+// 6.3 and 8.2 %, 0.006 and 0.022, 1.13 and 1.33. Half of the parts with each change.
 TEST(Tolerance, no_tile_that_errs_by_much_is_called_good) {
   std::array all{Shown{0.01}, Shown{0.03}};
+  int number = 0;
   for (const auto& part : kParts) {
+    if (!tried(number++, 2)) continue;
     const HostFrame frame = crop_of(rendered_frame(part.scene), part.window);
     const std::vector<float> truth = truth_of(frame, part.radius);
     for (auto& shown : all) add(shown, part, frame, truth);

@@ -57,6 +57,13 @@ std::vector<float> ao_of(const HostFrame& frame, const EstimatorSettings& settin
   return compute_ao(recorder(), frame, settings).ao;
 }
 
+std::vector<float> ao_at(const HostFrame& frame, const EstimatorSettings& settings,
+                         const std::vector<std::size_t>& pixels) {
+  const FrameOutputs outputs = run_chain(recorder(), with_matte(frame, pixels), settings);
+  recorder().run();
+  return values_of(outputs.ao);
+}
+
 Planes planes_of(const HostFrame& frame, const EstimatorSettings& settings, const std::string& aovs, bool completed) {
   OutputSettings output;
   output.aovs = aovs;
@@ -114,27 +121,52 @@ double beside_corner(double distance_a, double distance_b) {
   return 1 - (segment(a) + segment(b) - both) / kPi;
 }
 
-Errors errors_of(const Rendering& rendering, const std::vector<float>& ao, const Truth& truth, int clear_px) {
+namespace {
+
+/// The pixels that are compared, and their truths.
+Errors compared(const Rendering& rendering, const Truth& truth, int clear_px) {
   Errors errors;
-  for (std::size_t i = 0; i < ao.size(); i++) {
+  for (std::size_t i = 0; i < rendering.hits.size(); i++) {
     const int x = int(i) % rendering.shot.data.width, y = int(i) / rendering.shot.data.width;
     const Hit& hit = rendering.hits[i];
     if (hit.primitive < 0 || rendering.primitives_within(clear_px, x, y) > 1 ||
         rendering.primitives_within(2, x, y) > 2)
       continue;
-    const double expected = truth(hit), error = ao[i] - expected;
+    const double expected = truth(hit);
     if (std::isnan(expected)) continue;
     errors.pixels.push_back(i);
     errors.truths.push_back(expected);
+  }
+  return errors;
+}
+
+/// Adds how far the AO is from these truths.
+Errors measured(Errors errors, const Rendering& rendering, const std::vector<float>& ao) {
+  const auto width = std::size_t(rendering.shot.data.width);
+  for (std::size_t k = 0; k < errors.pixels.size(); k++) {
+    const std::size_t i = errors.pixels[k];
+    const double error = ao[i] - errors.truths[k];
     errors.mean += std::abs(error);
     errors.bias += error;
     if (std::abs(error) <= errors.worst) continue;
     errors.worst = std::abs(error);
-    errors.where = fmt::format("pixel {} {} of primitive {}: {} for {}", x, y, hit.primitive, ao[i], expected);
+    errors.where = fmt::format("pixel {} {} of primitive {}: {} for {}", i % width, i / width,
+                               rendering.hits[i].primitive, ao[i], errors.truths[k]);
   }
   errors.mean /= double(errors.pixels.size());
   errors.bias /= double(errors.pixels.size());
   return errors;
+}
+
+}  // namespace
+
+Errors errors_of(const Rendering& rendering, const std::vector<float>& ao, const Truth& truth, int clear_px) {
+  return measured(compared(rendering, truth, clear_px), rendering, ao);
+}
+
+Errors errors_of(const Rendering& rendering, const EstimatorSettings& settings, const Truth& truth, int clear_px) {
+  const Errors errors = compared(rendering, truth, clear_px);
+  return measured(errors, rendering, ao_at(rendering.frame, settings, errors.pixels));
 }
 
 Truth wall_truth(const Shot& shot, double radius) {

@@ -32,6 +32,9 @@ Prepared prepared(const HostFrame& frame);
 std::vector<float> values_of(const gpu::Buffer* buffer);
 
 std::vector<float> ao_of(const HostFrame& frame, const EstimatorSettings& settings);
+/// The same at these pixels, and 1 elsewhere: see with_matte().
+std::vector<float> ao_at(const HostFrame& frame, const EstimatorSettings& settings,
+                         const std::vector<std::size_t>& pixels);
 
 /// What the chain makes of a frame for a list of AOVs, and what of it completed surfaces took.
 struct Planes {
@@ -76,6 +79,8 @@ struct Errors {
   std::string where = {};  // it is worst
 };
 Errors errors_of(const Rendering& rendering, const std::vector<float>& ao, const Truth& truth, int clear_px = 2);
+/// The same of the AO by these settings, which sampled searches compute in the tiles of those pixels alone.
+Errors errors_of(const Rendering& rendering, const EstimatorSettings& settings, const Truth& truth, int clear_px = 2);
 
 /// Those of the floor and one wall, or two, wherever the picture shows all that is within the radius.
 Truth wall_truth(const Shot& shot, double radius);

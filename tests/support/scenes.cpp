@@ -253,11 +253,24 @@ std::vector<Vec3> bent_normals(const HostFrame& frame, const EstimatorSettings& 
   return vectors_in(outputs.bent_normal->as<float>());
 }
 
-std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& settings) {
+FrameInputs with_matte(const HostFrame& frame, const std::vector<std::size_t>& pixels) {
+  std::vector<float> taken(frame.data.pixels());
+  for (const std::size_t i : pixels) taken[i] = 1;
+  HostPlanes planes;
+  planes[RawPlane::depth] = frame.depth;
+  planes[RawPlane::normal] = frame.normal;
+  planes[RawPlane::behind] = frame.behind_depth;
+  planes[RawPlane::matte] = taken;
+  return upload(recorder(), frame, planes, frame.frame);
+}
+
+std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& settings,
+                           const std::vector<std::size_t>& pixels) {
   gpu::Recorder& gpu = recorder();
-  const FrameInputs inputs = upload(gpu, frame);
-  const GBuffer gbuffer = prepare(gpu, inputs);
-  reconstruct(gpu, gbuffer);
+  const FrameInputs inputs = pixels.empty() ? upload(gpu, frame) : with_matte(frame, pixels);
+  const GBuffer whole = prepare(gpu, inputs);
+  reconstruct(gpu, whole);
+  const GBuffer gbuffer = needed(gpu, whole, inputs, matte(gpu, inputs), 0);
   const Estimate result = estimate(gpu, gbuffer, sites(gpu, gbuffer, site_rule_of(settings)), inputs, settings, 1);
   gpu.download(*result.moments);
   gpu.run();

@@ -274,6 +274,12 @@ class RandomScenes {
   std::mt19937 random_;
 };
 
+// A frame for which a search takes less time.
+
+/// The frame in upload buffers, with a matte that takes these pixels: sampled searches leave out tiles without any, and
+/// the rest has the bits that it has without a matte.
+FrameInputs with_matte(const HostFrame& frame, const std::vector<std::size_t>& pixels);
+
 // Bent normals of a frame, as the chain writes them and as the estimator leaves them.
 
 /// Makes vectors of planes x, y, z.
@@ -285,7 +291,9 @@ std::vector<Vec3> first_band(std::span<const float> transfer);
 /// The AOV: unit vectors in view space.
 std::vector<Vec3> bent_normals(const HostFrame& frame, const EstimatorSettings& settings);
 
-/// The mean open directions in view space, as the estimator leaves what is blocked.
-std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& settings);
+/// The mean open directions in view space, as the estimator leaves what is blocked. `pixels`: where they are needed;
+/// empty: all.
+std::vector<Vec3> raw_bent(const HostFrame& frame, const EstimatorSettings& settings,
+                           const std::vector<std::size_t>& pixels = {});
 
 }  // namespace alcove::test
