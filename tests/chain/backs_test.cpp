@@ -65,8 +65,7 @@ TEST(Backs, of_a_railing_are_no_farther_than_it_is_wide) {
     // A floor that juts out of a wall, seen from below, with bars along its edge.
     Scene scene{{kWallX}};
     scene.add(parallelepiped({0, -3, -0.1}, {0.7, 0, 0}, {0, 6, 0}, {0, 0, 0.1}));
-    for (int i = -12; i <= 12; i++)
-      scene.add(sides_of_bar(bar, 0.2 * i));
+    for (int i = -12; i <= 12; i++) scene.add(sides_of_bar(bar, 0.2 * i));
     const auto is_behind = [](const Hit& hit) {
       return hit.primitive == 0 && std::abs(hit.position.y) < 1 && std::abs(hit.position.z - 0.7) < 0.3;
     };
