@@ -89,9 +89,10 @@ std::vector<EstimatorSettings> all_kinds(double radius) {
 
 // Flat surfaces.
 
-/// At every slant; one of a full size; and one through a shifted lens, whose pixels are oblong.
+/// One of a full size; one through a shifted lens, whose pixels are oblong; and at every slant. In the short form a
+/// third of the slants, in which each two of all tilts, turns and fields of view meet.
 std::vector<SlantedPlane> planes() {
-  std::vector<SlantedPlane> all = slanted_planes({0, 30, 60, 80, 85}, {0, 37, 90, 200}, {0, 10, 60, 90, 120});
+  std::vector<SlantedPlane> all;
   all.push_back({"full size", render({{Plane{.point = {5, 0, 0}, .normal = unit({-0.3, 0.2, 1})}}},
                                      Shot::perspective({}, {1, 0, 0}, 75, 320, 240))});
   Shot shot = along_x(80, 96, 64);
@@ -99,6 +100,9 @@ std::vector<SlantedPlane> planes() {
   shot.camera.cy -= 45.1;
   shot.camera.fy *= 1.7;
   all.push_back({"shifted", render({{Plane{.point = {5, 0, 0}, .normal = unit({-1, 0.6, -0.8})}}}, shot)});
+  int number = 0;
+  for (auto& slanted : slanted_planes({0, 30, 60, 80, 85}, {0, 37, 90, 200}, {0, 10, 60, 90, 120}))
+    if (tried(number++, 3)) all.push_back(std::move(slanted));
   return all;
 }
 
@@ -133,12 +137,15 @@ TEST(FlatPlane, is_open_without_normals) {
 // Symmetries of space.
 
 TEST(Scale, by_powers_of_two_and_what_was_before_change_no_bit) {
-  const HostFrame room = furnished_room(160, 120).frame, other = furnished_room(31, 17).frame;
+  const HostFrame room = furnished_room(120, 90).frame, other = furnished_room(31, 17).frame;
+  int number = 0;
   for (const EstimatorSettings& settings : all_kinds(0.6)) {
+    number++;
     const std::vector<float> expected = ao_of(room, settings);
     EXPECT_LT(*std::ranges::min_element(expected), 0.8f) << name_of(settings);
     ao_of(other, settings);
     for (const int exponent : {-50, 0, 3, 50}) {
+      if (std::abs(exponent) < 50 && !tried(number + exponent, 2)) continue;
       EstimatorSettings scaled_settings = settings;
       scaled_settings.radius = std::ldexp(*settings.radius, exponent);
       if (settings.estimator == Estimator::crytek) scaled_settings.bias = std::ldexp(settings.bias, exponent);
@@ -156,12 +163,14 @@ TEST(Scale, by_powers_of_two_and_what_was_before_change_no_bit) {
 
 TEST(Scale, changes_no_bit_of_what_is_hidden_or_made_of_the_ao) {
   for (const bool orthographic : {false, true}) {
-    Rendering room = render(kRoom, room_shot(96, 72, orthographic));
+    Rendering room = render(kRoom, room_shot(64, 48, orthographic));
     add_solid_peels(room, kRoom, 3, {2});
     for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::infinite, ThicknessKind::constant})
       for (const bool is_exact : {false, true}) {
         if (!tried(orthographic + int(thickness) + is_exact, 2)) continue;
-        EstimatorSettings settings = is_exact ? exact(0.6) : gtao(0.6, 3, 12);
+        // Curvature beside an exact search takes as many slices and steps by samples.
+        EstimatorSettings settings = is_exact ? exact(0.6, 4) : gtao(0.6, 3, 12);
+        settings.steps = 12;
         settings.thickness = thickness;
         settings.thickness_length = 0.2;
         const auto of = [&](int exponent) {
@@ -296,14 +305,21 @@ TEST(Normals, that_lean_beyond_the_horizon_are_not_turned) {
 
 // Windows, sizes and any bits.
 
+// With each change every second search at each size.
 TEST(Size, may_be_anything_from_one_pixel_and_any_bits_give_an_ao_from_0_to_1) {
-  int number = 0;
+  int number = 0, size = 0;
   for (const auto& [width, height] :
        {std::pair{1, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 5}, {8, 8}, {9, 7}, {17, 31}, {1, 700}, {700, 3}, {161, 91}}) {
     const Rendering room = furnished_room(width, height);
     const HostFrame plane = slanted_planes({41}, {54}, {40}, width, height)[0].rendering.frame;
     HostFrame bits = random_bits(width, height, 5);
+    size++;
+    int turn = size;
     for (const EstimatorSettings& kind : all_kinds(0.6)) {
+      if (!tried(turn++, 2)) {
+        number++;
+        continue;
+      }
       EstimatorSettings settings = kind;
       settings.radius = std::array{1e-4, 0.6, 1e3}[std::size_t(number % 3)];
       SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height) + ", " + name_of(settings));
@@ -317,7 +333,8 @@ TEST(Size, may_be_anything_from_one_pixel_and_any_bits_give_an_ao_from_0_to_1) {
     number++;  // so that each search meets each radius and kind of depth: the number of searches is a multiple of 3
     bits.normal.clear();
     for (const float ao : ao_of(bits, gtao(0.6, 3, 6))) ASSERT_TRUE(ao >= 0 && ao <= 1) << ao;
-    for (const EstimatorSettings& settings : slice_searches(1)) expect_open(plane, settings, 1e-4);
+    for (const EstimatorSettings& settings : slice_searches(1))
+      if (tried(turn++, 2)) expect_open(plane, settings, 1e-4);
     if (width < 3 || height < 3) continue;
     HostFrame without = plane;
     without.normal.clear();

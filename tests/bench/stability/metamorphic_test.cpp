@@ -26,10 +26,12 @@ EstimatorSettings converged(EstimatorSettings settings, double radius) {
 /// Those that a larger radius or another occluder can only darken: all that is seen is solid, and counts fully however
 /// far off.
 std::vector<Variant> solid_estimators() {
-  std::vector<Variant> all = estimators();
-  for (auto& variant : all) {
+  std::vector<Variant> all;
+  for (Variant variant : estimators()) {
+    if (variant.name == "gtao infinite" || variant.name == "gtao constant") continue;  // which is then gtao
     variant.settings.thickness = ThicknessKind::infinite;
     variant.settings.range_check = RangeCheck::none;
+    all.push_back(variant);
   }
   return all;
 }
@@ -111,10 +113,11 @@ TEST(Metamorphic, a_larger_radius_only_darkens) {
   }
 }
 
-// Whatever the radius. Behind what is nearer only of a given thickness: where surfaces go on there, the automatic one
-// is half as thick. The worst that was measured is 3.8e-4 of samples, from the sector that the tangent plane cuts, and
-// 0.0099 of the exact search, where the sphere cuts the straight line from the far end of what is seen of a surface to
-// the far end of what goes on of it, and not both of these.
+// Whatever the radius; with each change every second radius of each estimator. Behind what is nearer only of a given
+// thickness: where surfaces go on there, the automatic one is half as thick. The worst that was measured is 3.8e-4 of
+// samples, from the sector that the tangent plane cuts, and 0.0099 of the exact search, where the sphere cuts the
+// straight line from the far end of what is seen of a surface to the far end of what goes on of it, and not both of
+// these.
 TEST(Metamorphic, completing_only_darkens) {
   const HostFrame frame = room(55, 1, 0, 48, 36).frame;
   auto all = solid_estimators();
@@ -123,12 +126,15 @@ TEST(Metamorphic, completing_only_darkens) {
     variant.settings.thickness = ThicknessKind::constant;
     if (searches_exactly(variant.settings)) all.push_back(variant);
   }
+  int number = 0;
   for (const auto& variant : all) {
+    int turn = number++;
     const bool is_endless = variant.settings.thickness == ThicknessKind::infinite;
     const float slack_of_samples = is_endless ? 1e-6f : 5e-4f;
     const float slack = searches_exactly(variant.settings) ? 0.012f : slack_of_samples;
     int darker = 0;
     for (const double radius : {1e-9, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 1e9}) {
+      if (!tried(turn++, 2)) continue;
       EstimatorSettings settings = converged(variant.settings, radius);
       settings.thickness_length = 0.2;
       settings.complete = Completion::none;
@@ -230,16 +236,20 @@ TEST(Metamorphic, a_convex_body_alone_is_open) {
 }
 
 // To 89.99 degrees. From 85 on a pixel's own footprint is longer than the radius, and rounded normals (4e-5 rad) tilt
-// the plane by part of what is left.
+// the plane by part of what is left. With each change each estimator and radius meets every second turn.
 TEST(Metamorphic, a_plane_at_a_grazing_angle_is_open) {
+  int number = 0;
   for (const auto& [what, rendering] :
-       slanted_planes({60, 85, 89, 89.9, 89.99}, {0, 37, 90, 200}, {0, 0.01, 60}, 48, 36, 60, 0.01))
+       slanted_planes({60, 85, 89, 89.9, 89.99}, {0, 37, 90, 200}, {0, 0.01, 60}, 48, 36, 60, 0.01)) {
+    int turn = number++;
     for (const auto& variant : estimators())
       for (const double radius : {0.05, 1.0, 1e6}) {
+        if (!tried(turn++, 2)) continue;
         const EstimatorSettings settings = with_radius(variant.settings, radius);
         SCOPED_TRACE(what + ", " + variant.name);
         expect_open(rendering.frame, settings, searches_exactly(settings) ? 3e-3 : 1e-3);
       }
+  }
 }
 
 }  // namespace
