@@ -173,7 +173,6 @@ TEST_F(Tiles, give_the_bits_of_the_whole_with_a_beauty_of_another_window) {
   for (const Window& window : {Window{100, -30, 20, 340}, Window{40, 60, 300, 150}, Window{-20, -30, 530, 340}}) {
     if (!tried(number++, 3)) continue;
     beauty_over(window, display).write(beauty);
-    // All of its layers would take more than the little memory.
     expect_same(
         typed("--radius 0.06 --beauty " + beauty + " --composite " + composite + " --set composite-layers=rgba"));
   }
