@@ -9,7 +9,7 @@ namespace {
 using namespace test;
 
 constexpr double kMiB = 1 << 20, kRich = 1024;
-constexpr int kFrames = 8;
+constexpr int kFrames = 7;
 
 class DeviceMemory : public SequenceFolder {
  protected:
@@ -38,7 +38,7 @@ class DeviceMemory : public SequenceFolder {
     return json::parse(read_bytes(folder / "stats.json"));
   }
 
-  inline static const Options kOptions = typed("--threads 4 --noise animated --radius 0.04");
+  inline static const Options kOptions = typed("--threads 4 --noise animated --radius 0.04 --slices 1 --steps 2");
   std::map<std::string, std::string> whole;
   std::string said;  // by the last run
 };

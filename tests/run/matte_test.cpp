@@ -98,13 +98,12 @@ TEST_F(Matte, a_single_pixel_has_the_bits_of_the_whole_wherever_it_lies_in_a_til
   int number = 0;
   for (const char* more : {"--preset standard", "--preset draft", "--slices 6 --set denoise-radius=5"}) {
     const Plane whole = ao_of(file, typed(more));
-    for (std::size_t turn = 0; turn < 16; turn++) {
+    for (std::size_t turn = 0; turn < 8; turn++) {
       if (!tried(number++, 3)) continue;
       Plane matte(kWindow.pixels(), 0);
       std::vector<std::size_t> places;
-      for (std::size_t k = 0; k < 4; k++) {
-        const std::size_t place = turn * 4 + k;  // in a tile
-        places.push_back((24 + place / 8) * 160 + 16 + 40 * k + place % 8);
+      for (std::size_t k = 0; k < 8; k++) {  // a row of a tile, each pixel of it in a tile of its own
+        places.push_back((24 + 40 * (k / 4) + turn) * 160 + 16 + 40 * (k % 4) + k);
         matte[places.back()] = 1;
       }
       FrameFile chosen = file;

@@ -36,25 +36,28 @@ class SameBits : public WalkedShot {
 };
 
 TEST_F(SameBits, of_threads_chunks_and_orders) {
-  constexpr int kFrames = 7;
-  write_shot(kFrames);
-  write_hidden(kFrames, kWallWindow);
+  const int frames = long_tests() ? 7 : 5;
+  write_shot(frames);
+  write_hidden(frames, kWallWindow);
   const std::vector<std::vector<std::string>> ways{
-      {"--threads 3 --frames 7-1"}, {"--threads 2 --frames 1-7x2,2-6:2"}, {"--chunk 2/2", "--threads 1 --chunk 1/2"}};
+      {fmt::format("--threads 3 --frames {}-1", frames)},
+      {fmt::format("--threads 2 --frames 1-{}x2,2-{}:2", frames, frames - 1)},
+      {"--chunk 2/2", "--threads 1 --chunk 1/2"}};
   int number = 0;
   for (const std::string& more :
-       std::vector<std::string>{"", "--preset draft", "--around 2", "--accumulate 2",
-                                "--accumulate 1 --around 1 --preset reference --aov ao,transfer",
-                                "--around 1 --estimator bitmask", "--around 1 --search exact --behind " + peel}) {
+       std::vector<std::string>{"", "--accumulate 1 --around 1 --preset reference --aov ao,transfer", "--accumulate 2",
+                                "--preset draft", "--around 2 --estimator bitmask",
+                                "--around 1 --search exact --behind " + peel}) {
     SCOPED_TRACE(more);
     remove_outputs();
     done(joined(typed(more), {"--threads", "1"}));
     const auto before = outputs();
-    EXPECT_EQ(before.size(), kFrames);
-    for (const auto& way : ways) {
-      if (!tried(number++, 2)) continue;
+    EXPECT_EQ(before.size(), frames);
+    const int row = number++;
+    for (std::size_t i = 0; i < ways.size(); i++) {
+      if (!tried(row + int(i), 3)) continue;
       std::vector<Options> runs;
-      for (const auto& run : way) runs.push_back(typed(run + " " + more));
+      for (const auto& run : ways[i]) runs.push_back(typed(run + " " + more));
       expect_same_outputs(before, runs);
     }
     if (more.empty()) expect_same_outputs(before, {{"--accumulate", "0"}});
@@ -71,23 +74,27 @@ TEST_F(SameBits, of_a_region_and_the_whole_at_less_cost) {
   wall_frame(kOverscan, kWindow).write(input(kOverscanFrame));
   // What hides or completes surfaces may take all of a frame, and so may what tells how far back solids go.
   const std::string near = "--radius 0.3 ", exact = near + "--search exact ", ignore = "--set ignore=" + board;
-  for (const auto& [frame, most, more] : std::vector<std::tuple<int, double, std::string>>{
-           {kOverscanFrame, 0.29, "--radius 0.05 --denoise none"},
-           {kOverscanFrame, 0.82, "--radius 0.05 --denoise bilateral"},
-           {kOverscanFrame, 1, near + "--preset draft"},
-           {kOverscanFrame, 0.91, near + "--resolution half"},
-           {kOverscanFrame, 0.4, "--radius 0.05 --set stride=4 --set density=uniform"},
-           {kOverscanFrame, 0.8, near + "--set stride=1"},
-           {kOverscanFrame, 1, near + "--resolution quarter --denoise box"},
-           {kOverscanFrame, 1, exact},
-           {2, 1, near + "--around 1"},
-           {2, 1, near + "--accumulate 1"},
-           {2, 1, near + "--behind " + peel + " --aov ao,hidden"},
-           {2, 1, exact + "--deep " + deep},
-           {2, 1, near + "--matte " + board + " --matte-outside 0.25"},
-           {2, 1, near + ignore + " --behind " + peel},
-           {2, 1, near + ignore + " --resolution half"},
-           {2, 1, exact + ignore + " --behind " + peel}}) {
+  std::vector<std::tuple<int, double, std::string>> rows{
+      {kOverscanFrame, 0.29, "--radius 0.05 --denoise none"},
+      {kOverscanFrame, 0.82, "--radius 0.05 --denoise bilateral"},
+      {kOverscanFrame, 0.4, "--radius 0.05 --set stride=4 --set density=uniform"},
+      {kOverscanFrame, 0.8, near + "--set stride=1"},
+      {kOverscanFrame, 1, exact},
+      {2, 1, near + "--around 1 --accumulate 1"},
+      {2, 1, near + "--behind " + peel + " --aov ao,hidden"},
+      {2, 1, near + "--matte " + board + " --matte-outside 0.25"},
+      {2, 1, near + ignore + " --resolution half --behind " + peel},
+      {2, 1, exact + ignore + " --behind " + peel}};
+  // These have margins of their own in tiles_test, their parts above, or a region in deep_run_test.
+  if (long_tests())
+    rows.insert(rows.end(), {{kOverscanFrame, 1, near + "--preset draft"},
+                             {kOverscanFrame, 0.91, near + "--resolution half"},
+                             {kOverscanFrame, 1, near + "--resolution quarter --denoise box"},
+                             {2, 1, near + "--around 1"},
+                             {2, 1, near + "--accumulate 1"},
+                             {2, 1, near + ignore + " --behind " + peel},
+                             {2, 1, exact + "--deep " + deep}});
+  for (const auto& [frame, most, more] : rows) {
     SCOPED_TRACE(more);
     const Options options = joined({"--type", "float", "--frames", std::to_string(frame)}, typed(more));
     const auto cost_of = [&](const Options& part) {

@@ -1,6 +1,7 @@
 // Frames that are computed in tiles have the bits of frames that are computed at once.
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/run/frame_files.h"
+#include "core/run/tiles.h"
 #include "tests/support/exr_header.h"
 #include "tests/support/test.h"
 #include "tests/support/walked_shot.h"
@@ -34,13 +35,14 @@ class Tiles : public CommandLine {
     }
   }
 
-  /// A run on the frame with so many bytes for frames or, for 0, as many as there are.
-  RunReport run_with(std::uint64_t bytes, const Options& more) const {
-    Options arguments{shot, "-o", ao, "--camera", shot_camera, "--stats", folder / "stats.json", "--type", "float"};
+  Options arguments(const Options& more) const {
+    Options words{shot, "-o", ao, "--camera", shot_camera, "--stats", folder / "stats.json", "--type", "float"};
     if (const char* device = std::getenv("ALCOVE_TEST_DEVICE"); device && *device)
-      arguments = joined(arguments, {"--device", device});
-    return run_here(joined(arguments, more), bytes);
+      words = joined(words, {"--device", device});
+    return joined(words, more);
   }
+  /// A run on the frame with so many bytes for frames or, for 0, as many as there are.
+  RunReport run_with(std::uint64_t bytes, const Options& more) const { return run_here(arguments(more), bytes); }
   /// The same, which must succeed in several tiles.
   RunReport done_in_tiles(const Options& more) const {
     RunReport report = run_with(little_memory, more);
@@ -58,13 +60,30 @@ class Tiles : public CommandLine {
     return report.stop->what();
   }
 
+  /// Bytes for a frame in rows and columns of tiles: more than the smallest tiles take, and fewer than the whole. The
+  /// smallest tiles would compute most pixels many times.
+  std::uint64_t bytes_for_tiles(const Options& more) const {
+    RunOptions options;
+    EXPECT_TRUE(parse_run_options(arguments(more), options));
+    RunPreview look(options.settings);
+    look.prepare();
+    const int number = look.plan().frames().front();
+    const Settings settings = look.plan().at(number);
+    set_exr_threads(threads_of(settings.device));
+    std::uint64_t bytes = 0;
+    for (int turn = 0; turn < 2; turn++) {  // codecs take more of more memory
+      set_exr_memory(bytes / kCodecPart);
+      FrameSource source = open_frame(settings, number);
+      const WindowLimits limits{memory_with_others(look.plan(), source, settings), {.bytes = MemoryBudget::kEndless}};
+      const MemoryNeeds needs = memory_needs(source, settings, limits);
+      bytes = needs.least + (needs.at_once - needs.least) / (long_tests() ? 4 : 2);
+    }
+    return bytes;
+  }
+
   /// The bytes of the AO, and of the composite where there is one; how many tiles they took.
-  std::pair<std::string, int> computed(const Options& more, bool in_tiles) const {
-    RunReport report = run_with(in_tiles ? little_memory : 0, more);
-    // What reaches far takes more: then the tiles are the smallest that there are.
-    for (std::uint64_t bytes = little_memory; in_tiles && report.done != 1 && bytes < 6 * little_memory;
-         bytes += bytes / 4)
-      report = run_with(bytes, more);
+  std::pair<std::string, int> computed(const Options& more, std::uint64_t bytes) const {
+    const RunReport report = run_with(bytes, more);
     EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
     if (report.done != 1) return {};
     const bool has_composite = std::ranges::find(more, "--composite") != more.end();
@@ -73,8 +92,8 @@ class Tiles : public CommandLine {
   /// The run in tiles must give the bits of the whole.
   void expect_same(const Options& options) const {
     SCOPED_TRACE(testing::PrintToString(options));
-    const auto [whole, one] = computed(options, false);
-    const auto [tiled, many] = computed(options, true);
+    const auto [whole, one] = computed(options, 0);
+    const auto [tiled, many] = computed(options, bytes_for_tiles(options));
     EXPECT_EQ(one, 1);
     EXPECT_GT(many, 1);
     EXPECT_TRUE(whole == tiled);
@@ -83,7 +102,6 @@ class Tiles : public CommandLine {
   void take_rendered_frame() {
     shot = ALCOVE_SOURCE_DIR "/examples/interior.gbuffer.exr";
     shot_camera = ALCOVE_SOURCE_DIR "/examples/interior.camera.json";
-    little_memory = 4 * kLittleMemory;
   }
 
   const std::string composite = folder / "composite.exr";
@@ -95,11 +113,12 @@ class Tiles : public CommandLine {
 TEST_F(Tiles, give_the_bits_of_the_whole) {
   int number = 0;
   for (const std::string& more : std::vector<std::string>{
-           "", "--aov ao,normal,depth,specular-occlusion --composite " + composite, "--preset draft",
-           "--estimator bitmask --slices 2 --steps 20", "--estimator hbao --denoise box",
-           "--estimator crytek --denoise none", "--resolution half", "--resolution quarter --set denoise-radius=5",
-           "--set stride=4", "--set stride=8 --set density=uniform", "--set stride=1",
-           "--set supersampling=2 --set filter-width=5 --roi 3,5,225,125", "--roi 3,5,450,250 --falloff smooth"})
+           "--composite " + composite,
+           "--estimator bitmask --slices 2 --steps 20 --aov ao,normal,depth,specular-occlusion", "--preset draft",
+           "--estimator crytek --denoise none", "--estimator hbao --denoise box",
+           "--resolution quarter --set denoise-radius=5", "--resolution half --falloff smooth",
+           "--set stride=8 --set density=uniform", "--set stride=4 --roi 3,5,450,250",
+           "--set supersampling=2 --set filter-width=5 --roi 3,5,225,125", "--set stride=1"})
     if (tried_at_width(number++)) expect_same(typed("--radius 0.06 " + more));
 }
 
@@ -154,7 +173,6 @@ TEST_F(Tiles, give_the_bits_of_the_whole_with_a_beauty_of_another_window) {
   for (const Window& window : {Window{100, -30, 20, 340}, Window{40, 60, 300, 150}, Window{-20, -30, 530, 340}}) {
     if (!tried(number++, 3)) continue;
     beauty_over(window, display).write(beauty);
-    // All of its layers would take more than the little memory.
     expect_same(
         typed("--radius 0.06 --beauty " + beauty + " --composite " + composite + " --set composite-layers=rgba"));
   }
@@ -175,7 +193,7 @@ TEST_F(Tiles, give_the_bits_of_the_whole_with_hidden_surfaces) {
 
 TEST_F(Tiles, give_the_bits_of_the_whole_in_exact_searches) {
   take_rendered_frame();
-  if (!long_tests()) return expect_same(typed("--radius 0.05 --preset reference --roi 300,150,420,240"));
+  if (!long_tests()) return expect_same(typed("--radius 0.05 --preset reference --slices 2 --roi 300,150,200,120"));
   expect_same(typed("--radius 0.05 --preset reference"));
   expect_same(typed("--radius 0.06 --preset reference --denoise none --thickness 0.05"));
 }
@@ -206,13 +224,13 @@ TEST_F(Tiles, give_the_bits_of_the_whole_where_solids_reach_into_the_sphere) {
   if (!long_tests()) return;
   // Lines of an exact search go on for seven radii: with a larger one, each tile is computed with all of the frame.
   write_slabs(0.03);
-  little_memory = 3 * kLittleMemory;
   expect_same(joined(typed("--radius 0.03 --preset reference"), hidden));
 }
 
 TEST_F(Tiles, give_the_bits_of_the_whole_where_tiles_of_pixels_decide_for_others) {
   take_rendered_frame();
-  expect_same(typed("--radius 0.02 --tolerance 0.05 --set complete=none --aov ao,error"));
+  const std::string part = long_tests() ? "" : " --roi 300,150,260,150";
+  expect_same(typed("--radius 0.02 --tolerance 0.05 --set complete=none --aov ao,error" + part));
 }
 
 TEST_F(Tiles, give_the_warnings_of_the_whole) {
@@ -234,7 +252,7 @@ TEST_F(TilesOfShots, give_the_bits_of_the_whole) {
   const auto expect_same = [&](const char* more, std::uint64_t mebibytes) {
     SCOPED_TRACE(more);
     const auto computed = [&](std::uint64_t bytes) {
-      const Options all = joined(typed("--radius 0.08 --frames 2 --type float"), typed(more));
+      const Options all = joined(typed("--radius 0.08 --slices 1 --steps 2 --frames 2 --type float"), typed(more));
       const RunReport report = run_here(joined(arguments(all), {"--stats", folder / "stats.json"}), bytes);
       EXPECT_EQ(report.done, 1) << (report.stop ? report.stop->what() : "");
       return report.done == 1 ? std::pair(report.frames[0].parts, read_exr_image(output(2), {"Y"}).pixels)
@@ -271,56 +289,55 @@ std::uint64_t memory_named_in(const std::string& text) {
 }
 
 TEST_F(Tiles, too_little_memory_is_refused_with_the_least_that_is_enough) {
-  const Options options{"--radius", "0.06"};
-  const std::uint64_t named = memory_named_in(expect_refused_with(3 << 20, options, {}));
-  ASSERT_GT(named, 0);
-  const auto with = [&](std::uint64_t megabytes) {
-    return joined(options, {"--memory", std::to_string(megabytes) + "M"});
-  };
-  EXPECT_EQ(run_with(0, with(named)).done, 1);
-  EXPECT_EQ(memory_named_in(expect_refused_with(0, with(named - 1), {})), named);
-  const auto expect_enough_is_named = [&](const char* more) {
+  const auto expect_enough_is_named = [&](const Window& window, const char* more) {
+    wall_frame(window, window).write(frame);
+    write_bytes(camera, wall_camera(window).dump());
     const std::string enough = std::to_string(memory_named_in(expect_refused_with(1 << 20, typed(more), {})));
     const RunReport report = run_with(0, joined(typed(more), {"--memory", enough + "M"}));
     EXPECT_EQ(report.done, 1) << "with " << enough << "M: " << (report.stop ? report.stop->what() : "");
   };
-  // Less than the planes alone take, which stay in memory beside any tile.
+  // Less than the planes alone take, which stay in memory beside any tile: 16 bytes per pixel.
   expect_enough_is_named(
+      {0, 0, 320, 208},
       "--radius 0.4 --slices 1 --steps 2 --aov ao,bent-normal,transfer,normal,depth,specular-occlusion,confidence");
   // Codecs take more of more memory.
-  const Window tall{0, 0, 160, 1500};
-  wall_frame(tall, tall).write(frame);
-  write_bytes(camera, wall_camera(tall).dump());
-  expect_enough_is_named("--radius 50 --threads 4");
+  expect_enough_is_named({0, 0, 160, 1500}, "--radius 50 --slices 1 --steps 2 --threads 4");
 }
 
 TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough_for_the_whole) {
-  const std::string refusal = expect_refused_with(3 << 20, {"--radius", "0.06"}, {"times as long", "at once"});
+  const Options options = typed("--radius 0.06 --slices 1 --steps 2");
+  const std::string refusal = expect_refused_with(3 << 20, options, {"times as long", "at once"});
   const std::uint64_t least = memory_named_in(refusal);
   const std::uint64_t at_once = memory_named_in(refusal.substr(refusal.find("), or --memory")));
   ASSERT_GT(at_once, least);
+  const auto with = [&](std::uint64_t megabytes) {
+    return joined(options, {"--memory", fmt::format("{}M", megabytes)});
+  };
   const auto frame_within = [&](std::uint64_t megabytes) {
-    const RunReport report = run_with(0, {"--radius", "0.06", "--memory", std::to_string(megabytes) + "M"});
+    const RunReport report = run_with(0, with(megabytes));
     EXPECT_EQ(report.done, 1) << megabytes << (report.stop ? report.stop->what() : "");
     return report.done == 1 ? report.frames[0] : FrameReport();
   };
   EXPECT_EQ(frame_within(at_once).parts, 1);
-  EXPECT_GT(frame_within(at_once - 1).parts, 1);
   const FrameReport parts = frame_within(least);
+  EXPECT_EQ(memory_named_in(expect_refused_with(0, with(least - 1), {})), least);
   // The least is rounded up to whole MiB, and near it a little more memory saves many parts.
   const double told = std::strtod(refusal.c_str() + refusal.find("M (in ") + 6, nullptr);
   EXPECT_LE(parts.parts, told);
   EXPECT_GE(parts.parts, told / 6);
   const auto planned = [&](const Options& more) {
-    return run_program(joined({"run", shot, "-o", ao, "--camera", shot_camera, "--radius", "0.06", "--type", "float",
-                               "--stats", folder / "stats.json", "--dry-run"},
-                              more));
+    return run_program(joined({"run", shot, "-o", ao, "--camera", shot_camera, "--type", "float", "--stats",
+                               folder / "stats.json", "--dry-run"},
+                              joined(options, more)));
   };
   EXPECT_THAT(planned({}).out,
               HasSubstr(fmt::format("{}M computes a frame at once, {}M is the least", at_once, least)));
-  for (const int memory : {at_once - 1, (at_once + least) / 2})
+  for (const std::uint64_t memory : {at_once - 1, (at_once + least) / 2}) {
+    const int tiles = frame_within(memory).parts;
+    EXPECT_GT(tiles, 1) << memory;
     EXPECT_THAT(planned({"--memory", fmt::format("{}M", memory)}).out,
-                HasSubstr(fmt::format("in {} tiles per frame", frame_within(memory).parts)));
+                HasSubstr(fmt::format("in {} tiles per frame", tiles)));
+  }
   const Finished refused = planned({"--memory", fmt::format("{}M", least - 1)});
   test::expect_refused(refused, 2, {shot});
   EXPECT_EQ(memory_named_in(refused.err), least) << refused;
@@ -330,9 +347,8 @@ TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough
   const std::uint64_t whole = memory_named_in(planned(with_preview(least)).err);
   ASSERT_GT(whole, least);
   EXPECT_THAT(planned(with_preview(whole)).out, HasSubstr("nothing less is enough"));
-  EXPECT_EQ(run_with(0, joined({"--radius", "0.06"}, with_preview(whole))).done, 1);
-  EXPECT_EQ(memory_named_in(expect_refused_with(0, joined({"--radius", "0.06"}, with_preview(whole - 1)), {"--preview"})),
-            whole);
+  EXPECT_EQ(run_with(0, joined(options, with_preview(whole))).done, 1);
+  EXPECT_EQ(memory_named_in(expect_refused_with(0, joined(options, with_preview(whole - 1)), {"--preview"})), whole);
 }
 
 TEST_F(Tiles, that_cannot_be_are_refused) {

@@ -53,19 +53,21 @@ class Wedge : public SequenceFolder {
     copy_common(made.plane(channel).data(), made.data, pixels.data(), kWallWindow);
     return picture_url(kWallWindow.width, kWallWindow.height, 1, pixels);
   }
-  void expect_bits_of_commands(const json& report) const {
+  /// Runs the commands of all looks or, in the short form, of one of every `parts`, among which each value must be.
+  void expect_bits_of_commands(const json& report, int parts = 1) const {
     ASSERT_GE(report["images"].size(), report["candidates"].size());
     for (std::size_t i = 0; i < report["candidates"].size(); i++)
-      EXPECT_TRUE(run_command_of(report, i) == report["images"][i]["result"]) << report["candidates"][i];
+      if (tried(int(i), parts))
+        EXPECT_TRUE(run_command_of(report, i) == report["images"][i]["result"]) << report["candidates"][i];
   }
 
   const std::string frame = folder / "wall.exr", page = folder / "page.html", sheet = folder / "sheet.png";
 };
 
 TEST_F(Wedge, shows_the_bits_of_its_commands) {
-  expect_bits_of_commands(shown(of_frame("--radius .5,1.5 --preset draft,production")));
-  expect_bits_of_commands(shown(of_frame("--radius 1 --set denoise=none,box --set intensity=1,2 --roi 8,4,40,20")));
-  expect_bits_of_commands(shown(of_frame("--radius .7 --estimator hbao,crytek,bitmask --intensity 1,2")));
+  expect_bits_of_commands(shown(of_frame("--radius .5,1.5 --preset draft,production")), 2);  // and the proposed radius
+  expect_bits_of_commands(shown(of_frame("--radius 1 --set denoise=none,box --intensity 1,2 --roi 8,4,40,20")), 3);
+  expect_bits_of_commands(shown(of_frame("--radius auto --estimator hbao,crytek,bitmask")));
 }
 
 TEST_F(Wedge, turns_a_sun_and_shows_its_shadow_by_one_estimate) {
@@ -101,13 +103,13 @@ TEST_F(Wedge, estimates_once_for_looks_that_differ_in_their_shaping_alone) {
     for (const auto& row : report["rows"]) times.insert(row["estimate_ms"].get<double>());
     return times.size();
   };
-  const json report = shown(of_frame("--radius .5,auto --set intensity=.5,1,1.5,2"));
-  ASSERT_EQ(report["rows"].size(), 8);
+  const json report = shown(of_frame("--radius .5,auto --set intensity=.5,2"));
+  ASSERT_EQ(report["rows"].size(), 4);
   EXPECT_EQ(estimates_of(report), 2);
-  expect_bits_of_commands(report);
+  expect_bits_of_commands(report, 3);
   const json shapes = shown(of_frame("--radius auto --set least=0,.8 --set gain=1,2 --set power=1,2"));
   EXPECT_EQ(estimates_of(shapes), 1);
-  expect_bits_of_commands(shapes);
+  expect_bits_of_commands(shapes, 3);
   // AO has no gain.
   EXPECT_THAT(names_of(shapes)[2], HasSubstr("gain=2"));
   EXPECT_TRUE(shapes["images"][0].at("composite") != shapes["images"][2].at("composite"));
@@ -151,10 +153,8 @@ TEST_F(Wedge, has_the_radius_that_inspect_proposes) {
   const std::string name = fmt::format("radius {} (proposed)", proposed);
   EXPECT_EQ(names_of(shown(of_frame(""))),
             (Names{fmt::format("radius {}", proposed / 2), name, fmt::format("radius {}", 2 * proposed)}));
-  EXPECT_EQ(names_of(shown(of_frame("--radius 9,.01"))), (Names{"radius 0.01", name, "radius 9"}));
   EXPECT_EQ(names_of(shown(of_frame("--radius auto"))), Names{name});
   EXPECT_EQ(names_of(shown(of_frame("--set radius=9,.01"))), (Names{"radius 0.01", name, "radius 9"}));
-  EXPECT_EQ(names_of(shown(of_frame("--radius auto --set intensity=1,2"))), (Names{"intensity=1", "intensity=2"}));
   EXPECT_EQ(names_of(shown(of_frame(fmt::format("--radius 9,{} --preset draft,standard", proposed)))),
             (Names{"draft, " + name, "draft, radius 9", "standard, " + name, "standard, radius 9"}));
 }
