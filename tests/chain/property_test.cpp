@@ -185,7 +185,8 @@ TEST(Scale, changes_no_bit_of_what_is_hidden_or_made_of_the_ao) {
         };
         const auto expected = of(0);
         EXPECT_LT(*std::ranges::min_element(expected[0]), 0.8f) << name_of(settings);
-        for (const int exponent : {-50, 50}) {
+        // At 2^-50 the square of a small component is no normal float, and the last bit of a transfer may differ.
+        for (const int exponent : {-40, 50}) {
           const auto found = of(exponent);
           for (std::size_t i = 0; i < expected.size(); i++)
             EXPECT_TRUE(same_bits(found[i], expected[i]))
