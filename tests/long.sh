@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What takes too long to run with each change: every test in its long form and with lavapipe's own threads, random frames of all axes at once, sanitizers on whole runs, clang-tidy, and fuzzing
+# What takes too long to run with each change: every test in its long form and with lavapipe's own threads, random frames of all axes at once, sanitizers, clang-tidy, and fuzzing
 # from where the last run ended. docs/testing.md says what each adds. Half an hour or more; continuous integration does not call it.
 #   tests/long.sh [--device NAME]        on another Vulkan device
 #   ALCOVE_STABILITY_DRAWS=2000          random frames; 500 without it

@@ -347,15 +347,17 @@ std::string range_in(const std::string& name) {
 
 std::string foreign_token_in(const std::string& name) {
   static const std::regex view(R"(%[vV]|<[Vv][Ii][Ee][Ww]>|\{view\}|\$\{?VIEW\}?)"),
-      other(R"(%\d*[A-Za-z]|%\d+(?=\W|$)|%\(\w+\)\d*[a-z]?|<\w+>|\$?\{\w*(:\w+)?\}|\$[A-Za-z_]\w*)");
+      other(R"(%\d*[A-Za-z]|%\(\w+\)\d*[a-z]?|<\w+>|\$?\{\w*(:\w+)?\}|\$[A-Za-z_]\w*)");
   std::smatch found;
   if (std::regex_search(name, found, view))
     return fmt::format(
         "{} is not a pattern of Alcove: write a view's name in its place, such as left, and run each view by itself; "
         "of a file that holds several views, --view takes one",
         found.str());
+  static const std::regex unfinished(R"(%\d+(?![0-9A-Za-z]))");  // %20 in a folder's name is none
   const std::string rest = std::regex_replace(name, std::regex("%(0\\d*)?d|<[Ff]\\d?>|\\$F\\d?"), "");
-  if (std::regex_search(rest, found, other))
+  const std::string file = rest.substr(folder_prefix(rest).size());
+  if (std::regex_search(rest, found, other) || std::regex_search(file, found, unfinished))
     return fmt::format(
         "{} is not a pattern of Alcove: write #### or %04d for a frame number, and the word itself for all else",
         found.str());
@@ -399,14 +401,23 @@ std::string other_digits(const std::vector<std::string>& names, const std::strin
                      frame_token(digits), after);
 }
 
-/// Names a file that differs from the pattern in its ending, its separators or its letters' case; or else in few letters.
+/// Names a file that differs from the pattern in its ending, its separators or its letters' case; else one that differs
+/// in few letters.
 std::string nearly_named(std::vector<std::string> names, const std::string& folder, const std::string& wanted) {
+  constexpr std::size_t kLeastLetters = 4, kMostLonger = 2;
+  const std::string core = core_of(wanted);
   std::erase_if(names, [](const std::string& name) { return !frame_number_in(name).number; });
-  std::vector<std::string> cores;
-  std::ranges::transform(names, std::back_inserter(cores), core_of);
-  const auto nearest = nearest_names(core_of(wanted), cores, 1);
-  if (nearest.empty()) return "";
-  return fmt::format("there is {}{}", folder, names[std::size_t(std::ranges::find(cores, nearest[0]) - cores.begin())]);
+  auto near = std::ranges::find(names, core, core_of);
+  if (near == names.end() && core.size() >= kLeastLetters) {
+    std::vector<std::string> cores;
+    for (const auto& name : names)
+      if (const std::string other = core_of(name);
+          std::max(other.size(), core.size()) <= std::min(other.size(), core.size()) + kMostLonger)
+        cores.push_back(other);
+    if (const auto nearest = nearest_names(core, cores, 1); !nearest.empty())
+      near = std::ranges::find(names, nearest[0], core_of);
+  }
+  return near == names.end() ? "" : fmt::format("there is {}{}", folder, *near);
 }
 
 }  // namespace

@@ -189,8 +189,8 @@ void add(TextLines& lines, const SequenceDepth& depth) {
 }
 
 void add(TextLines& lines, const InspectedSequence& sequence, bool is_orthographic) {
-  lines.add("sequence: {}, {}; shown is frame {}", counted(sequence.frames.size(), "frame"), frames_text(sequence.frames),
-            sequence.shown);
+  lines.add("sequence: {}, {}; shown is frame {}", counted(sequence.frames.size(), "frame"),
+            frames_text(sequence.frames), sequence.shown);
   if (!sequence.absent.empty()) lines.add("  missing frames: {}", frames_text(sequence.absent));
   for (const auto& change : sequence.changes)
     for (const auto& [value, frames] : change.values)

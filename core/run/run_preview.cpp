@@ -347,15 +347,20 @@ std::string tiles_text(FrameSource& source, const Settings& settings, const Wind
   }
 }
 
-/// The least that --memory may be, with its cost, and what computes a frame at once; "" where its depth is unreadable.
-/// Fails as the run does where a single frame has less.
-std::string needs_text(FrameSource& source, const Settings& settings, const WindowLimits& limits, bool is_sequence) {
-  MemoryNeeds needs;
+/// The needs of a frame; nothing where its depth is unreadable, with which it fails by itself, and others of a sequence
+/// may not.
+std::optional<MemoryNeeds> needs_of(FrameSource& source, const Settings& settings, const WindowLimits& limits) {
   try {
-    needs = memory_needs(source, settings, limits);
+    return memory_needs(source, settings, limits);
   } catch (const Error&) {
-    return "";  // the frame fails by itself, and others of a sequence may not
+    return std::nullopt;
   }
+}
+
+/// The least that --memory may be, with its cost, and what computes a frame at once. Fails as the run does where a
+/// single frame has less.
+std::string needs_text(const FrameSource& source, const MemoryNeeds& needs, const WindowLimits& limits,
+                       bool is_sequence) {
   const bool is_enough = needs.least <= limits.budget.bytes;
   if (!is_enough && !is_sequence)
     limits.refuse(fmt::format("{}: there is no room for it: give a smaller --radius", source.depth_path()), needs);
@@ -426,17 +431,18 @@ std::string plan_text(RunPreview& look, bool is_wedge) {
   const std::uint64_t memory = of_frames.bytes;
   line("size", to_string(written_picture(source)));
   const WindowLimits limits{frame, of_frames};
+  std::optional<MemoryNeeds> needs = needs_of(source, first, limits);
+  if (needs && is_wedge && !source.region) needs->at_once += raw_bytes_of(source);  // kept for all looks
   const std::string reason = why_whole(first.output, is_wedge);
-  if (!reason.empty() && bytes > memory && (is_wedge || !plan.is_sequence()))
+  const bool is_too_little = needs && !reason.empty() && needs->at_once > memory;
+  if (is_too_little && (is_wedge || !plan.is_sequence()))
     limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {}", source.depth_path(), reason),
-                  memory_needs(source, first, limits));
-  const std::string at_once =
-      bytes <= memory     ? at_once_text(host, plan, source, first, wanted)
-      : reason.empty() ? tiles_text(source, first, limits)
-                         : "too few, and " + reason;
+                  {needs->at_once, needs->at_once});
+  const std::string at_once = is_too_little                        ? "too little, and " + reason
+                              : bytes <= memory || !reason.empty() ? at_once_text(host, plan, source, first, wanted)
+                                                                   : tiles_text(source, first, limits);
   line("memory", fmt::format("{} MiB per frame, {} MiB for frames: {}", bytes >> 20, memory >> 20, at_once));
-  const std::string needs = is_wedge ? "" : needs_text(source, first, limits, plan.is_sequence());
-  if (!needs.empty()) line("--memory", needs);
+  if (needs && !is_wedge) line("--memory", needs_text(source, *needs, limits, plan.is_sequence()));
   const bool computes = !wanted.empty();
   const auto line_of_shared = [&](const char* name, std::size_t count, const char* kind, std::uint64_t shared,
                                   const std::string& cost) {

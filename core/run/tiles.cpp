@@ -332,7 +332,8 @@ MemoryNeeds memory_needs(const FrameSource& source, Surroundings& surroundings, 
   const Window row{whole.x, whole.y, whole.width, std::min(whole.height, kLeastRows)};
   MemoryNeeds needs;
   needs.at_once = bytes_at_once(source, surroundings, limits);
-  if (limits.memory.beside > 0) return {needs.at_once, needs.at_once};  // its pictures show it whole
+  if (limits.memory.beside > 0)
+    return {needs.at_once, needs.at_once};  // a picture shows the whole frame, so parts are no help
   WindowLimits smallest = limits;
   smallest.kept = raw_bytes_of(source);
   needs.least =

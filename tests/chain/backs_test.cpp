@@ -28,7 +28,7 @@ Rendering ball_and_box(int width, int height, bool orthographic) {
                                     : Shot::perspective(eye, target, 50, width, height));
 }
 
-// With each change each box is seen from each eye and by each camera, and every second of all that is tried.
+// With each change half of the combinations: each box from each eye and by each camera.
 TEST(Backs, of_a_box_above_the_floor_are_no_farther_than_its_top_goes) {
   const Vec3 target{0, 0, 0.3};
   for (const Vec3 eye : {Vec3{6, 0, 2.2}, Vec3{5, 0, 4}})

@@ -178,7 +178,7 @@ TEST(BentNormals, beside_walls_are_the_closed_form_from_every_camera) {
       if (roll == 0) expect_exact(floor);
     }
     expect_exact({count, Shot::orthographic(eye, target, 3, 180, 135), 0.6});
-    exact_number++;  // what one wall has left out
+    exact_number++;  // so that two walls take the combinations that one wall left out
   }
 }
 

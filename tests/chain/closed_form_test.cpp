@@ -442,7 +442,7 @@ TEST(ClosedForm, with_every_falloff) {
   expect_truth(ceilings()[0], search);
 }
 
-/// Half of the pictures with each change: of each scene one, a wide one and a parallel one.
+/// Half of the pictures with each change: wall, corner and bowl, among them a wide and a parallel view.
 TEST(ClosedForm, of_an_exact_search) {
   const Pictures wall = walls(), corner = corners();
   int number = 0;

@@ -168,7 +168,7 @@ TEST(Scale, changes_no_bit_of_what_is_hidden_or_made_of_the_ao) {
     for (const auto thickness : {ThicknessKind::automatic, ThicknessKind::infinite, ThicknessKind::constant})
       for (const bool is_exact : {false, true}) {
         if (!tried(orthographic + int(thickness) + is_exact, 2)) continue;
-        // Curvature beside an exact search takes as many slices and steps by samples.
+        // Beside an exact search, curvature is sampled with the same slices and steps.
         EstimatorSettings settings = is_exact ? exact(0.6, 4) : gtao(0.6, 3, 12);
         settings.steps = 12;
         settings.thickness = thickness;
@@ -306,7 +306,7 @@ TEST(Normals, that_lean_beyond_the_horizon_are_not_turned) {
 
 // Windows, sizes and any bits.
 
-// With each change every second search at each size.
+// With each change every second search at each size that is no square.
 TEST(Size, may_be_anything_from_one_pixel_and_any_bits_give_an_ao_from_0_to_1) {
   int number = 0, size = 0;
   for (const auto& [width, height] :
@@ -317,7 +317,7 @@ TEST(Size, may_be_anything_from_one_pixel_and_any_bits_give_an_ao_from_0_to_1) {
     size++;
     int turn = size;
     for (const EstimatorSettings& kind : all_kinds(0.6)) {
-      if (!tried(turn++, 2)) {
+      if (!tried(turn++, 2) && width != height) {
         number++;
         continue;
       }

@@ -114,7 +114,7 @@ TEST(Reuse, of_parts_and_of_whole_frames_changes_no_bit) {
       if (shot > 0 && shot != still) change(frame, random);
       frame.frame = shot;
       const Outcome next = next_of(lane, frame, settings, all);
-      // What the first one had wrong would still be in the tiles that the others keep of it.
+      // A mistake in the first frame shows in the tiles that later frames keep.
       if (shot == 0) expected = next.values;
       if (shot > 0 && shot != still) expected = alone(frame, settings, all);
       EXPECT_TRUE(same_bits(next.values, expected))
@@ -312,7 +312,7 @@ TEST(Density, of_kept_tiles_is_that_of_a_fresh_run) {
       if (i > 0) change(frame, random);
       frame.frame = i;
       const Outcome next = next_of(lane, frame, settings);
-      if (i > 0)  // what the first one had wrong would still be in the tiles that the others keep of it
+      if (i > 0)  // a mistake in the first frame shows in the tiles that later frames keep
         EXPECT_TRUE(same_bits(next.values, alone(frame, settings))) << "scene " << scene << " frame " << i;
       kept += next.is_same ? 0 : next.kept;
     }

@@ -5,10 +5,10 @@
 
 #include "core/chain/chain.h"
 #include "core/run/frame_run.h"
+#include "tests/driver/fake_driver.h"
 #include "tests/support/chain.h"
 #include "tests/support/command_line.h"
 #include "tests/support/device.h"
-#include "tests/driver/fake_driver.h"
 
 namespace alcove::driver_test {
 namespace {

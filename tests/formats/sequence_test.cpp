@@ -128,6 +128,7 @@ TEST_F(OnDisk, none_is_an_error_that_says_what_is_wrong_with_the_pattern) {
            {"b.%04d.exr", "1 digit in b.7.exr"},
            {"shot_c_####.exr", "there is " + (folder / "shot_C.1001.exr")},
            {"shto_c_####.exr", "there is " + (folder / "shot_C.1001.exr")},
+           {"shot_normal_####.exr", "shot_normal_0001.exr"},
            {"a.####.exr 1-2", (folder / "a.####.exr") + " with --frames 1-2"},
            {"a.####.exr [1-20x2]", "--frames 1-20x2"},
            {"a.1001-1005#.exr", (folder / "a.####.exr") + " with --frames 1001-1005"},
@@ -149,11 +150,11 @@ TEST(ForeignPattern, is_known_in_a_name_without_a_place_for_the_number) {
                                     std::pair("a.{101..105}.exr", "write a.###.exr with --frames 101-105"),
                                     std::pair("a.1001-1005.exr", "write a.####.exr with --frames 1001-1005"),
                                     std::pair("a.%04i.exr", "%04i is not"), std::pair("a.%04.exr", "%04 is not"),
-                                    std::pair("a.%4d.exr", "%4d is not"),
+                                    std::pair("a_%04_left.exr", "%04 is not"), std::pair("a.%4d.exr", "%4d is not"),
                                     std::pair("a.{frame:04d}.exr", "{frame:04d} is not"),
                                     std::pair("a.<UDIM>.exr", "<UDIM> is not"), std::pair("a_%V.exr", "%V is not")})
     EXPECT_THAT(foreign_pattern_in(name), HasSubstr(words));
-  for (const char* name : {"a.exr", "2024-11/a.exr", "a-1.exr", "a.1001.exr", "100%.exr"})
+  for (const char* name : {"a.exr", "2024-11/a.exr", "my%20-%20shots/a.exr", "a-1.exr", "a.1001.exr", "100%.exr"})
     EXPECT_EQ(foreign_pattern_in(name), "") << name;
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/formats/image_io.h"
 
-#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -17,7 +16,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto picture = is_dds ? open_dds(input.path(), "--depth") : open_npy(input.path(), "--depth");
     const std::size_t count = picture->names.size();
     fuzz::require(size >= 10, "what is read has a header");
-    fuzz::require(picture->data.pixels() > 0 && count > 0 && count <= 4, "a picture has pixels and up to four channels");
+    fuzz::require(picture->data.pixels() > 0 && count > 0 && count <= 4,
+                  "a picture has pixels and up to four channels");
     std::vector<std::vector<float>> planes(count, std::vector<float>(picture->data.pixels()));
     std::vector<PictureReader::Channel> channels;
     for (std::size_t i = 0; i < count; i++) channels.push_back({i, planes[i].data()});

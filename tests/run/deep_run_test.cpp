@@ -127,7 +127,7 @@ TEST_F(DeepRun, samples_alone_are_a_frame_and_may_lie_in_several_files) {
     other.is_tiled = is_tiled;
     other.tile = 7;
     write_deep(b, {other}, kWallWindow);
-    if (!is_tiled) EXPECT_TRUE(result(both) == beside_flat);
+    EXPECT_TRUE(result(both) == beside_flat) << is_tiled;
     if (!is_tiled) EXPECT_TRUE(result_of({b, "--deep", a}) == expected);
     if (is_tiled) EXPECT_TRUE(result_of({a, "--deep", b}) == expected);
     if (is_tiled) EXPECT_TRUE(result_of(typed(both)) == expected);

@@ -42,10 +42,11 @@ class Memory : public testing::Test {
     const std::size_t of_others = takes_others(settings.input) ? 3 * sizeof(float) * window.pixels() : 0;
     run_chain(gpu, inputs, settings.estimator, settings.output);
     const std::size_t taken = gpu.bytes() - of_others;  // buffers are made while commands are recorded
-    if (long_tests()) gpu.run();                        // fails where a kernel writes beside its buffers
-    return {double(taken) / double(window.pixels()),
-            double(expected.of(window).device) / double(window.pixels())};
+    if (tried(number++, 4)) gpu.run();                  // fails where a kernel writes beside its buffers
+    return {double(taken) / double(window.pixels()), double(expected.of(window).device) / double(window.pixels())};
   }
+
+  mutable int number = 0;  // of the frame that was made last
 
   /// A camera a step to the right that sees a wall where this frame shows none.
   OtherView from_beside(gpu::Recorder& gpu, const FrameInputs& inputs) const {

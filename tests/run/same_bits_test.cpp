@@ -44,10 +44,9 @@ TEST_F(SameBits, of_threads_chunks_and_orders) {
       {fmt::format("--threads 2 --frames 1-{}x2,2-{}:2", frames, frames - 1)},
       {"--chunk 2/2", "--threads 1 --chunk 1/2"}};
   int number = 0;
-  for (const std::string& more :
-       std::vector<std::string>{"", "--accumulate 1 --around 1 --preset reference --aov ao,transfer", "--accumulate 2",
-                                "--preset draft", "--around 2 --estimator bitmask",
-                                "--around 1 --search exact --behind " + peel}) {
+  for (const std::string& more : std::vector<std::string>{
+           "", "--accumulate 1 --around 1 --preset reference --aov ao,transfer", "--accumulate 2", "--preset draft",
+           "--around 2 --estimator bitmask", "--around 1 --search exact --behind " + peel}) {
     SCOPED_TRACE(more);
     remove_outputs();
     done(joined(typed(more), {"--threads", "1"}));
@@ -85,7 +84,7 @@ TEST_F(SameBits, of_a_region_and_the_whole_at_less_cost) {
       {2, 1, near + "--matte " + board + " --matte-outside 0.25"},
       {2, 1, near + ignore + " --resolution half --behind " + peel},
       {2, 1, exact + ignore + " --behind " + peel}};
-  // These have margins of their own in tiles_test, their parts above, or a region in deep_run_test.
+  // Covered elsewhere: margins by tiles_test, combined options by rows above, deep files by deep_run_test.
   if (long_tests())
     rows.insert(rows.end(), {{kOverscanFrame, 1, near + "--preset draft"},
                              {kOverscanFrame, 0.91, near + "--resolution half"},

@@ -114,7 +114,7 @@ Notes DepthSample::notes(double smallest_radius, double largest_radius, int widt
 
   if (largest_radius > pixel_at(z) * std::max(width, height))
     notes.push_back({NoteCode::radius_beyond_picture,
-                     fmt::format("radius {:.6g} is {:.0f} pixels at the median depth {:.3g}, and the picture is {}x{}: "
+                     fmt::format("radius {:.6g} is {:.6g} pixels at the median depth {:.3g}, and the picture is {}x{}: "
                                  "most of its reach lies outside the picture; give a smaller --radius",
                                  largest_radius, largest_radius / pixel_at(z), z, width, height)});
   return notes;
