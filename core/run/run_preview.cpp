@@ -437,7 +437,7 @@ std::string plan_text(RunPreview& look, bool is_wedge) {
   const bool is_too_little = needs && !reason.empty() && needs->at_once > memory;
   if (is_too_little && (is_wedge || !plan.is_sequence()))
     limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {}", source.depth_path(), reason),
-                  {needs->at_once, needs->at_once});
+                  MemoryNeeds{needs->at_once, needs->at_once});
   const std::string at_once = is_too_little                        ? "too little, and " + reason
                               : bytes <= memory || !reason.empty() ? at_once_text(host, plan, source, first, wanted)
                                                                    : tiles_text(source, first, limits);
