@@ -347,17 +347,15 @@ std::string range_in(const std::string& name) {
 
 std::string foreign_token_in(const std::string& name) {
   static const std::regex view(R"(%[vV]|<[Vv][Ii][Ee][Ww]>|\{view\}|\$\{?VIEW\}?)"),
-      other(R"(%\d*[A-Za-z]|%\(\w+\)\d*[a-z]?|<\w+>|\$?\{\w*(:\w+)?\}|\$[A-Za-z_]\w*)");
+      other(R"(%\d*[A-Za-z]|%\d+(?![0-9A-Za-z])|%\(\w+\)\d*[a-z]?|<\w+>|\$?\{\w*(:\w+)?\}|\$[A-Za-z_]\w*)");
   std::smatch found;
   if (std::regex_search(name, found, view))
     return fmt::format(
         "{} is not a pattern of Alcove: write a view's name in its place, such as left, and run each view by itself; "
         "of a file that holds several views, --view takes one",
         found.str());
-  static const std::regex unfinished(R"(%\d+(?![0-9A-Za-z]))");  // %20 in a folder's name is none
-  const std::string rest = std::regex_replace(name, std::regex("%(0\\d*)?d|<[Ff]\\d?>|\\$F\\d?"), "");
-  const std::string file = rest.substr(folder_prefix(rest).size());
-  if (std::regex_search(rest, found, other) || std::regex_search(file, found, unfinished))
+  const std::string rest = std::regex_replace(name, std::regex("%20|%(0\\d*)?d|<[Ff]\\d?>|\\$F\\d?"), "");
+  if (std::regex_search(rest, found, other))
     return fmt::format(
         "{} is not a pattern of Alcove: write #### or %04d for a frame number, and the word itself for all else",
         found.str());

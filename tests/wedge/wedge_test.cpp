@@ -53,7 +53,8 @@ class Wedge : public SequenceFolder {
     copy_common(made.plane(channel).data(), made.data, pixels.data(), kWallWindow);
     return picture_url(kWallWindow.width, kWallWindow.height, 1, pixels);
   }
-  /// Runs the commands of all looks or, in the short form, of one of every `parts`, which the caller chooses so that each value is met.
+  /// Runs the commands of all looks or, in the short form, of one of every `parts`, which the caller chooses so that
+  /// each value is met.
   void expect_bits_of_commands(const json& report, int parts = 1) const {
     ASSERT_GE(report["images"].size(), report["candidates"].size());
     for (std::size_t i = 0; i < report["candidates"].size(); i++)
