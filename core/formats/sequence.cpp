@@ -406,12 +406,13 @@ std::string nearly_named(std::vector<std::string> names, const std::string& fold
   const std::string core = core_of(wanted);
   std::erase_if(names, [](const std::string& name) { return !frame_number_in(name).number; });
   auto near = std::ranges::find(names, core, core_of);
-  if (near == names.end() && core.size() >= kLeastLetters) {
+  if (near == names.end()) {
     std::vector<std::string> cores;
-    for (const auto& name : names)
-      if (const std::string other = core_of(name);
-          std::max(other.size(), core.size()) <= std::min(other.size(), core.size()) + kMostLonger)
-        cores.push_back(other);
+    for (const auto& name : names) {
+      const std::string other = core_of(name);
+      const auto [fewer, more] = std::minmax(other.size(), core.size());
+      if (more >= kLeastLetters && more - fewer <= kMostLonger) cores.push_back(other);
+    }
     if (const auto nearest = nearest_names(core, cores, 1); !nearest.empty())
       near = std::ranges::find(names, nearest[0], core_of);
   }

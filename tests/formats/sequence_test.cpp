@@ -128,7 +128,7 @@ TEST_F(OnDisk, none_is_an_error_that_says_what_is_wrong_with_the_pattern) {
            {"b.%04d.exr", "1 digit in b.7.exr"},
            {"shot_c_####.exr", "there is " + (folder / "shot_C.1001.exr")},
            {"shto_c_####.exr", "there is " + (folder / "shot_C.1001.exr")},
-           {"shot_normal_####.exr", "shot_normal_0001.exr"},
+           {"sot_C.####.exr", "there is " + (folder / "shot_C.1001.exr")},
            {"a.####.exr 1-2", (folder / "a.####.exr") + " with --frames 1-2"},
            {"a.####.exr [1-20x2]", "--frames 1-20x2"},
            {"a.1001-1005#.exr", (folder / "a.####.exr") + " with --frames 1001-1005"},
