@@ -410,7 +410,7 @@ std::string nearly_named(std::vector<std::string> names, const std::string& fold
     std::vector<std::string> cores;
     for (const auto& name : names) {
       const std::string other = core_of(name);
-      const auto [fewer, more] = std::minmax(other.size(), core.size());
+      const auto [fewer, more] = std::minmax({other.size(), core.size()});
       if (more >= kLeastLetters && more - fewer <= kMostLonger) cores.push_back(other);
     }
     if (const auto nearest = nearest_names(core, cores, 1); !nearest.empty())
