@@ -49,12 +49,11 @@ FrameInputs rehearsed_inputs(gpu::Recorder& rehearsal, const FrameMemory& memory
   return inputs;
 }
 
-/// What copying the beauty's file into the composite takes: rows of its channels, and two codecs.
-std::uint64_t copied_bytes(const FrameSource& source, const OutputSettings& settings) {
+/// Bytes of a row of the beauty's file that is copied into the composite; 0 if none is.
+std::uint64_t copied_row(const FrameSource& source, const OutputSettings& settings) {
   if (source.channels[RawPlane::beauty].empty() || settings.composite_layers != "all") return 0;
   const ExrPart& part = source.part_of(source.channels[RawPlane::beauty][0]);
-  const std::uint64_t row = sizeof(float) * part.channels.size() * std::uint64_t(part.data.width);
-  return kRowsOfOriginal * row + 2 * exr_codec_bytes(kRowsOfOutput * row);
+  return sizeof(float) * part.channels.size() * std::uint64_t(part.data.width);
 }
 
 }  // namespace
@@ -111,8 +110,10 @@ FrameMemory memory_of(const FrameSource& source, const Settings& settings) {
   memory.beside = sizeof(float) * pictures;
   memory.is_cropped = source.region.has_value();
   memory.codec_groups = {kRowsOfOutput * memory.written * std::uint64_t(source.reading.data.width)};
-  memory.fixed_bytes =
-      exr_codec_bytes(memory.codec_groups[0]) + copied_bytes(source, settings.output) + composite_bytes(source);
+  const std::uint64_t copied = copied_row(source, settings.output);
+  if (copied > 0) memory.codec_groups.insert(memory.codec_groups.end(), 2, kRowsOfOutput * copied);
+  memory.fixed_bytes = kRowsOfOriginal * copied + composite_bytes(source);
+  for (const std::uint64_t group : memory.codec_groups) memory.fixed_bytes += exr_codec_bytes(group);
   if (settings.input.ramps == "cut") memory.fixed_bytes += kRampBytes * source.reading.data.pixels();
   for (const auto& file : source.files) {
     memory.fixed_bytes += file.bytes_beside_pixels();

@@ -268,11 +268,18 @@ void make_wedge(std::vector<WedgeLook>& looks, const std::string& page, const st
 }
 
 std::string wedge_text(const std::vector<WedgeLook>& looks) {
-  RunPreview first(with_planes_of_page(looks.front().settings));
   const std::size_t estimates = groups_of(looks).size();
   const InputSettings& input = looks.front().settings.input;
   const bool takes_from_others = input.accumulate > 0 || takes_others(input);
-  std::string text = plan_text(first, true);
+  std::string text;
+  for (const auto& look : looks) try {
+      RunPreview preview(with_planes_of_page(look.settings));
+      const std::string of_look = plan_text(preview, true);
+      if (text.empty()) text = of_look;
+    } catch (const Error& error) {
+      if (text.empty()) throw;
+      fail(error.kind(), "look {}: {}", look.name, error.what());
+    }
   text += fmt::format(
       "{:<14}{} of each frame, by {}{}\n", "looks", looks.size(), counted(std::size_t(estimates), "estimate"),
       takes_from_others && estimates > 1 ? ", each with its own pass over the neighbouring frames" : "");

@@ -290,7 +290,9 @@ std::uint64_t memory_named_in(const std::string& text) {
 
 TEST_F(Tiles, too_little_memory_is_refused_with_the_least_that_is_enough) {
   const auto expect_enough_is_named = [&](const Window& window, const char* more) {
-    wall_frame(window, window).write(frame);
+    FrameFile file = wall_frame(window, window);
+    add_beauty(file);
+    file.write(frame);
     write_bytes(camera, wall_camera(window).dump());
     const std::string enough = std::to_string(memory_named_in(expect_refused_with(1 << 20, typed(more), {})));
     const RunReport report = run_with(0, joined(typed(more), {"--memory", enough + "M"}));
@@ -302,6 +304,8 @@ TEST_F(Tiles, too_little_memory_is_refused_with_the_least_that_is_enough) {
       "--radius 0.4 --slices 1 --steps 2 --aov ao,bent-normal,transfer,normal,depth,specular-occlusion,confidence");
   // Codecs take more of more memory.
   expect_enough_is_named({0, 0, 160, 1500}, "--radius 50 --slices 1 --steps 2 --threads 4");
+  const std::string copied = "--radius 0.06 --slices 1 --steps 2 --threads 4 --composite " + composite;
+  expect_enough_is_named({0, 0, 1500, 160}, copied.c_str());
 }
 
 TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough_for_the_whole) {

@@ -279,6 +279,15 @@ TEST_F(Wedge, without_room_is_refused_dry_as_well) {
   const Options little = of_frame("--radius 1 --memory 240M");
   expect_refused(2, joined(little, {"--dry-run"}), {"whole", "--roi", "--memory"});
   expect_refused(2, little, {"--memory"});
+  // What is enough for one look is too little for another.
+  wall_frame(kWallWindow, kWallWindow).write(frame);
+  write_bytes(camera, wall_camera(kWallWindow).dump());
+  const std::string words = run(of_frame("--radius 1 --preset draft --memory 1M --dry-run")).err;
+  std::smatch least;
+  ASSERT_TRUE(std::regex_search(words, least, std::regex("--memory ([0-9]+M)"))) << words;
+  const std::string memory = " --dry-run --memory " + least[1].str();
+  EXPECT_EQ(run(of_frame("--radius 1 --preset draft" + memory)).code, 0);
+  expect_refused(2, of_frame("--radius 1 --preset draft,production" + memory), {"look production", "--memory"});
 }
 
 TEST_F(Wedge, may_be_tried_dry) {
