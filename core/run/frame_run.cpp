@@ -484,7 +484,7 @@ class FrameRun {
   }
 
   void refuse_pictures(const FrameSource& source, WindowLimits limits, const Window& computed) const {
-    const std::string reason = why_whole(settings_.output, bool(run_.take_look));
+    const std::string reason = why_whole(settings_, bool(run_.take_look));
     if (reason.empty()) return;
     if (!source.region && !planes_) limits.kept = 0;  // all of it is read into its buffers
     limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {}", report_.input, reason), computed);

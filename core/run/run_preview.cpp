@@ -433,7 +433,7 @@ std::string plan_text(RunPreview& look, bool is_wedge) {
   const WindowLimits limits{frame, of_frames};
   std::optional<MemoryNeeds> needs = needs_of(source, first, limits);
   if (needs && is_wedge && !source.region) needs->at_once += raw_bytes_of(source);  // kept for all looks
-  const std::string reason = why_whole(first.output, is_wedge);
+  const std::string reason = why_whole(first, is_wedge);
   const bool is_too_little = needs && !reason.empty() && needs->at_once > memory;
   if (is_too_little && (is_wedge || !plan.is_sequence()))
     limits.refuse(fmt::format("{}: a frame this large is computed in tiles, and {}", source.depth_path(), reason),

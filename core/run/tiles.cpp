@@ -314,10 +314,11 @@ void require_numbered_lines(const FrameSource& source, const EstimatorSettings& 
          source.depth_path(), reach, farthest);
 }
 
-std::string why_whole(const OutputSettings& settings, bool is_wedge) {
-  if (is_wedge) return "a wedge needs it whole: choose a region with --roi";
-  if (!settings.preview.empty()) return "--preview needs it whole: leave it out";
-  return settings.debug.empty() ? "" : "--set debug needs it whole: leave it out";
+std::string why_whole(const Settings& settings, bool is_wedge) {
+  if (is_wedge)
+    return fmt::format("a wedge needs it whole: choose a {}region with --roi", settings.input.roi ? "smaller " : "");
+  if (!settings.output.preview.empty()) return "--preview needs it whole: leave it out";
+  return settings.output.debug.empty() ? "" : "--set debug needs it whole: leave it out";
 }
 
 std::string MemoryNeeds::cost() const {

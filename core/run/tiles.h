@@ -77,7 +77,7 @@ void require_numbered_lines(const FrameSource& source, const EstimatorSettings& 
 
 /// The reason why no part of a frame is computed alone, with its remedy; "" if there is none. Pictures show a frame on
 /// a scale of its own, which no part knows.
-std::string why_whole(const OutputSettings& settings, bool is_wedge);
+std::string why_whole(const Settings& settings, bool is_wedge);
 
 /// The host memory that a frame needs, in bytes, and the cost in time of the least.
 struct MemoryNeeds {
