@@ -404,19 +404,16 @@ std::string other_digits(const std::vector<std::string>& names, const std::strin
 std::string nearly_named(std::vector<std::string> names, const std::string& folder, const std::string& wanted) {
   constexpr std::size_t kLeastLetters = 4, kMostLonger = 2;
   const std::string core = core_of(wanted);
-  std::erase_if(names, [](const std::string& name) { return !frame_number_in(name).number; });
-  auto near = std::ranges::find(names, core, core_of);
-  if (near == names.end()) {
-    std::vector<std::string> cores;
-    for (const auto& name : names) {
-      const std::string other = core_of(name);
-      const auto [fewer, more] = std::minmax({other.size(), core.size()});
-      if (more >= kLeastLetters && more - fewer <= kMostLonger) cores.push_back(other);
-    }
-    if (const auto nearest = nearest_names(core, cores, 1); !nearest.empty())
-      near = std::ranges::find(names, nearest[0], core_of);
-  }
-  return near == names.end() ? "" : fmt::format("there is {}{}", folder, *near);
+  const auto is_far = [&](const std::string& name) {
+    const std::string other = core_of(name);
+    const auto [fewer, more] = std::minmax({other.size(), core.size()});
+    return !frame_number_in(name).number || (other != core && (more < kLeastLetters || more - fewer > kMostLonger));
+  };
+  std::erase_if(names, is_far);
+  std::vector<std::string> cores;
+  std::ranges::transform(names, std::back_inserter(cores), core_of);
+  const auto nearest = nearest_names(core, cores, 1);
+  return nearest.empty() ? "" : fmt::format("there is {}{}", folder, *std::ranges::find(names, nearest[0], core_of));
 }
 
 }  // namespace

@@ -351,6 +351,7 @@ TEST_F(Tiles, too_little_memory_is_refused_with_its_cost_and_with_what_is_enough
   const std::uint64_t whole = memory_named_in(planned(with_preview(least)).err);
   ASSERT_GT(whole, least);
   EXPECT_THAT(planned(with_preview(whole)).out, HasSubstr("nothing less is enough"));
+  EXPECT_EQ(planned(joined(with_preview(least), {"--roi", "0,0,40,30"})).code, 0) << "a region takes less";
   EXPECT_EQ(run_with(0, joined(options, with_preview(whole))).done, 1);
   EXPECT_EQ(memory_named_in(expect_refused_with(0, joined(options, with_preview(whole - 1)), {"--preview"})), whole);
 }

@@ -284,6 +284,7 @@ TEST_F(Wedge, without_room_is_refused_dry_as_well) {
   write_bytes(camera, wall_camera(kWallWindow).dump());
   const std::string words = run(of_frame("--radius 1 --preset draft --memory 1M --dry-run")).err;
   std::smatch least;
+  expect_refused(2, of_frame("--radius 1 --memory 1M --dry-run --roi 8,4,40,20"), {"choose a smaller region"});
   ASSERT_TRUE(std::regex_search(words, least, std::regex("--memory ([0-9]+M)"))) << words;
   const std::string memory = " --dry-run --memory " + least[1].str();
   EXPECT_EQ(run(of_frame("--radius 1 --preset draft" + memory)).code, 0);
